@@ -1,0 +1,144 @@
+"""The one registry of what a person can do: keys, footer, palette, help and any remapping all read it.
+
+A screen only implements ``action_<id>`` for the actions of its scope, and says in ``check_action`` which of
+them have a meaning now.
+"""
+
+from collections.abc import Iterable
+from enum import StrEnum
+from itertools import groupby
+from operator import attrgetter
+from typing import NamedTuple
+
+from textual.actions import parse
+from textual.binding import Binding
+
+
+class Scope(StrEnum):
+    """Where an action works."""
+
+    EVERYWHERE = "Everywhere"
+    MENU = "Menu"
+    LESSON = "Lesson"
+
+
+class Action(NamedTuple):
+    """Something a person can do. ``key`` is Textual's name of a key, ``help`` one sentence.
+
+    Neighbours with the same ``label`` share a place in the footer.
+    """
+
+    id: str
+    key: str
+    label: str
+    help: str
+    scope: Scope
+
+
+PANES = ("guide", "code", "robot", "log")
+"""The panes of a lesson, in the order of their keys."""
+
+ACTIONS = (
+    Action("open", "enter", "open", "Open the highlighted lesson", Scope.MENU),
+    *(
+        Action(f"open_number({number})", str(number), "open", "Open the lesson with this number", Scope.MENU)
+        for number in range(1, 10)
+    ),
+    Action("previous", "up", "choose", "Highlight the lesson above", Scope.MENU),
+    Action("next", "down", "choose", "Highlight the lesson below", Scope.MENU),
+    Action("call_service", "s", "service", "Call the lesson's SetBool service with true", Scope.LESSON),
+    Action("call_service_off", "S", "false", "Call the lesson's SetBool service with false", Scope.LESSON),
+    Action("pause", "space", "pause", "Stop time for every thread; press again to go on", Scope.LESSON),
+    Action(
+        "threads", "t", "threads", "Choose how many threads the executor gets, and run again", Scope.LESSON
+    ),
+    Action(
+        "restart", "r", "reset", "Put the robot back to its start; after a run's end, run again", Scope.LESSON
+    ),
+    Action("live", "0", "live", "Go back to the present", Scope.LESSON),
+    *(
+        Action(f"show_pane('{name}')", str(number), "pane", "Go to a pane", Scope.LESSON)
+        for number, name in enumerate(PANES, start=1)
+    ),
+    Action("earlier", "left", "look back", "Look at an earlier stretch of the run", Scope.LESSON),
+    Action("later", "right", "look back", "Look at a later stretch of the run", Scope.LESSON),
+    Action("slower", "minus", "speed", "Let virtual time pass more slowly", Scope.LESSON),
+    Action("faster", "plus", "speed", "Let virtual time pass faster", Scope.LESSON),
+    Action("zoom_out", "less_than_sign", "time", "Show a longer stretch of time on the lanes", Scope.LESSON),
+    Action("zoom_in", "greater_than_sign", "time", "Show a shorter stretch of time on the lanes", Scope.LESSON),
+    Action("next_pane", "tab", "next pane", "Go to the next pane", Scope.LESSON),
+    Action("maximise", "z", "zoom", "Let one pane fill the screen; press again to go back", Scope.LESSON),
+    Action("next_lesson", "n", "next", "Open the next lesson", Scope.LESSON),
+    Action("leave", "q", "menu", "End the run and go back to the menu", Scope.LESSON),
+    Action("leave", "q", "quit", "Leave the console", Scope.MENU),
+    Action("palette", "ctrl+p", "commands", "Find any command, or another colour theme", Scope.EVERYWHERE),
+    Action("help", "question_mark", "help", "Show every key and what it does", Scope.EVERYWHERE),
+)
+
+
+def actions_of(scope: Scope) -> tuple[Action, ...]:
+    """Return the actions that work on a screen, those of everywhere last."""
+    return tuple(action for action in ACTIONS if action.scope in (scope, Scope.EVERYWHERE))
+
+
+def bindings_of(*scopes: Scope) -> list[Binding]:
+    """Return the key bindings of the actions that belong to exactly these scopes."""
+    return [_binding(action) for action in ACTIONS if action.scope in scopes]
+
+
+def _binding(action: Action) -> Binding:
+    return Binding(
+        action.key,
+        action.id,
+        action.label,
+        tooltip=action.help,
+        id=f"{action.scope.name.lower()}.{action.id}",
+        priority=action.key in _KEYS_THAT_WIDGETS_WANT,
+    )
+
+
+_KEYS_THAT_WIDGETS_WANT = {"left", "right", "tab"}
+"""Panes scroll with the arrows and pass the focus on with tab: the screen has to be asked first."""
+
+_SIGNS = {
+    "enter": "⏎",
+    "space": "␣",
+    "up": "↑",
+    "down": "↓",
+    "left": "←",
+    "right": "→",
+    "minus": "-",
+    "plus": "+",
+    "less_than_sign": "<",
+    "greater_than_sign": ">",
+    "question_mark": "?",
+    "ctrl+p": "^p",
+}
+_PLAIN_SIGNS = _SIGNS | {
+    "enter": "enter",
+    "space": "space",
+    "up": "up",
+    "down": "down",
+    "left": "left",
+    "right": "right",
+}
+
+
+def signs_of(actions: Iterable[Action], plain: bool) -> str:
+    """Return the keys of some actions as people write them; ``plain`` avoids everything but ASCII."""
+    keys = [action.key for action in actions]
+    if len(keys) > 2 and all(key.isdigit() for key in keys):
+        return f"{keys[0]}-{keys[-1]}"
+    signs = _PLAIN_SIGNS if plain else _SIGNS
+    return " ".join(signs.get(key, key) for key in keys)
+
+
+def method_of(action: Action) -> tuple[str, tuple[object, ...]]:
+    """Return the name and the arguments with which a screen is asked whether an action works now."""
+    _, name, arguments = parse(action.id)
+    return name, arguments
+
+
+def together(actions: Iterable[Action], field: str) -> list[tuple[Action, ...]]:
+    """Put neighbours together that agree in a field."""
+    return [tuple(group) for _, group in groupby(actions, key=attrgetter(field))]

@@ -1,0 +1,132 @@
+"""What a moment of a run means, in one sentence: who waits longest and why, or that nothing waits."""
+
+from dataclasses import dataclass
+from enum import Enum, auto
+
+from cbtui.concurrency import Concurrency
+from cbtui.widgets.durations import duration
+from sim.trace.events import Notice, Reason, Severity
+from sim.trace.model import Call, Moment, Nanoseconds, Wait
+from sim.trace.timeline import Timeline
+from sim.trace.words import name_of
+
+WORTH_TELLING: Nanoseconds = 10_000_000
+"""Shorter waits are the ordinary hand-over from one callback to the next."""
+
+_SERIOUS: Nanoseconds = 1_000_000_000
+_NOTICE_STAYS: Nanoseconds = 5_000_000_000
+_REPLY_STAYS: Nanoseconds = 5_000_000_000
+
+
+class Weight(Enum):
+    """How much a diagnosis matters."""
+
+    FINE = auto()
+    WAITS = auto()
+    TROUBLE = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class Diagnosis:
+    """A sentence about a moment, and how much it matters."""
+
+    text: str
+    weight: Weight
+
+
+def diagnose(timeline: Timeline, at: Nanoseconds, concurrency: Concurrency) -> Diagnosis:
+    """Return what matters most at a moment."""
+    notice = _latest_notice(timeline, at)
+    if notice is not None:
+        return Diagnosis(notice.text, Weight.TROUBLE)
+    if not timeline.entities:
+        return Diagnosis("no callback yet: the node is starting", Weight.FINE)
+    moment = timeline.moment(at)
+    waits = [wait for wait in moment.waiting.values() if at - wait.since >= WORTH_TELLING]
+    if waits:
+        return _of_waits(sorted(waits, key=lambda wait: wait.since), moment, timeline)
+    return Diagnosis(f"nothing waits; {_threads_needed(timeline, concurrency.peak(at))}", Weight.FINE)
+
+
+def call_note(timeline: Timeline, at: Nanoseconds) -> str:
+    """Return how the latest call from outside stands: waiting for its reply, or just answered; else ""."""
+    calls = [call for call in timeline.calls if call.caller == 0 and call.sent <= at]
+    pending = [call for call in calls if call.replied is None or call.replied > at]
+    if pending:
+        more = f" and {len(pending) - 1} more" if len(pending) > 1 else ""
+        return f"{pending[0].service}{more}: no reply for {duration(at - pending[0].sent)}"
+    latest = max(calls, key=lambda call: call.replied or 0, default=None)
+    if latest is None or latest.replied is None or at - latest.replied > _REPLY_STAYS:
+        return ""
+    return f"{latest.service} replied {_response(latest)}"
+
+
+def _response(call: Call) -> str:
+    """The fields of a response, without the name of its class."""
+    inside = call.response.partition("(")[2].removesuffix(")")
+    return inside or call.response
+
+
+def _latest_notice(timeline: Timeline, at: Nanoseconds) -> Notice | None:
+    """Return the engine's last warning, for as long as it stays on screen."""
+    for notice in reversed(timeline.notices):
+        if notice.t <= at:
+            serious = notice.severity in (Severity.WARN, Severity.ERROR, Severity.FATAL)
+            return notice if serious and at - notice.t <= _NOTICE_STAYS else None
+    return None
+
+
+def _of_waits(waits: list[Wait], moment: Moment, timeline: Timeline) -> Diagnosis:
+    longest = waits[0]
+    waited = moment.at - longest.since
+    others = f"; {len(waits) - 1} more wait" if len(waits) > 2 else "; 1 more waits" if len(waits) == 2 else ""
+    text = f"{name_of(longest.entity, timeline)} waits {duration(waited)}: {_why(longest, moment, timeline)}"
+    return Diagnosis(text + others, Weight.TROUBLE if waited >= _SERIOUS else Weight.WAITS)
+
+
+def _why(wait: Wait, moment: Moment, timeline: Timeline) -> str:
+    match wait.reason:
+        case Reason.GROUP_HELD if wait.holder == wait.entity:
+            return f"{_group_of(wait, timeline)} is held by its own earlier call"
+        case Reason.GROUP_HELD:
+            return f"{_group_of(wait, timeline)} is held by {name_of(wait.holder, timeline)}"
+        case Reason.NO_FREE_WORKER:
+            return _busy_threads(moment, timeline)
+        case Reason.NOBODY_SPINS:
+            return "nobody spins its node"
+
+
+def _group_of(wait: Wait, timeline: Timeline) -> str:
+    group = timeline.groups[timeline.entities[wait.entity].group]
+    return f"group {group.letter}"
+
+
+def _busy_threads(moment: Moment, timeline: Timeline) -> str:
+    """Say what keeps every thread, the callback that is on most of them by name."""
+    running = [name_of(span.entity, timeline) for span in moment.running.values()]
+    if not running:
+        return "no thread is free"
+    if len(running) == 1:
+        return f"the only thread runs {running[0]}"
+    names = sorted(set(running), key=running.count, reverse=True)
+    return f"all {len(running)} threads are busy with {' and '.join(names[:2])}"
+
+
+def _threads_needed(timeline: Timeline, peak: int) -> str:
+    count = thread_count(timeline)
+    if count <= 1:
+        return "one thread does all the work"
+    return f"{peak} of {count} threads were ever needed at once"
+
+
+def thread_count(timeline: Timeline) -> int:
+    """Return how many callbacks the run's executors can run at once."""
+    return sum(executor.threads for executor in timeline.executors.values())
+
+
+def executor_label(timeline: Timeline) -> str:
+    """Return the run's executors as code would make them: ``MultiThreadedExecutor(4)``."""
+    return " + ".join(
+        executor.kind if executor.kind == "SingleThreadedExecutor" else f"{executor.kind}({executor.threads})"
+        for executor in timeline.executors.values()
+    )

@@ -1,0 +1,6 @@
+"""Lanes: threads, callback groups and waiting callbacks over time."""
+
+from cbtui.widgets.lanes.painter import Painter, Picture, wanted_rows
+from cbtui.widgets.lanes.widget import Lanes
+
+__all__ = ["Lanes", "Painter", "Picture", "wanted_rows"]

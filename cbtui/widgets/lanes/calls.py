@@ -1,0 +1,60 @@
+"""Service calls in a picture: when they left, when they were answered, by whom they were made."""
+
+from collections.abc import Sequence
+from itertools import islice
+
+from cbtui.theme import GLYPHS, Ink, Role
+from cbtui.widgets.cells import Row
+from cbtui.widgets.durations import duration
+from cbtui.widgets.lanes.scale import Scale
+from sim.trace.model import Call, Nanoseconds
+from sim.trace.timeline import Timeline
+
+MARK = Ink(Role.MARK)
+FAINT = Ink(Role.FAINT)
+
+_LATEST = 500
+"""How many calls a picture looks back on."""
+
+
+class Calls:
+    """The latest calls of a run, by service."""
+
+    def __init__(self, timeline: Timeline) -> None:
+        self._by_service: dict[str, list[Call]] = {}
+        for call in islice(reversed(timeline.calls), _LATEST):
+            self._by_service.setdefault(call.service, []).append(call)
+
+    def of(self, service: str) -> Sequence[Call]:
+        """Return a service's calls, the latest first."""
+        return self._by_service.get(service, ())
+
+    def summary(self, service: str, now: Nanoseconds) -> str:
+        """Say how many calls were sent by ``now`` and how long the last one took or has taken."""
+        sent = [call for call in self.of(service) if call.sent <= now]
+        if not sent:
+            return "not called"
+        count = "1 call" if len(sent) == 1 else f"{len(sent)} calls"
+        last = sent[0]
+        if last.replied is None or last.replied > now:
+            return f"{count}, {duration(now - last.sent)}…"
+        return f"{count}, {duration(last.replied - last.sent)}"
+
+
+def draw_calls(row: Row, calls: Sequence[Call], scale: Scale, now: Nanoseconds) -> None:
+    """Mark where calls left (▲, with ``s`` for the person's key) and where the reply came (◂)."""
+    glyphs = GLYPHS[row.charset]
+    for call in calls:
+        sent = scale.column_of(call.sent)
+        replied = scale.column_of(now if call.replied is None else call.replied)
+        if replied < 0 or sent >= scale.columns:
+            continue
+        for column in range(max(sent, 0), min(replied, scale.columns)):
+            if row.blank(column, column + 1):
+                row.put(column, glyphs.point, FAINT)
+        row.put(sent, glyphs.up, MARK)
+        by_key = call.caller == 0
+        if by_key:
+            row.put(sent + 1, "s", MARK)
+        if call.replied is not None:
+            row.put(max(replied, sent + 1 + by_key), glyphs.back, MARK)

@@ -1,0 +1,168 @@
+"""Intervals summed up column by column, so that a lane costs the same however much it shows."""
+
+from bisect import bisect_left
+from collections.abc import Callable, Sequence
+from operator import attrgetter
+from typing import Generic, NamedTuple, Protocol, TypeVar
+
+from cbtui.widgets.lanes.scale import Scale
+from sim.trace.events import EntityId
+from sim.trace.model import Nanoseconds, Window
+
+MOST_A_COLUMN = 24
+"""How many of the intervals that begin in one column are looked at; of more, an even sample."""
+
+_SETTLED_AFTER: Nanoseconds = 100_000_000
+"""Threads of a real-clock run report a little out of order: younger columns are summed up anew."""
+
+
+class Interval(Protocol):
+    """A call or a wait."""
+
+    @property
+    def start(self) -> Nanoseconds:
+        """When it began."""
+
+    @property
+    def end(self) -> Nanoseconds | None:
+        """When it ended; None while it lasts."""
+
+    @property
+    def entity(self) -> EntityId:
+        """Whose it is."""
+
+
+I = TypeVar("I", bound=Interval)  # noqa: E741 the one type variable here, for an interval
+
+
+class Column(NamedTuple, Generic[I]):
+    """What happened in one column.
+
+    ``eighths`` is how much of it was taken, at least 1; ``ends_right`` tells that what happened began in
+    its second half or ran on into the next; ``top`` is the interval that took most of it, ``at_once`` how
+    many there were at its beginning.
+    """
+
+    eighths: int
+    ends_right: bool
+    top: I
+    at_once: int
+
+
+class Stretch(NamedTuple, Generic[I]):
+    """Neighbouring columns with the same top."""
+
+    first: int
+    columns: list[Column[I]]
+    top: I
+
+    @property
+    def after(self) -> int:
+        """The first column that does not belong to it."""
+        return self.first + len(self.columns)
+
+
+class Columns(Generic[I]):
+    """The columns of one lane; those of the settled past are kept from picture to picture."""
+
+    def __init__(self, query: Callable[[Window], Sequence[I]]) -> None:
+        self._query = query
+        self._per_column = 0
+        self._settled = 0
+        self._kept: dict[int, Column[I] | None] = {}
+        self._told: set[tuple[Nanoseconds, EntityId]] = set()
+
+    def over(self, scale: Scale, edge: Nanoseconds) -> list[Column[I] | None]:
+        """Sum up a scale's columns; an interval that still lasts reaches to ``edge``."""
+        if scale.per_column != self._per_column or len(self._kept) > 4 * scale.columns:
+            self._per_column = scale.per_column
+            self._kept.clear()
+        self._forget_what_changed()
+        first = max(scale.first, 0)
+        after = min(scale.first + scale.columns, edge // scale.per_column + 1)
+        missing = [number for number in range(first, after) if number not in self._kept]
+        fresh = self._summed(missing, edge) if missing else {}
+        self._settled = max(0, (edge - _SETTLED_AFTER) // scale.per_column)
+        self._told = self._running_at(self._settled)
+        self._kept.update((number, column) for number, column in fresh.items() if number < self._settled)
+        return [
+            self._kept[number] if number in self._kept else fresh.get(number)
+            for number in range(scale.first, scale.first + scale.columns)
+        ]
+
+    def _forget_what_changed(self) -> None:
+        """Drop kept columns in which something began that was not told when they were summed up.
+
+        A wait is often told late: once it is clear that the callback has to wait.
+        """
+        if not self._kept:
+            return
+        new = self._running_at(self._settled) - self._told
+        if new:
+            since = min(new)[0] // self._per_column
+            self._kept = {number: column for number, column in self._kept.items() if number < since}
+
+    def _summed(self, numbers: Sequence[int], edge: Nanoseconds) -> dict[int, Column[I] | None]:
+        length = self._per_column
+        found = self._query(Window(numbers[0] * length, (numbers[-1] + 1) * length))
+        if not found:
+            return dict.fromkeys(numbers)
+        by_start = attrgetter("start")
+        summed: dict[int, Column[I] | None] = {}
+        low = 0
+        for number in numbers:
+            start = number * length
+            low = bisect_left(found, start, lo=low, key=by_start)
+            high = bisect_left(found, start + length, lo=low, key=by_start)
+            step = max(1, -(-(high - low) // MOST_A_COLUMN))
+            begun = [found[place] for place in range(low, high, step)]
+            summed[number] = _column(self._running(start), begun, step, Window(start, start + length), edge)
+        return summed
+
+    def _running(self, at: Nanoseconds) -> list[I]:
+        return [one for one in self._query(Window(at, at + 1)) if one.start < at]
+
+    def _running_at(self, number: int) -> set[tuple[Nanoseconds, EntityId]]:
+        return {(one.start, one.entity) for one in self._running(number * self._per_column)}
+
+
+def _column(
+    running: Sequence[I], begun: Sequence[I], step: int, window: Window, edge: Nanoseconds
+) -> Column[I] | None:
+    """Sum up one column: what runs as it begins, and every ``step``-th of what begins in it."""
+    taken = 0
+    most = -1
+    top: I | None = None
+    for place, one in enumerate((*running, *begun)):
+        end = edge if one.end is None else one.end
+        here = min(end, window.end) - max(one.start, window.start)
+        taken += here * (1 if place < len(running) else step)
+        if here > most:
+            most, top = here, one
+    if top is None:
+        return None
+    eighths = min(8, max(1, round(8 * taken / window.length)))
+    middle = window.start + window.length // 2
+    return Column(eighths, top.start >= middle or _runs_on(top, window), top, len(running))
+
+
+def _runs_on(interval: Interval, window: Window) -> bool:
+    ends_later = interval.end is None or interval.end > window.end
+    return interval.start > window.start and ends_later
+
+
+def stretches(columns: Sequence[Column[I] | None]) -> list[Stretch[I]]:
+    """Join neighbouring columns that the same interval took most of."""
+    found: list[Stretch[I]] = []
+    for place, column in enumerate(columns):
+        if column is None:
+            continue
+        if found and found[-1].after == place and _same(found[-1].top, column.top):
+            found[-1].columns.append(column)
+        else:
+            found.append(Stretch(place, [column], column.top))
+    return found
+
+
+def _same(one: Interval, other: Interval) -> bool:
+    return one.start == other.start and one.entity == other.entity

@@ -1,0 +1,137 @@
+"""Which lanes there are, and which of them to show when there is not room for all."""
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from sim.trace.events import EntityId, EntityKind, GroupId
+from sim.trace.model import Entity, Group, Moment, Thread, Window
+from sim.trace.timeline import Timeline
+
+HOUSEKEEPING = frozenset(
+    (
+        "describe_parameters",
+        "get_parameter_types",
+        "get_parameters",
+        "get_type_description",
+        "list_parameters",
+        "parameter_events",
+        "set_parameters",
+        "set_parameters_atomically",
+    )
+)
+"""Last names of the topics and services that every node brings along; they have no lanes."""
+
+
+@dataclass(frozen=True, slots=True)
+class ThreadLane:
+    """What a thread runs."""
+
+    thread: Thread
+
+
+@dataclass(frozen=True, slots=True)
+class GroupLane:
+    """Who holds a group of several callbacks; its members follow in lanes of their own."""
+
+    group: Group
+
+
+@dataclass(frozen=True, slots=True)
+class MemberLane:
+    """When a callback of the group above runs, when it waits and why."""
+
+    entity: Entity
+    group: Group
+
+
+@dataclass(frozen=True, slots=True)
+class SoleLane:
+    """A group together with its only callback."""
+
+    entity: Entity
+    group: Group
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceLane:
+    """Calls of a service that is not the learner's, such as the robot's ``/motor_power``."""
+
+    service: str
+
+
+Lane: TypeAlias = ThreadLane | GroupLane | MemberLane | SoleLane | ServiceLane
+
+
+def all_lanes(timeline: Timeline, service: str) -> list[Lane]:
+    """Return every lane of a run: threads, then groups with their members, then services of others.
+
+    ``service`` is one that has a lane before its first call; "" for none.
+    """
+    lanes: list[Lane] = [ThreadLane(thread) for thread in _working_threads(timeline)]
+    own: set[str] = set()
+    for group in timeline.groups.values():
+        members = [member for member in timeline.group_members(group.id) if member.label not in HOUSEKEEPING]
+        own.update(member.name for member in members if member.kind is EntityKind.SERVICE)
+        if len(members) == 1:
+            lanes.append(SoleLane(members[0], group))
+        elif members:
+            lanes.append(GroupLane(group))
+            lanes.extend(MemberLane(member, group) for member in members)
+    called = dict.fromkeys([service, *(call.service for call in timeline.calls)])
+    lanes.extend(ServiceLane(name) for name in called if name and name not in own)
+    return lanes
+
+
+def _working_threads(timeline: Timeline) -> list[Thread]:
+    """Return the threads without a main thread that only hands out work to others."""
+    threads = list(timeline.threads.values())
+    if len(threads) < 2:
+        return threads
+    whole = Window(0, timeline.end + 1)
+    return [one for one in threads if one.name != "MainThread" or timeline.spans_on(one.id, whole)]
+
+
+def choose(lanes: list[Lane], room: int, timeline: Timeline, window: Window, moment: Moment) -> list[Lane]:
+    """Return the lanes that matter most in ``window``, as many as there is room for, in their order.
+
+    Whoever runs or waits at the moment stays longest; what never did anything goes first.
+    """
+    if len(lanes) <= room:
+        return lanes
+    worth = _Worth(timeline, window, moment)
+    places = sorted(range(len(lanes)), key=lambda place: (-worth.of(lanes[place]), place))
+    return [lanes[place] for place in sorted(places[: max(room, 0)])]
+
+
+@dataclass(frozen=True, slots=True)
+class _Worth:
+    """How much a lane tells in a window and at a moment."""
+
+    timeline: Timeline
+    window: Window
+    moment: Moment
+
+    def of(self, lane: Lane) -> int:
+        """Return a number that is higher the more the lane tells."""
+        match lane:
+            case ThreadLane(thread):
+                return 9 if thread.id in self.moment.running else self._thread(thread)
+            case GroupLane(group):
+                return 8 if self._group_waits(group.id) else 6
+            case MemberLane(entity) | SoleLane(entity):
+                return self._entity(entity.id)
+            case ServiceLane(service):
+                return 5 if any(call.service == service for call in self.moment.pending_calls) else 3
+
+    def _thread(self, thread: Thread) -> int:
+        return 7 if self.timeline.busy(thread.id, self.window) > 0 else 2
+
+    def _group_waits(self, group: GroupId) -> bool:
+        return any(self.timeline.entities[waiting].group == group for waiting in self.moment.waiting)
+
+    def _entity(self, entity: EntityId) -> int:
+        if entity in self.moment.waiting:
+            return 8
+        if self.timeline.waits_of(entity, self.window):
+            return 7
+        return 5 if self.timeline.spans_of(entity, self.window) else 1

@@ -1,0 +1,79 @@
+"""How columns of the screen and moments of a run belong together, and where the time axis has labels."""
+
+from typing import NamedTuple
+
+from sim.trace.model import Nanoseconds, Window
+
+_SECOND = 1_000_000_000
+_MANTISSAS = (10, 15, 20, 25, 30, 40, 50, 60, 80)
+_LABEL_STEPS = (1, 2, 5)
+_LABEL_ROOM = 8
+
+
+class Scale(NamedTuple):
+    """Columns of equal length on a grid that begins at 0 ns; ``first`` is the grid's number of column 0.
+
+    The grid stands still while the window moves over it, so that a picture shifts by whole columns and
+    what it showed of the past does not flicker.
+    """
+
+    first: int
+    per_column: Nanoseconds
+    columns: int
+
+    @property
+    def window(self) -> Window:
+        """The time that the columns show."""
+        return Window(self.time_at(0), self.time_at(self.columns))
+
+    def column_of(self, at: Nanoseconds) -> int:
+        """Return the column in which a moment lies; it may lie outside the picture."""
+        return at // self.per_column - self.first
+
+    def time_at(self, column: int) -> Nanoseconds:
+        """Return the moment at which a column begins."""
+        return (self.first + column) * self.per_column
+
+
+def scale_for(window: Window, columns: int) -> Scale:
+    """Return the scale that shows at least ``window`` in so many columns, with its end at the right."""
+    per_column = nice_column(-(-max(window.length, 1) // columns))
+    last = -(-window.end // per_column)
+    return Scale(last - columns, per_column, columns)
+
+
+def nice_column(least: Nanoseconds) -> Nanoseconds:
+    """Return the smallest easy length of a column that is ``least`` or more."""
+    power = 1
+    while True:
+        for mantissa in _MANTISSAS:
+            if mantissa * power >= least * 10 and mantissa * power % 10 == 0:
+                return mantissa * power // 10
+        power *= 10
+
+
+def labels(scale: Scale) -> list[tuple[int, str]]:
+    """Return the axis' labels: the column that each stands at, and the second it names."""
+    step = _label_step(scale.per_column * _LABEL_ROOM)
+    at = max(0, -(-scale.window.start // step) * step)
+    found = []
+    while at < scale.window.end:
+        found.append((scale.column_of(at), _seconds(at, step)))
+        at += step
+    return found
+
+
+def _label_step(least: Nanoseconds) -> Nanoseconds:
+    power = 1
+    while True:
+        for digit in _LABEL_STEPS:
+            if digit * power >= least:
+                return digit * power
+        power *= 10
+
+
+def _seconds(at: Nanoseconds, step: Nanoseconds) -> str:
+    decimals = 0
+    while step % (_SECOND // 10**decimals) and decimals < 9:
+        decimals += 1
+    return f"{at / _SECOND:.{decimals}f}"

@@ -1,0 +1,117 @@
+"""What stands at the right of a lane: how busy, how full, how late, at the moment of the cursor."""
+
+from dataclasses import dataclass
+
+from cbtui.theme import GLYPHS, Charset, Ink, Role, Run
+from cbtui.widgets.durations import duration
+from cbtui.widgets.lanes.calls import Calls
+from cbtui.widgets.lanes.columns import Column
+from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, SoleLane, ThreadLane
+from sim.trace.events import EntityKind, GroupKind
+from sim.trace.model import Entity, Group, Moment, Span, Thread, Window
+from sim.trace.timeline import Timeline
+
+PLAIN = Ink(Role.TEXT)
+FAINT = Ink(Role.FAINT)
+WARN = Ink(Role.WARN)
+
+_LATE_AT_LEAST = 1_000_000
+_WIDE = 22
+
+
+@dataclass(frozen=True, slots=True)
+class Status:
+    """Writes the status of lanes at one moment, in ``width`` columns."""
+
+    timeline: Timeline
+    shown: Window
+    moment: Moment
+    calls: Calls
+    charset: Charset
+    width: int
+
+    def of(self, lane: Lane, latest: Span | None) -> Run:
+        """Return the status of a lane; ``latest`` is the last call that it shows before the cursor."""
+        match lane:
+            case ThreadLane(thread):
+                return self._thread(thread)
+            case GroupLane(group):
+                return self._group(group)
+            case MemberLane(entity) | SoleLane(entity):
+                return self._entity(entity, latest)
+            case ServiceLane(service):
+                return Run(self.calls.summary(service, self.moment.at), PLAIN)
+
+    def _thread(self, thread: Thread) -> Run:
+        past = Window(self.shown.start, min(self.shown.end, self.moment.at))
+        share = self.timeline.busy(thread.id, past) if past.length > 0 else 0.0
+        running = self.moment.running.get(thread.id)
+        if running is not None:
+            now = f"  {self._caller(running)} {duration(self.moment.at - running.start)}"
+            return Run(f"{share:4.0%}{now if self.width >= _WIDE else ' busy'}", PLAIN)
+        if share == 0 and not self.timeline.spans_on(thread.id, Window(0, self.moment.at + 1)):
+            return Run("  0%  never needed" if self.width >= _WIDE else "  0% unused", FAINT)
+        return Run(f"{share:4.0%} busy", PLAIN if share else FAINT)
+
+    def _caller(self, span: Span) -> str:
+        entity = self.timeline.entities[span.entity]
+        return f"{self.timeline.groups[entity.group].letter} {short(entity.callback)}"
+
+    def _group(self, group: Group) -> Run:
+        entities = self.timeline.entities
+        waiting = sum(entities[entity].group == group.id for entity in self.moment.waiting)
+        holders = len(self.moment.holders.get(group.id, ()))
+        if group.kind is GroupKind.REENTRANT:
+            state = f"open, {holders} run" if holders else "open"
+        else:
+            state = "held" if holders else "free"
+        if waiting:
+            return Run(f"{state}, {waiting} wait", WARN)
+        return Run(state, PLAIN if holders else FAINT)
+
+    def _entity(self, entity: Entity, latest: Span | None) -> Run:
+        match entity.kind:
+            case EntityKind.TIMER:
+                return self._timer(entity, latest)
+            case EntityKind.SUBSCRIPTION:
+                return self._queue(entity, latest)
+            case EntityKind.SERVICE:
+                return Run(self.calls.summary(entity.name, self.moment.at), PLAIN)
+            case _:
+                return Run("", PLAIN)
+
+    def _timer(self, timer: Entity, latest: Span | None) -> Run:
+        wait = self.moment.waiting.get(timer.id)
+        if wait is not None:
+            return Run(f"late {duration(self.moment.at - wait.since)}", WARN)
+        if latest is None:
+            return Run("", PLAIN)
+        if is_late(latest, timer):
+            return Run(f"was late {duration(latest.age)}", WARN)
+        return Run("on time", FAINT)
+
+    def _queue(self, entity: Entity, latest: Span | None) -> Run:
+        queue = self.timeline.queue(entity.id, self.moment.at)
+        full = entity.depth and queue.depth >= entity.depth
+        parts = [f"{queue.depth}/{entity.depth}" + ("!" if full else "")]
+        if self.width >= _WIDE:
+            parts.insert(0, "queue")
+        if queue.dropped:
+            parts.append(f"lost {_count(queue.dropped)}")
+        elif self.width >= _WIDE and latest is not None:
+            parts.append(f"{GLYPHS[self.charset].between} age {duration(latest.age)}")
+        return Run(" ".join(parts), WARN if full else PLAIN)
+
+
+def is_late(span: Span, timer: Entity) -> bool:
+    """Tell whether a timer's call came late: by a tenth of its period or more, and by 1 ms at least."""
+    return span.age >= max(timer.period // 10, _LATE_AT_LEAST)
+
+
+def short(name: str) -> str:
+    """Return a callback's name without the ending that most of them share."""
+    return name.removesuffix("_callback") or name
+
+
+def _count(number: int) -> str:
+    return str(number) if number < 10_000 else f"{number // 1000}k"

@@ -1,0 +1,120 @@
+"""The line at the top: which lesson, whether time goes on and how fast, when, with which executor."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from textual.geometry import Size
+from textual.reactive import reactive
+
+from cbtui.live_run import LiveRun, State
+from cbtui.playhead import Playhead
+from cbtui.theme import Charset, Ink, Role, Run
+from cbtui.widgets.cells import fit
+from cbtui.widgets.diagnosis import executor_label
+from cbtui.widgets.durations import duration
+from cbtui.widgets.painted import Painted
+from sim.trace.model import Nanoseconds
+
+_PLAIN = Ink(Role.TEXT)
+_STRONG = Ink(Role.STRONG)
+_FAINT = Ink(Role.FAINT)
+_WARN = Ink(Role.WARN)
+_GAP = Run("   ", _PLAIN)
+
+
+@dataclass(frozen=True, slots=True)
+class Status:
+    """What the line tells. ``back`` is how long before the end the moment on screen lies, 0 for live."""
+
+    title: str
+    state: State
+    pace: str
+    at: Nanoseconds
+    back: Nanoseconds
+    executor: str
+    dropped: int
+    lost: int
+
+
+def status_of(title: str, run: LiveRun, playhead: Playhead, usual_executor: str) -> Status:
+    """Return what the line tells of a run; until its executor appears, what the lesson says of it."""
+    timeline = run.timeline
+    at = playhead.now(timeline.end)
+    return Status(
+        title=title,
+        state=run.state,
+        pace=_pace(run),
+        at=at,
+        back=timeline.end - at if playhead.at is not None else 0,
+        executor=executor_label(timeline) or usual_executor,
+        dropped=timeline.dropped(at),
+        lost=timeline.lost,
+    )
+
+
+def _pace(run: LiveRun) -> str:
+    if not run.virtual:
+        return "real"
+    return "virtual max" if run.speed is None else f"virtual ×{run.speed:.1f}"
+
+
+class StatusLine(Painted):
+    """Shows a status."""
+
+    status: reactive[Status | None] = reactive(None)
+    charset: reactive[Charset] = reactive(Charset.BRAILLE)
+
+    def rows(self, size: Size) -> Sequence[Sequence[Run]]:
+        """Paint the line."""
+        return [] if self.status is None else [status_row(self.status, size.width, self.charset)]
+
+    def watch_status(self) -> None:
+        """Tell something else."""
+        self.changed()
+
+    def watch_charset(self) -> None:
+        """Paint in other glyphs."""
+        self.changed()
+
+
+def status_row(status: Status, width: int, charset: Charset) -> list[Run]:
+    """Return the line in exactly ``width`` columns; the executor gives way first, then the pace."""
+    plain = charset is Charset.ASCII
+    title = Run(f" {status.title}", _STRONG)
+    state = _state(status, plain)
+    pace = Run(f"  {status.pace.replace('×', 'x') if plain else status.pace}", _PLAIN)
+    time = Run(f"t {status.at / 1e9:.3f} s", _STRONG)
+    executor = Run(status.executor, _PLAIN)
+    losses = _losses(status)
+    for parts in (
+        [state, pace, _GAP, time, _GAP, executor, _GAP, *losses],
+        [state, pace, _GAP, time, _GAP, *losses],
+        [state, _GAP, time, _GAP, *losses],
+    ):
+        room = width - sum(len(run.text) for run in parts) - 1
+        if room >= len(title.text) + 2:
+            break
+    return [Run(fit(title.text, room, charset), _STRONG), *parts, Run(" ", _PLAIN)]
+
+
+def _state(status: Status, plain: bool) -> Run:
+    if status.state is State.LOST:
+        return Run("x LOST" if plain else "✗ LOST", _WARN)
+    if status.back:
+        return Run(f"{'<' if plain else '◂'} BACK {duration(status.back)}", _WARN)
+    match status.state:
+        case State.STARTING:
+            return Run("o STARTING" if plain else "○ STARTING", _FAINT)
+        case State.LIVE:
+            return Run("* LIVE" if plain else "● LIVE", _STRONG)
+        case State.PAUSED:
+            return Run("|| PAUSED" if plain else "‖ PAUSED", _WARN)
+        case State.ENDED:
+            return Run("# ENDED" if plain else "■ ENDED", _STRONG)
+
+
+def _losses(status: Status) -> list[Run]:
+    losses = [Run(f"dropped {status.dropped}", _WARN if status.dropped else _FAINT)]
+    if status.lost:
+        losses += [_GAP, Run(f"trace lost {status.lost}", _WARN)]
+    return losses

@@ -1,0 +1,1 @@
+"""What runs: clocks, the rclpy model, the robot, the engine and its trace."""

@@ -1,0 +1,44 @@
+"""What a clock offers: the time, sleeping, signals to wait for, and threads that live on its time."""
+
+from collections.abc import Callable
+from typing import Protocol
+
+
+class Stopped(BaseException):
+    """The run is over: raised out of every wait, on each thread but the main one.
+
+    Not an ``Exception``, so that a callback's ``except Exception`` does not hold up the end of a run.
+    """
+
+
+class Signal(Protocol):
+    """A flag that one thread waits for and any thread sets; a successful wait clears it."""
+
+    def wait(self, deadline: int | None) -> bool:
+        """Wait until the flag is set or the clock shows ``deadline`` nanoseconds; False: deadline passed."""
+
+    def set(self) -> None:
+        """Set the flag and let the waiting thread go on. Any thread may call it."""
+
+
+class Clock(Protocol):
+    """Nanoseconds since the run began, and every way of waiting for them to pass. Thread-safe."""
+
+    @property
+    def epoch(self) -> int:
+        """Nanoseconds since 1970 at which the run began: ``epoch + now()`` is what log lines show."""
+
+    def now(self) -> int:
+        """Nanoseconds since the run began; never goes back."""
+
+    def sleep(self, duration: int) -> None:
+        """Let ``duration`` nanoseconds pass on the calling thread."""
+
+    def signal(self) -> Signal:
+        """A new signal, not set."""
+
+    def start_thread(self, target: Callable[[], None], name: str) -> None:
+        """Run ``target`` on a new daemon thread called ``name`` that lives on this clock's time."""
+
+    def call_at(self, time: int, action: Callable[[], None]) -> None:
+        """Run ``action`` at ``time`` nanoseconds, on whichever thread is at hand; it must not wait."""

@@ -1,0 +1,194 @@
+"""Makes Python's own ways to wait live on a virtual clock: sleep, time, locks, threads and queues.
+
+A program under the virtual clock uses ``time`` and ``threading`` as it always does. Their functions are
+replaced once, in the engine process, before the program is imported; a thread that does not live on the
+clock (the engine's own) still gets the real ones. Events, conditions, semaphores, barriers, timers and
+queues follow by themselves, since Python builds them from the locks replaced here.
+"""
+
+import queue
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any, TypeVar
+
+from sim.clock.virtual import VirtualClock, VirtualSignal, VirtualThread, start_outside
+
+_allocate_lock = threading.Lock
+_thread_start = threading.Thread.start
+_thread_join = threading.Thread.join
+_thread_is_alive = threading.Thread.is_alive
+
+Number = TypeVar("Number", int, float)
+
+
+class VirtualLock:
+    """``threading.Lock`` on virtual time: handed over in the order in which threads came for it.
+
+    Threads outside the clock may share it; they wait in real time.
+    """
+
+    _clock: VirtualClock
+
+    def __init__(self) -> None:
+        self._real = _allocate_lock()
+        self._waiters: deque[VirtualThread] = deque()
+        self._granted: VirtualThread | None = None
+
+    def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
+        """Take the lock; False if it is not to be had at once (or within ``timeout`` seconds)."""
+        if self._real.acquire(blocking=False):
+            return True
+        if not blocking:
+            if timeout != -1:
+                raise ValueError("can't specify a timeout for a non-blocking call")
+            return False
+        if not self._clock.owns_current_thread():
+            return self._real.acquire(timeout=timeout)
+        deadline = None if timeout < 0 else self._clock.now() + int(timeout * 1e9)
+        return self._wait_in_line(deadline)
+
+    def _wait_in_line(self, deadline: int | None) -> bool:
+        me = self._clock.current
+        self._waiters.append(me)
+        try:
+            self._clock.park(deadline)
+        finally:
+            if self._granted is me:
+                self._granted = None
+                granted = True
+            else:
+                self._waiters.remove(me)
+                granted = False
+        return granted
+
+    def release(self) -> None:
+        """Let go of the lock, or hand it to the thread that has waited longest."""
+        if not self._real.locked():
+            raise RuntimeError("release unlocked lock")
+        if self._waiters and self._granted is None and self._clock.owns_current_thread():
+            self._granted = self._waiters.popleft()
+            self._clock.unpark(self._granted)
+        else:
+            self._real.release()
+
+    def locked(self) -> bool:
+        """Whether somebody holds it."""
+        return self._real.locked()
+
+    def __enter__(self) -> bool:
+        return self.acquire()
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.release()
+
+    def _at_fork_reinit(self) -> None:
+        self._real = _allocate_lock()
+        self._waiters.clear()
+
+
+def live_on(clock: VirtualClock) -> None:
+    """Replace Python's ways to wait by virtual ones, for this process and for good."""
+    VirtualLock._clock = clock
+    _replace_time(clock)
+    _replace_locks()
+    _replace_threads(clock)
+
+
+def _replace_time(clock: VirtualClock) -> None:
+    real_sleep = time.sleep
+
+    def sleep(seconds: float) -> None:
+        if not clock.owns_current_thread():
+            real_sleep(seconds)
+        elif seconds < 0:
+            raise ValueError("sleep length must be non-negative")
+        else:
+            clock.sleep(round(seconds * 1e9))
+
+    def here(virtual: Callable[[], Number], real: Callable[[], Number]) -> Callable[[], Number]:
+        return lambda: virtual() if clock.owns_current_thread() else real()
+
+    modules: Any = (time, threading, queue)
+    modules[0].sleep = sleep
+    monotonic = here(lambda: clock.now() / 1e9, time.monotonic)
+    modules[0].monotonic = monotonic
+    modules[0].perf_counter = here(lambda: clock.now() / 1e9, time.perf_counter)
+    modules[0].time = here(lambda: (clock.epoch + clock.now()) / 1e9, time.time)
+    modules[0].monotonic_ns = here(clock.now, time.monotonic_ns)
+    modules[0].perf_counter_ns = here(clock.now, time.perf_counter_ns)
+    modules[0].time_ns = here(lambda: clock.epoch + clock.now(), time.time_ns)
+    modules[1]._time = monotonic
+    modules[2].time = monotonic
+
+
+def _replace_locks() -> None:
+    module: Any = threading
+    module.Lock = VirtualLock
+    module._allocate_lock = VirtualLock
+    module.RLock = module._PyRLock
+    queues: Any = queue
+    queues.SimpleQueue = queues._PySimpleQueue
+
+
+def _replace_threads(clock: VirtualClock) -> None:
+    def start(thread: threading.Thread) -> None:
+        inner: Any = thread
+        if clock.owns_current_thread() and not inner._started.is_set():
+            inner._virtual_end = _End(clock)
+            inner.run = clock.adopt(_ending(thread.run, inner._virtual_end), thread.name)
+            start_outside(thread)
+        else:
+            _thread_start(thread)
+
+    def join(thread: threading.Thread, timeout: float | None = None) -> None:
+        end: _End | None = getattr(thread, "_virtual_end", None)
+        if end is None or not clock.owns_current_thread() or thread is threading.current_thread():
+            _thread_join(thread, timeout)
+        elif end.wait(None if timeout is None else clock.now() + int(max(timeout, 0) * 1e9)):
+            _thread_join(thread)
+
+    def is_alive(thread: threading.Thread) -> bool:
+        end: _End | None = getattr(thread, "_virtual_end", None)
+        return _thread_is_alive(thread) if end is None else not end.reached
+
+    thread_class: Any = threading.Thread
+    thread_class.start = start
+    thread_class.join = join
+    thread_class.is_alive = is_alive
+
+
+class _End:
+    """When a thread ended in virtual time; any number of others may wait for it."""
+
+    def __init__(self, clock: VirtualClock) -> None:
+        self.reached = False
+        self._clock = clock
+        self._waiters: list[VirtualSignal] = []
+
+    def reach(self) -> None:
+        self.reached = True
+        for waiter in self._waiters:
+            waiter.set()
+
+    def wait(self, deadline: int | None) -> bool:
+        if not self.reached:
+            waiter = self._clock.signal()
+            self._waiters.append(waiter)
+            waiter.wait(deadline)
+            self._waiters.remove(waiter)
+        return self.reached
+
+
+def _ending(body: Callable[[], None], end: _End) -> Callable[[], None]:
+    def run() -> None:
+        try:
+            body()
+        finally:
+            end.reach()
+
+    return run

@@ -1,0 +1,85 @@
+"""The way of events out of the engine: a bounded queue, and a thread that sends batches down the pipe."""
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+from multiprocessing.connection import Connection
+
+from sim.trace.events import AnyEvent, EventsLost, encode
+
+_RealThread = threading.Thread
+_real_lock = threading.Lock
+_RealEvent = threading.Event
+
+_PERIOD = 0.01
+"""Seconds between two batches."""
+_BATCH = 2048
+"""Events after which a batch goes out at once."""
+_BOUND = 200_000
+"""Events that may wait on the real clock; more are thrown away, and counted."""
+
+
+class Outbox:
+    """Takes events from any thread in order and sends them. Recording never waits on the real clock.
+
+    On virtual time the thread that records sends a full batch itself: waiting for a slow reader then costs
+    no virtual time, and nothing is ever lost. ``before_batch`` runs on the sending thread every period.
+    """
+
+    def __init__(self, pipe: Connection, *, may_wait: bool, before_batch: Callable[[], None]) -> None:
+        self._pipe = pipe
+        self._may_wait = may_wait
+        self._before_batch = before_batch
+        self._waiting: deque[AnyEvent] = deque()
+        self._sending = _real_lock()
+        self._closed = False
+        self._lost = 0
+        self._lost_told = 0
+        self.last_sent = time.monotonic()
+
+    def start(self) -> None:
+        """Begin to send."""
+        _RealThread(target=self._send_for_ever, name="outbox", daemon=True).start()
+
+    def record(self, event: AnyEvent) -> None:
+        """Take an event; nothing once closed."""
+        if self._closed:
+            return
+        if len(self._waiting) < _BATCH or not self._may_wait:
+            if len(self._waiting) < _BOUND:
+                self._waiting.append(event)
+            else:
+                self._lost += 1
+            return
+        self._waiting.append(event)
+        self.flush()
+
+    def flush(self) -> None:
+        """Send everything that waits. A reader that has gone away is no error: nobody is left to tell."""
+        with self._sending:
+            batch = [self._waiting.popleft() for _ in range(len(self._waiting))]
+            if self._lost > self._lost_told:
+                self._lost_told = self._lost
+                batch.append(EventsLost(batch[-1].t if batch else 0, self._lost))
+            if batch:
+                try:
+                    self._pipe.send_bytes(encode(batch))
+                except OSError:
+                    self._closed = True
+
+    def close(self, last: AnyEvent) -> None:
+        """Record ``last`` as the last event of all, and send everything."""
+        if not self._closed:
+            self._waiting.append(last)
+            self._closed = True
+        self.flush()
+
+    def _send_for_ever(self) -> None:
+        while True:
+            _real_sleep(_PERIOD)
+            self._before_batch()
+            self.flush()
+
+
+_real_sleep = time.sleep

@@ -1,0 +1,38 @@
+"""Service calls from outside the program: what ``ros2 service call`` would send, sent at a moment of the run."""
+
+from collections.abc import Callable
+from typing import Any
+
+from sim.ros.host import Host
+from sim.ros.interfaces import service
+from sim.ros.network import Request
+from sim.trace.events import AnyEvent, CommandGiven, Notice, Severity
+
+
+class Requests:
+    """Sends requests to services. Call it on a thread that has the run's time (see ``Clock.call_at``)."""
+
+    def __init__(self, host: Host, record: Callable[[AnyEvent], None]) -> None:
+        self._host = host
+        self._record = record
+
+    def set_bool(self, name: str, data: bool) -> None:
+        """Call a SetBool service; a notice tells when nobody offers it."""
+        srv_type = service("std_srvs", "SetBool")
+        self._send(name, srv_type, srv_type.Request(data=data), f"call {name} {str(data).lower()}")
+
+    def reset_world(self) -> None:
+        """Call ``/reset_world``."""
+        srv_type = service("std_srvs", "Empty")
+        self._send("/reset_world", srv_type, srv_type.Request(), "reset the world")
+
+    def _send(self, name: str, srv_type: Any, data: Any, text: str) -> None:
+        host = self._host
+        with host.lock:
+            now = host.clock.now()
+            self._record(CommandGiven(now, text))
+            call = host.probe.call_id()
+            host.probe.service_called(call, name, data)
+            request = Request(data, call, now, lambda _response: None)
+            if not host.network.send_request(name, srv_type, request):
+                self._record(Notice(now, Severity.WARN, f"nobody offers {name} yet, so the call is lost"))

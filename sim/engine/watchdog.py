@@ -1,0 +1,65 @@
+"""Notices a program that stands still outside virtual time, and names the place."""
+
+import sys
+import threading
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from sim.clock import VirtualClock
+from sim.trace.events import AnyEvent, Notice, Severity
+
+_RealThread = threading.Thread
+_real_sleep = time.sleep
+
+_LOOK = 0.5
+"""Real seconds between two looks."""
+_PATIENCE = 6
+"""Looks without a step after which the person is told."""
+_LAST_PATIENCE = 30
+"""Looks without a step after which ``give_up`` is called."""
+
+
+class Watchdog:
+    """Looks from outside, on a thread of its own, whether the threads of a virtual clock still take steps."""
+
+    def __init__(
+        self,
+        clock: VirtualClock,
+        record: Callable[[AnyEvent], None],
+        give_up: Callable[[str], None],
+    ) -> None:
+        self._clock = clock
+        self._record = record
+        self._give_up = give_up
+
+    def start(self) -> None:
+        """Begin to look."""
+        _RealThread(target=self._watch, name="watchdog", daemon=True).start()
+
+    def _watch(self) -> None:
+        steps, still = self._clock.steps, 0
+        while True:
+            _real_sleep(_LOOK)
+            still = still + 1 if self._clock.steps == steps and not self._clock.rests else 0
+            steps = self._clock.steps
+            if still == _PATIENCE:
+                self._record(Notice(self._clock.now(), Severity.WARN, self._sentence()))
+            elif still == _LAST_PATIENCE:
+                self._give_up(self._sentence())
+
+    def _sentence(self) -> str:
+        thread = self._clock.current
+        frame = sys._current_frames().get(thread.ident)
+        place = "somewhere"
+        while frame is not None:
+            file = frame.f_code.co_filename
+            module = frame.f_globals.get("__name__", "").partition(".")[0]
+            if module not in {"sim", "runpy"} and module not in sys.stdlib_module_names or module == "__main__":
+                place = f"{Path(file).name}:{frame.f_lineno}, in {frame.f_code.co_name}"
+                break
+            frame = frame.f_back
+        return (
+            f"{thread.name} does not come to a wait ({place}): it computes without end, "
+            "or waits for something outside the virtual clock; mend it, or run with the real clock"
+        )

@@ -1,0 +1,94 @@
+"""PyBullet, brought in only when a world is built, kept silent, one client per world."""
+
+import ctypes
+import importlib
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from functools import partial
+from typing import Any
+
+
+class WorldUnavailable(Exception):  # noqa: N818  (said to a person as it is)
+    """There can be no robot world on this machine; the text says what to do about it."""
+
+
+class Client:
+    """PyBullet's functions, each already bound to one DIRECT client of its own.
+
+    Not thread-safe: one thread at a time. Two clients share nothing.
+    """
+
+    def __init__(self) -> None:
+        """Import PyBullet and connect, in silence.
+
+        Raises:
+            WorldUnavailable: PyBullet is missing, broken, or has no client left.
+        """
+        with silence():
+            self._bullet = _import_bullet()
+            self._id: int = self._bullet.connect(self._bullet.DIRECT)
+        if self._id < 0:
+            raise WorldUnavailable("PyBullet refused one more world: close the others, or start afresh.")
+
+    def __getattr__(self, name: str) -> Any:
+        """Return the constant or the bound function of that name, and keep it for the next time."""
+        found = getattr(self._bullet, name)
+        bound = partial(found, physicsClientId=self._id) if callable(found) else found
+        setattr(self, name, bound)
+        return bound
+
+    def close(self) -> None:
+        """Disconnect; every later call raises `pybullet.error`. Closing again does nothing."""
+        if self._id < 0:
+            return
+        with silence():
+            self._bullet.disconnect(self._id)
+        # PyBullet gives the number to the next client, which must not hear from this one.
+        bullet = self._bullet
+        vars(self).clear()
+        self._bullet, self._id = bullet, -1
+
+
+def _import_bullet() -> Any:
+    try:
+        return importlib.import_module("pybullet")
+    except ImportError as missing:
+        raise WorldUnavailable(
+            f"The robot's world needs PyBullet, which this Python cannot import ({missing}): install it with "
+            f"`{sys.executable} -m pip install pybullet`; Python 3.11 has a ready-made wheel."
+        ) from missing
+
+
+@contextmanager
+def silence() -> Iterator[None]:
+    """Send the process's standard output and error nowhere, C code's included, for the block.
+
+    The whole process is silent meanwhile: what other threads print is lost, too.
+    """
+    _flush()
+    kept = {}
+    for stream in (1, 2):
+        with suppress(OSError):  # a stream that is closed says nothing anyway
+            kept[stream] = os.dup(stream)
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    try:
+        for stream in kept:
+            os.dup2(nowhere, stream)
+        yield
+    finally:
+        _flush()
+        for stream, copy in kept.items():
+            os.dup2(copy, stream)
+            os.close(copy)
+        os.close(nowhere)
+
+
+def _flush() -> None:
+    for stream in (sys.stdout, sys.stderr):
+        if stream is not None:
+            with suppress(OSError, ValueError):
+                stream.flush()
+    # C's own buffers too: text left in them would come out after the silence.
+    ctypes.CDLL("msvcrt" if sys.platform == "win32" else None).fflush(None)

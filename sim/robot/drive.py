@@ -1,0 +1,49 @@
+"""Differential drive: what a body velocity asks of two wheels, and the robot's limits."""
+
+import math
+from typing import NamedTuple
+
+WHEEL_RADIUS = 0.033
+WHEEL_SEPARATION = 0.160
+
+MAX_LINEAR = 0.22
+"""Fastest a TurtleBot3 Burger drives, in m/s, by its data sheet."""
+
+MAX_ANGULAR = 2.84
+"""Fastest a TurtleBot3 Burger turns, in rad/s, by its data sheet."""
+
+
+class Velocity(NamedTuple):
+    """A velocity of the body: forward in m/s, and counter-clockwise in rad/s."""
+
+    linear: float
+    angular: float
+
+
+STANDSTILL = Velocity(0.0, 0.0)
+
+
+class WheelPair(NamedTuple):
+    """One figure for each wheel: an angle in rad, or a speed in rad/s, positive forward."""
+
+    left: float
+    right: float
+
+
+def is_drivable(wanted: Velocity) -> bool:
+    """Tell whether a velocity is made of numbers: neither NaN nor infinite."""
+    return math.isfinite(wanted.linear) and math.isfinite(wanted.angular)
+
+
+def clamped(wanted: Velocity) -> Velocity:
+    """Return the nearest velocity within the robot's limits, each component for itself."""
+    return Velocity(
+        max(-MAX_LINEAR, min(MAX_LINEAR, wanted.linear)),
+        max(-MAX_ANGULAR, min(MAX_ANGULAR, wanted.angular)),
+    )
+
+
+def wheel_speeds(body: Velocity) -> WheelPair:
+    """Return the wheel speeds, in rad/s, that move the body so while no wheel slips."""
+    lag = body.angular * WHEEL_SEPARATION / 2
+    return WheelPair((body.linear - lag) / WHEEL_RADIUS, (body.linear + lag) / WHEEL_RADIUS)

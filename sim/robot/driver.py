@@ -1,0 +1,156 @@
+"""The robot's driver: a node of its own that puts the PyBullet world on topics and services.
+
+It runs on its own thread, in its own context, like the driver process of a real robot: its callbacks are
+not the learner's and do not show on the lanes. What it publishes does.
+"""
+
+import array
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from sim.robot.world import World
+from sim.ros.context import Context
+from sim.ros.executors import SingleThreadedExecutor
+from sim.ros.host import Host
+from sim.ros.interfaces import message, service
+from sim.ros.node import Node
+from sim.ros.probe import PublishingProbe
+from sim.ros.qos import QoSProfile, ReliabilityPolicy
+from sim.trace.events import AnyEvent, RobotMoved, Scanned, VelocityCommanded
+
+TICK = 0.05
+"""Seconds between two measurements: 20 Hz."""
+
+_LATENCY = 3_000_000
+"""Nanoseconds from a tick to the odometry, and from there to the scan: what a driver takes to read them."""
+
+_SENSOR_QOS = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+class Driver:
+    """Drives one robot until the host's time ends. ``record`` takes what the trace is to know of the robot."""
+
+    def __init__(self, host: Host, record: Callable[[AnyEvent], None]) -> None:
+        """Build the world.
+
+        Raises:
+            WorldUnavailable: PyBullet cannot be used here; the text says what to do.
+        """
+        self._host = host
+        self._record = record
+        self._world = World()
+        self._context = Context(host=host, probe=PublishingProbe(host.probe))
+        self._context.init([])
+        self._node = Node("robot_driver", context=self._context)
+        self._twist = message("geometry_msgs", "Twist")
+        self._odometry = message("nav_msgs", "Odometry")
+        self._laser_scan = message("sensor_msgs", "LaserScan")
+        self._warned = False
+
+    def start(self) -> None:
+        """Begin to drive, on a thread of the host's clock."""
+        self._offer()
+        self._host.clock.start_thread(self._drive, "robot_driver")
+
+    def _offer(self) -> None:
+        node = self._node
+        self._odom = node.create_publisher(self._odometry, "odom", 10)
+        self._scan = node.create_publisher(self._laser_scan, "scan", _SENSOR_QOS)
+        node.create_subscription(self._twist, "cmd_vel", self._on_velocity, 10)
+        node.create_service(service("std_srvs", "Empty"), "reset_world", self._on_reset)
+        node.create_service(service("std_srvs", "SetBool"), "motor_power", self._on_motor_power)
+
+    def _drive(self) -> None:
+        clock = self._host.clock
+        executor = SingleThreadedExecutor(context=self._context)
+        clock.sleep(_LATENCY)
+        self._node.create_timer(TICK, self._publish_odometry)
+        clock.sleep(_LATENCY)
+        self._node.create_timer(TICK, self._publish_scan)
+        executor.add_node(self._node)
+        executor.spin()
+
+    def _catch_up(self) -> World:
+        self._world.advance_to(self._host.clock.now())
+        return self._world
+
+    def _on_velocity(self, command: Any) -> None:
+        world = self._catch_up()
+        if world.command(command.linear.x, command.angular.z):
+            now = self._host.clock.now()
+            self._record(VelocityCommanded(now, world.commanded.linear, world.commanded.angular))
+        elif not self._warned:
+            self._warned = True
+            self._node.get_logger().warning(
+                f"Ignored a velocity that is no number: linear.x={command.linear.x}, "
+                f"angular.z={command.angular.z}; publish finite ones. More of them are ignored silently."
+            )
+
+    def _on_reset(self, _request: Any, response: Any) -> Any:
+        self._catch_up().reset()
+        return response
+
+    def _on_motor_power(self, request: Any, response: Any) -> Any:
+        self._catch_up().set_motors(request.data)
+        response.success = True
+        response.message = "motors on" if request.data else "motors off"
+        return response
+
+    def _publish_odometry(self) -> None:
+        world = self._catch_up()
+        pose, velocity = world.pose(), world.velocity()
+        odometry = self._odometry()
+        odometry.header.stamp = self._node.get_clock().now().to_msg()
+        odometry.header.frame_id = "odom"
+        odometry.child_frame_id = "base_footprint"
+        odometry.pose.pose.position.x = pose.x
+        odometry.pose.pose.position.y = pose.y
+        odometry.pose.pose.orientation.z = math.sin(pose.yaw / 2)
+        odometry.pose.pose.orientation.w = math.cos(pose.yaw / 2)
+        odometry.twist.twist.linear.x = velocity.linear
+        odometry.twist.twist.angular.z = velocity.angular
+        self._odom.publish(odometry)
+
+    def _publish_scan(self) -> None:
+        world = self._catch_up()
+        ranges = world.scan()
+        scan = self._laser_scan(
+            angle_min=-math.pi,
+            angle_max=math.pi - math.tau / len(ranges),
+            angle_increment=math.tau / len(ranges),
+            scan_time=TICK,
+            range_min=0.12,
+            range_max=20.0,
+            ranges=array.array("f", ranges.tobytes()),
+        )
+        scan.header.stamp = self._node.get_clock().now().to_msg()
+        scan.header.frame_id = "base_scan"
+        now = self._host.clock.now()
+        sent = self._scan.send(scan)
+        self._record(Scanned(now, sent, _packed(ranges)))
+        self._record(self._moved(now, world, float(ranges[len(ranges) // 2])))
+
+    def _moved(self, now: int, world: World, front: float) -> RobotMoved:
+        pose, velocity = world.pose(), world.velocity()
+        return RobotMoved(
+            now,
+            pose.x,
+            pose.y,
+            pose.yaw,
+            front,
+            velocity.linear,
+            velocity.angular,
+            world.motors_on,
+            world.touching(),
+            world.turned,
+            world.travelled,
+        )
+
+
+def _packed(ranges: NDArray[np.float32]) -> bytes:
+    """Ranges as the trace keeps them: little-endian uint16 millimetres, 0 for nothing in range."""
+    return np.where(np.isfinite(ranges), np.rint(ranges * 1000), 0).astype("<u2").tobytes()

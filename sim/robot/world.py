@@ -1,0 +1,196 @@
+"""The headless robot world: PyBullet stepped at 240 Hz on somebody else's clock."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .arena import ARENA, Arena, Pose
+from .bullet import Client, silence
+from .drive import STANDSTILL, Velocity, WheelPair, clamped, is_drivable, wheel_speeds
+from .lidar import Lidar
+from .scene import build
+
+STEP_RATE = 240
+
+_GRAVITY = 9.81
+_MOTOR_TORQUE = 0.02
+"""Newton metres of each wheel: full speed within 0.2 s, and too weak to lift the robot against a wall."""
+
+_GEAR_DRAG = 0.01
+"""Newton metres with which the gear of a motor without power holds its wheel back."""
+
+_SOFTNESS = 1e-9
+"""A trace of give in every constraint; without it the direct solver meets singular matrices and gives up."""
+
+_STEPS_PER_SAMPLE = 12
+"""Steps between two looks at the pose for the counters; fixed, so that nobody's asking changes them."""
+
+_SECOND = 1_000_000_000
+
+
+class World:
+    """A room, a sphere and a robot, in a PyBullet client of their own.
+
+    The robot is driven by its wheels' motors and the friction under them, never put anywhere but by
+    `reset`. The same calls at the same times give the same bits. Times are integer nanoseconds since
+    the world was built. Not thread-safe: one thread at a time.
+    """
+
+    def __init__(self, arena: Arena = ARENA) -> None:
+        """Build the world, in silence, the robot at the start and at rest.
+
+        Raises:
+            WorldUnavailable: PyBullet cannot be used here; the text says what to do.
+        """
+        client = self._client = Client()
+        with silence():
+            client.setGravity(0, 0, -_GRAVITY)
+            client.setTimeStep(1 / STEP_RATE)
+            # The direct solver is exact where the iterative one lets a standing robot creep.
+            client.setPhysicsEngineParameter(
+                deterministicOverlappingPairs=1,
+                constraintSolverType=client.CONSTRAINT_SOLVER_LCP_DANTZIG,
+                globalCFM=_SOFTNESS,
+            )
+            self._scene = build(client, arena)
+            inertial_frame = client.getDynamicsInfo(self._scene.robot, -1)[3:5]
+            self._base_in_inertial = client.invertTransform(*inertial_frame)
+            self._lidar = Lidar(arena)
+            self._powered = True
+            self._turn_wheels(STANDSTILL)
+            for _ in range(STEP_RATE):
+                client.stepSimulation()
+            self._start: int = client.saveState()
+        self._steps = 0
+        self._turned = 0.0
+        self._travelled = 0.0
+        self._sampled = self.pose()
+
+    @property
+    def commanded(self) -> Velocity:
+        """The body velocity that the motors aim at: clamped, and zero while they are off."""
+        return self._commanded
+
+    @property
+    def motors_on(self) -> bool:
+        """Whether the motors have power."""
+        return self._powered
+
+    @property
+    def turned(self) -> float:
+        """Signed rotation since the world was built, in rad, counter-clockwise positive."""
+        return self._turned + _turn_between(self._sampled, self.pose())
+
+    @property
+    def travelled(self) -> float:
+        """Length of the path of the base since the world was built, in metres."""
+        return self._travelled + _distance_between(self._sampled, self.pose())
+
+    def command(self, linear: float, angular: float) -> bool:
+        """Aim at a body velocity (m/s, rad/s) until the next command; tell whether it was a velocity at all.
+
+        Beyond the robot's limits it is clamped. NaN or infinity changes nothing and gives False. While
+        the motors are off a command is lost, as on a robot whose motor driver sleeps.
+        """
+        wanted = Velocity(linear, angular)
+        if not is_drivable(wanted):
+            return False
+        if self._powered:
+            self._turn_wheels(clamped(wanted))
+        return True
+
+    def set_motors(self, on: bool) -> None:
+        """Give the motors power or cut it.
+
+        Without power the gears alone brake the wheels, within some tenths of a second. Power that
+        comes back moves nothing: the robot stands until the next command.
+        """
+        if on == self._powered:
+            return
+        self._powered = on
+        self._turn_wheels(STANDSTILL)
+
+    def advance_to(self, time_ns: int) -> None:
+        """Run every step whose time has come; a time already passed runs none.
+
+        Step k is due at k / 240 s, rounded to the nanosecond.
+        """
+        step = self._client.stepSimulation
+        due = _steps_due(time_ns)
+        while self._steps < due:
+            sample = self._steps - self._steps % _STEPS_PER_SAMPLE + _STEPS_PER_SAMPLE
+            until = min(due, sample)
+            for _ in range(until - self._steps):
+                step()
+            self._steps = until
+            if until == sample:
+                self._sample()
+
+    def pose(self) -> Pose:
+        """Return where the robot's base is and where it heads."""
+        client = self._client
+        inertial = client.getBasePositionAndOrientation(self._scene.robot)
+        (x, y, _), orientation = client.multiplyTransforms(*inertial, *self._base_in_inertial)
+        return Pose(x, y, client.getEulerFromQuaternion(orientation)[2])
+
+    def velocity(self) -> Velocity:
+        """Return the real velocity of the body: along its heading, and about its axis."""
+        (x, y, _), (_, _, angular) = self._client.getBaseVelocity(self._scene.robot)
+        yaw = self.pose().yaw
+        return Velocity(x * math.cos(yaw) + y * math.sin(yaw), angular)
+
+    def wheel_angles(self) -> WheelPair:
+        """Return how far each wheel has turned since the start or the last reset, in rad."""
+        left, right = self._client.getJointStates(self._scene.robot, self._scene.wheels)
+        return WheelPair(left[0], right[0])
+
+    def touching(self) -> bool:
+        """Tell whether the robot touches anything but the floor at the last step."""
+        contacts = self._client.getContactPoints(bodyA=self._scene.robot)
+        return any(contact[2] != self._scene.floor for contact in contacts)
+
+    def scan(self) -> NDArray[np.float32]:
+        """Return what the lidar measures now, in metres, shape (720,); see `Lidar.scan`."""
+        return self._lidar.scan(self.pose())
+
+    def reset(self) -> None:
+        """Put the robot back to the start, at rest and without a command; time and counters go on."""
+        self._sample()
+        self._client.restoreState(self._start)
+        self._sampled = self.pose()
+        self._turn_wheels(STANDSTILL)
+
+    def close(self) -> None:
+        """Give PyBullet's client back; the world is of no use afterwards. Closing again does nothing."""
+        self._client.close()
+
+    def _turn_wheels(self, body: Velocity) -> None:
+        self._commanded = body
+        torque = _MOTOR_TORQUE if self._powered else _GEAR_DRAG
+        self._client.setJointMotorControlArray(
+            self._scene.robot,
+            self._scene.wheels,
+            self._client.VELOCITY_CONTROL,
+            targetVelocities=wheel_speeds(body),
+            forces=(torque, torque),
+        )
+
+    def _sample(self) -> None:
+        now = self.pose()
+        self._turned += _turn_between(self._sampled, now)
+        self._travelled += _distance_between(self._sampled, now)
+        self._sampled = now
+
+
+def _steps_due(time_ns: int) -> int:
+    # The greatest k for which k / 240 s, rounded to the nanosecond, is not after the time.
+    return (STEP_RATE * (2 * time_ns + 1) - 1) // (2 * _SECOND)
+
+
+def _turn_between(before: Pose, after: Pose) -> float:
+    return math.remainder(after.yaw - before.yaw, math.tau)
+
+
+def _distance_between(before: Pose, after: Pose) -> float:
+    return math.hypot(after.x - before.x, after.y - before.y)

@@ -1,0 +1,153 @@
+"""Clients: calls of a service, and the replies that an executor has to bring in."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from sim.ros.entity import Entity, Taken
+from sim.ros.interfaces import copy_message
+from sim.ros.network import Request
+from sim.ros.qos import QoSProfile
+from sim.ros.task import Future
+from sim.trace.events import EntityKind
+
+if TYPE_CHECKING:
+    from sim.ros.callback_groups import CallbackGroup
+    from sim.ros.node import Node
+
+_POLL = 100_000_000
+"""Nanoseconds between two looks of ``wait_for_service``."""
+
+
+class Reply(NamedTuple):
+    """An answer that came in."""
+
+    call: int
+    data: Any
+    sent: int
+
+
+class Client(Entity):
+    """Calls one service. The reply is taken by the executor, as a callback of the client's group."""
+
+    kind = EntityKind.CLIENT
+    rank = 3
+
+    def __init__(
+        self,
+        node: Node,
+        srv_type: Any,
+        srv_name: str,
+        qos_profile: QoSProfile,
+        callback_group: CallbackGroup,
+    ) -> None:
+        super().__init__(node, srv_name, callback_group)
+        self.srv_type = srv_type
+        self.srv_name = srv_name
+        self.qos_profile = qos_profile
+        self.depth = qos_profile.queue_length or 0
+        self._host = node.context.host
+        self._probe = node.context.probe
+        self._pending_requests: dict[int, Future[Any]] = {}
+        self._queue: deque[Reply] = deque()
+
+    def call(self, request: Any, timeout_sec: float | None = None) -> Any:
+        """Call and wait on this thread for the reply, which another thread has to take.
+
+        Called inside a callback it waits for ever unless the executor has a thread left and the client's
+        group lets the reply in. None after ``timeout_sec`` seconds without a reply.
+
+        Raises:
+            TypeError: the request is not of the service's type.
+        """
+        arrived = self._host.clock.signal()
+        future = self.call_async(request)
+        future.add_done_callback(lambda _: arrived.set())
+        call = next(key for key, value in self._pending_requests.items() if value is future)
+        deadline = None if timeout_sec is None else self._host.clock.now() + int(timeout_sec * 1e9)
+        self._probe.call_blocked(call, self.name)
+        try:
+            if not future.done() and not arrived.wait(deadline):
+                return None
+        finally:
+            self._probe.call_unblocked(call)
+        return future.result()
+
+    def call_async(self, request: Any) -> Future[Any]:
+        """Send a request; the future gets the reply once an executor has taken it.
+
+        Raises:
+            TypeError: the request is not of the service's type.
+        """
+        if not isinstance(request, self.srv_type.Request):
+            raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}")
+        future: Future[Any] = Future()
+        copy = copy_message(request)
+        with self._host.lock:
+            call = self._probe.call_id()
+            self._pending_requests[call] = future
+            future.add_done_callback(self.remove_pending_request)
+            self._probe.service_called(call, self.name, copy)
+            outgoing = Request(copy, call, self._host.clock.now(), lambda response: self._arrive(call, response))
+            self._host.network.send_request(self.name, self.srv_type, outgoing)
+        return future
+
+    def remove_pending_request(self, future: Future[Any]) -> None:
+        """Forget a request; a reply to it is thrown away."""
+        with self._host.lock:
+            for call, pending in tuple(self._pending_requests.items()):
+                if pending is future:
+                    del self._pending_requests[call]
+
+    def service_is_ready(self) -> bool:
+        """Whether somebody offers the service."""
+        with self._host.lock:
+            return self._host.network.has_service(self.name, self.srv_type)
+
+    def wait_for_service(self, timeout_sec: float | None = None) -> bool:
+        """Wait until somebody offers the service; False when ``timeout_sec`` seconds were not enough."""
+        clock = self._host.clock
+        deadline = None if timeout_sec is None else clock.now() + int(timeout_sec * 1e9)
+        while self.node.context.ok() and not self.service_is_ready():
+            if deadline is not None and clock.now() >= deadline:
+                return False
+            clock.sleep(_POLL if deadline is None else min(_POLL, deadline - clock.now()))
+        return self.service_is_ready()
+
+    def _arrive(self, call: int, response: Any) -> None:
+        if self.destroyed:
+            return
+        self._queue.append(Reply(call, response, self._host.clock.now()))
+        self._probe.ready(self, len(self._queue), call)
+        self.become_ready(self._host.clock.now())
+
+    def shown_callback(self) -> Callable[..., Any] | None:
+        """None: the reply goes to a future."""
+        return None
+
+    def take(self, now: int) -> Taken | None:
+        """Take the oldest reply."""
+        if not self._queue:
+            return None
+        reply = self._queue.popleft()
+        if self._queue:
+            self.ready_since = now
+        else:
+            self.nothing_left()
+        return Taken(reply, reply.call, now - reply.sent, len(self._queue))
+
+    def invoke(self, taken: Taken) -> Any:
+        """Give the reply to the future that waits for it."""
+        reply: Reply = taken.data
+        future = self._pending_requests.get(reply.call)
+        executor = self.node.executor
+        if future is not None:
+            if executor is not None:
+                future._set_executor(executor)
+            future.set_result(reply.data)
+
+    def destroy(self) -> None:
+        """Remove it from its node."""
+        self.node.destroy_client(self)

@@ -1,0 +1,68 @@
+"""The machine that nodes run on: its clock, its network, its trace, and what the run was set up with.
+
+An engine installs a host before the learner's program is imported; without one, the first use makes a host
+on wall time that keeps no trace, so that the model works as a plain library too.
+"""
+
+import threading
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field
+from weakref import WeakSet
+
+from sim.clock import Clock, RealClock
+from sim.ros.network import Network
+from sim.ros.probe import Probe, SilentProbe
+
+_RLock = threading.RLock
+
+
+@dataclass(eq=False)
+class Host:
+    """What every context of this process shares.
+
+    ``lock`` guards all state of executors, groups and queues; it is never held while something waits or
+    while a callback runs. ``threads`` replaces the number of threads of every executor made (None: as the
+    program says).
+    """
+
+    clock: Clock
+    probe: Probe
+    threads: int | None = None
+    lock: AbstractContextManager[bool] = field(default_factory=_RLock)
+    network: Network = field(default_factory=Network)
+    waiters: "WeakSet[WaitsExplained]" = field(default_factory=WeakSet)
+
+    def explain_waits(self) -> None:
+        """Put on the trace which callbacks wait now, and why; call it before time passes."""
+        with self.lock:
+            for each in tuple(self.waiters):
+                each.explain_waits()
+
+
+class WaitsExplained:
+    """Something that can tell why its callbacks wait."""
+
+    def explain_waits(self) -> None:
+        """Record the waits that began or whose reason changed. Called with the host's lock held."""
+        raise NotImplementedError
+
+
+_host: Host | None = None
+_making = _RLock()
+
+
+def current_host() -> Host:
+    """The host of this process."""
+    global _host  # noqa: PLW0603 -- a process has one host, as a machine has one network
+    with _making:
+        if _host is None:
+            clock = RealClock()
+            _host = Host(clock=clock, probe=SilentProbe())
+        return _host
+
+
+def install(host: Host) -> None:
+    """Make ``host`` the host of this process; contexts made before keep theirs."""
+    global _host  # noqa: PLW0603
+    with _making:
+        _host = host

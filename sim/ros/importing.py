@@ -1,0 +1,37 @@
+"""Makes ``import rclpy`` and ``from std_srvs.srv import SetBool`` mean this model, in this process."""
+
+import importlib
+import sys
+
+from sim.ros.interfaces.finder import InterfaceFinder
+
+_MODULES = (
+    "callback_groups",
+    "client",
+    "clock",
+    "context",
+    "duration",
+    "exceptions",
+    "executors",
+    "guard_condition",
+    "logging",
+    "node",
+    "publisher",
+    "qos",
+    "service",
+    "subscription",
+    "task",
+    "time",
+    "timer",
+    "utilities",
+)
+
+
+def install() -> None:
+    """Put the model in rclpy's place and make the interface packages importable; twice does no harm."""
+    package = importlib.import_module("sim.ros")
+    sys.modules["rclpy"] = package
+    for name in _MODULES:
+        sys.modules[f"rclpy.{name}"] = importlib.import_module(f"sim.ros.{name}")
+    if not any(isinstance(finder, InterfaceFinder) for finder in sys.meta_path):
+        sys.meta_path.append(InterfaceFinder())

@@ -1,0 +1,119 @@
+"""The base classes of all message and service classes."""
+
+from __future__ import annotations
+
+from array import array
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any, ClassVar, NoReturn, TypeVar, cast
+
+import numpy as np
+from attrs import frozen
+
+from sim.ros.interfaces.field_types import FieldType, NamespacedType
+from sim.ros.interfaces.interface_definition import Definition
+from sim.ros.interfaces.sequences import Handling
+
+
+@frozen(eq=False)
+class Interface:
+    """What a message class knows of itself."""
+
+    definition: Definition
+    types: Mapping[str, FieldType]
+    """The type of every field, in the order of definition."""
+    parts: Mapping[NamespacedType, type[Message]]
+    """The classes of the messages in its fields."""
+    handlings: Mapping[str, Handling]
+    """What every field does with a value."""
+    copy: Callable[[Any], Any]
+    """Returns a message as a subscriber receives it."""
+
+
+class Message:
+    """A ROS 2 message, or the request or response of a service.
+
+    Its classes come from `message` and `service`. As in rclpy, the constructor takes field values
+    by keyword, every field has a default, values are stored in slots named ``_<field>`` behind
+    properties of the fields' names, and every assignment is checked.
+
+    Raises:
+        AssertionError: on construction or assignment, if a value does not fit the field or the
+            field does not exist; the text is the one of rosidl's generated code.
+        AttributeError: assignment to an attribute that is no field.
+    """
+
+    __slots__ = ()
+    __interface__: ClassVar[Interface]
+    __type_name__: ClassVar[str]
+    SLOT_TYPES: ClassVar[tuple[FieldType, ...]] = ()
+    """The type of every field, in the order of definition."""
+
+    if TYPE_CHECKING:
+        # Fields are made at run time from definitions.
+        def __init__(self, **values: Any) -> None: ...
+        def __getattr__(self, name: str) -> Any: ...
+        def __setattr__(self, name: str, value: Any) -> None: ...
+
+    @classmethod
+    def get_fields_and_field_types(cls) -> dict[str, str]:
+        """Return the type of every field as text: ``{"ranges": "sequence<float>", …}``."""
+        return {name: str(of) for name, of in cls.__interface__.types.items()}
+
+    def __repr__(self) -> str:
+        package = ".".join(type(self).__module__.split(".")[:-1])
+        values = (f"{name}={_shown(getattr(self, name))}" for name in self.__interface__.types)
+        return f"{package}.{type(self).__name__}({', '.join(values)})"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, type(self)):
+            return False
+        # Not as tuples: these would call a NaN equal to itself.
+        return all(_same(getattr(self, name), getattr(other, name)) for name in self.__interface__.types)
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __reduce__(self) -> tuple[Callable[..., Message], tuple[object, ...]]:
+        from sim.ros.interfaces.known import restore
+
+        values = {name: getattr(self, name) for name in self.__interface__.types}
+        return restore, (self.__type_name__, values)
+
+
+MessageT = TypeVar("MessageT", bound=Message)
+
+
+class ServiceType(type):
+    """The class of service classes such as ``std_srvs.srv.SetBool``, which are never instantiated."""
+
+    Request: type[Message]
+    Response: type[Message]
+    __type_name__: str
+
+    def __call__(cls, *args: object, **values: object) -> NoReturn:
+        """Raise `NotImplementedError`, as rosidl's service classes do."""
+        raise NotImplementedError("Service classes can not be instantiated")
+
+
+def copy_message(message: MessageT) -> MessageT:
+    """Return a copy that shares nothing with the message, as a subscriber would receive it.
+
+    What a transport does to values is done: 32-bit floats lose the digits they cannot hold,
+    subclasses of Python's numbers become plain numbers, tuples and sets in a field become lists.
+    """
+    return cast("MessageT", message.__interface__.copy(message))
+
+
+def type_name(cls: type[Message] | ServiceType) -> str:
+    """Return the full name of a class: ``std_msgs/msg/Int32``, ``std_srvs/srv/SetBool``."""
+    return cls.__type_name__
+
+
+def _shown(value: Any) -> str:
+    """Return the text of a field's value; an ``array.array`` is shown as a list."""
+    return repr(value.tolist()) if isinstance(value, array) else repr(value)
+
+
+def _same(one: Any, other: Any) -> bool:
+    if isinstance(one, np.ndarray):
+        return bool(np.array_equal(one, other))
+    return bool(one == other)

@@ -1,0 +1,125 @@
+"""Making a message class from its definition."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from operator import attrgetter
+from typing import Any
+
+from attrs import evolve
+
+from sim.ros.interfaces.base import Interface, Message
+from sim.ros.interfaces.elements import check_of, message_element, plain_element
+from sim.ros.interfaces.field_types import (
+    Array,
+    BoundedSequence,
+    FieldType,
+    NamespacedType,
+    UnboundedSequence,
+    element_type,
+)
+from sim.ros.interfaces.interface_definition import Definition
+from sim.ros.interfaces.literals import constant_values, default_value
+from sim.ros.interfaces.sequences import Handling, handling_of
+
+FindMessage = Callable[[NamespacedType], type[Message]]
+"""Returns the class of a message that another one contains."""
+
+_Puts = Mapping[str, Callable[[Any, Any], None]]
+"""Stores a value in a message's slot, unchecked, by field name."""
+
+
+def build_class(definition: Definition, find_message: FindMessage) -> type[Message]:
+    """Return a new class for a definition.
+
+    Raises:
+        DefinitionError: a constant or default value does not fit its type.
+    """
+    types = definition.field_types()
+    elements = map(element_type, types.values())
+    parts = {of: find_message(of) for of in elements if isinstance(of, NamespacedType)}
+    handlings = {
+        name: _with_declared_default(definition, name, of, _handling(name, of, parts))
+        for name, of in types.items()
+    }
+    cls = _bare_class(definition, types, handlings)
+    puts = {name: vars(cls)[f"_{name}"].__set__ for name in types}
+    for name, handling in handlings.items():
+        setattr(cls, name, property(attrgetter(f"_{name}"), _setter(puts[name], handling)))
+    init = _initialiser(handlings, puts)
+    init.__qualname__ = f"{cls.__name__}.__init__"
+    cls.__init__ = init  # type: ignore[method-assign]
+    cls.__interface__ = Interface(definition, types, parts, handlings, _copier(cls, handlings, puts))
+    return cls
+
+
+def _bare_class(
+    definition: Definition, types: Mapping[str, FieldType], handlings: Mapping[str, Handling]
+) -> type[Message]:
+    """Return the class with slots and constants, without behaviour of its fields."""
+    defaults = {f"{name.upper()}__DEFAULT": handlings[name].make() for name in definition.defaults}
+    return type(
+        definition.name,
+        (Message,),
+        {
+            "__slots__": tuple(f"_{name}" for name in types),
+            "__module__": definition.module_name,
+            "__doc__": f"Message class for {definition.type_name}; see `Message`.",
+            "__type_name__": definition.type_name,
+            "SLOT_TYPES": tuple(types.values()),
+            **constant_values(definition),
+            **defaults,
+        },
+    )
+
+
+def _setter(put: Callable[[Any, Any], None], handling: Handling) -> Callable[[Any, Any], None]:
+    check = handling.check
+
+    def set_field(message: Any, value: Any) -> None:
+        put(message, check(value))
+
+    return set_field
+
+
+def _initialiser(handlings: Mapping[str, Handling], puts: _Puts) -> Callable[..., None]:
+    steps = tuple((name, puts[name], handling.make, handling.check) for name, handling in handlings.items())
+    known = frozenset(handlings)
+
+    def initialise(self: Message, /, **values: Any) -> None:
+        if not values.keys() <= known:
+            unknown = ", ".join(sorted(values.keys() - known))
+            raise AssertionError(f"Invalid arguments passed to constructor: {unknown}")
+        for name, put, make, check in steps:
+            put(self, check(values[name]) if name in values else make())
+
+    return initialise
+
+
+def _copier(cls: type[Message], handlings: Mapping[str, Handling], puts: _Puts) -> Callable[[Any], Any]:
+    steps = tuple((puts[name], handling.copy, attrgetter(f"_{name}")) for name, handling in handlings.items())
+    new = cls.__new__
+
+    def copy(message: Any) -> Any:
+        duplicate = new(cls)
+        for put, copy_value, get in steps:
+            put(duplicate, copy_value(get(message)))
+        return duplicate
+
+    return copy
+
+
+def _handling(field: str, of: FieldType, parts: Mapping[NamespacedType, type[Message]]) -> Handling:
+    inner = element_type(of)
+    element = message_element(parts[inner]) if isinstance(inner, NamespacedType) else plain_element(inner)
+    if isinstance(of, Array | BoundedSequence | UnboundedSequence):
+        return handling_of(field, of, element)
+    return Handling(check_of(field, element), element.make, element.copy)
+
+
+def _with_declared_default(definition: Definition, field: str, of: FieldType, handling: Handling) -> Handling:
+    if field not in definition.defaults:
+        return handling
+    value = default_value(definition, field, of, handling.check)
+    copied = isinstance(of, Array | BoundedSequence | UnboundedSequence)
+    return evolve(handling, make=(lambda: handling.copy(value)) if copied else (lambda: value))

@@ -1,0 +1,126 @@
+"""The types a message field can have, named as ROS 2's IDL names them.
+
+The classes and their attributes match ``rosidl_parser.definition``, because a message class shows
+them to everyone in ``SLOT_TYPES``. ``str()`` of a type is its text in ``get_fields_and_field_types()``.
+"""
+
+from __future__ import annotations
+
+from typing import Final, TypeAlias
+
+from attrs import frozen
+
+INTEGER_LIMITS: Final = {
+    **{f"int{bits}": (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) for bits in (8, 16, 32, 64)},
+    **{f"uint{bits}": (0, 2**bits - 1) for bits in (8, 16, 32, 64)},
+}
+"""Smallest and largest value of every integer type."""
+
+FLOAT_LIMITS: Final = {"float": 3.402823466e38, "double": 1.7976931348623157e308}
+"""Largest finite magnitude of every floating point type, in the digits rosidl uses."""
+
+
+@frozen
+class BasicType:
+    """A number, a truth value (``boolean``) or one raw byte (``octet``)."""
+
+    typename: str
+
+    def __str__(self) -> str:
+        return self.typename
+
+
+@frozen
+class NamespacedType:
+    """Another message: ``NamespacedType(("geometry_msgs", "msg"), "Point")``."""
+
+    namespaces: tuple[str, ...]
+    name: str
+
+    def namespaced_name(self) -> tuple[str, ...]:
+        """Return package, kind and name as one tuple."""
+        return (*self.namespaces, self.name)
+
+    def __str__(self) -> str:
+        return f"{self.namespaces[0]}/{self.name}"
+
+
+@frozen
+class UnboundedString:
+    """Text of any length."""
+
+    def __str__(self) -> str:
+        return "string"
+
+
+@frozen
+class BoundedString:
+    """Text of at most ``maximum_size`` characters."""
+
+    maximum_size: int
+
+    def __str__(self) -> str:
+        return f"string<{self.maximum_size}>"
+
+
+@frozen
+class UnboundedWString:
+    """Wide (UTF-16) text of any length."""
+
+    def __str__(self) -> str:
+        return "wstring"
+
+
+@frozen
+class BoundedWString:
+    """Wide (UTF-16) text of at most ``maximum_size`` characters."""
+
+    maximum_size: int
+
+    def __str__(self) -> str:
+        return f"wstring<{self.maximum_size}>"
+
+
+StringType: TypeAlias = UnboundedString | BoundedString | UnboundedWString | BoundedWString
+ElementType: TypeAlias = BasicType | NamespacedType | StringType
+
+
+@frozen
+class Array:
+    """Exactly ``size`` values."""
+
+    value_type: ElementType
+    size: int
+
+    def __str__(self) -> str:
+        return f"{self.value_type}[{self.size}]"
+
+
+@frozen
+class BoundedSequence:
+    """At most ``maximum_size`` values."""
+
+    value_type: ElementType
+    maximum_size: int
+
+    def __str__(self) -> str:
+        return f"sequence<{self.value_type}, {self.maximum_size}>"
+
+
+@frozen
+class UnboundedSequence:
+    """Any number of values."""
+
+    value_type: ElementType
+
+    def __str__(self) -> str:
+        return f"sequence<{self.value_type}>"
+
+
+SequenceType: TypeAlias = Array | BoundedSequence | UnboundedSequence
+FieldType: TypeAlias = ElementType | SequenceType
+
+
+def element_type(of: FieldType) -> ElementType:
+    """Return the type of the values in a sequence; of any other type, the type itself."""
+    return of.value_type if isinstance(of, Array | BoundedSequence | UnboundedSequence) else of

@@ -1,0 +1,124 @@
+"""What a ``.msg`` file, or one half of a ``.srv`` file, says: constants, fields and default values."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Literal, Protocol, TypeAlias
+
+from attrs import field, frozen
+from rosbags.interfaces import Nodetype
+
+from sim.ros.interfaces.field_types import (
+    Array,
+    BasicType,
+    BoundedSequence,
+    BoundedString,
+    BoundedWString,
+    ElementType,
+    FieldType,
+    NamespacedType,
+    UnboundedSequence,
+    UnboundedString,
+    UnboundedWString,
+)
+
+if TYPE_CHECKING:
+    from rosbags.interfaces.typing import BaseDesc, Constdefs, Fielddefs, FieldDesc, NameDesc
+
+Kind: TypeAlias = Literal["msg", "srv"]
+
+_IDL_NAMES = {"bool": "boolean", "byte": "octet", "char": "uint8", "float32": "float", "float64": "double"}
+
+
+class DefinitionError(ValueError):
+    """A ``.msg`` or ``.srv`` text cannot be used; the message names file, line and reason."""
+
+
+@frozen
+class Definition:
+    """One structure: a message, or the request or response of a service.
+
+    Constants and fields are kept in rosbags' notation, so that its typestore can be given them as
+    they are. A structure without fields has none here (rosbags gives it a filler byte).
+    """
+
+    package: str
+    kind: Kind
+    name: str
+    constants: Constdefs
+    fields: Fielddefs
+    defaults: Mapping[str, object] = field(factory=dict)
+    """Declared default values by field name, as written; other fields start as zero, empty or false."""
+
+    @property
+    def type_name(self) -> str:
+        """The full name, such as ``geometry_msgs/msg/Twist``."""
+        return f"{self.package}/{self.kind}/{self.name}"
+
+    @property
+    def module_name(self) -> str:
+        """The module in which rosidl puts the Python class, such as ``geometry_msgs.msg._twist``."""
+        owner = (
+            self.name.removesuffix("_Request").removesuffix("_Response") if self.kind == "srv" else self.name
+        )
+        return f"{self.package}.{self.kind}.{module_stem(owner)}"
+
+    def field_types(self) -> dict[str, FieldType]:
+        """Return the type of every field by name, in the order of definition."""
+        return {name: field_type(description) for name, description in self.fields}
+
+
+class Source(Protocol):
+    """A place that definitions come from."""
+
+    def packages(self) -> frozenset[str]:
+        """Return the names of all packages it knows."""
+        ...
+
+    def names(self, package: str, kind: Kind) -> tuple[str, ...]:
+        """Return the sorted names of a package's messages or services; empty for an unknown package."""
+        ...
+
+    def message(self, package: str, name: str) -> Definition:
+        """Return a message listed by ``names``; `DefinitionError` if its text is wrong."""
+        ...
+
+    def service(self, package: str, name: str) -> tuple[Definition, Definition]:
+        """Return request and response of a service listed by ``names``; `DefinitionError` as above."""
+        ...
+
+
+def module_stem(name: str) -> str:
+    """Return the file name rosidl gives the module of an interface: ``SetBool`` → ``_set_bool``.
+
+    Rule: rosidl_pycommon's ``convert_camel_case_to_lower_case_underscore``.
+    """
+    words = re.sub(r"(.)([A-Z][a-z]+)", r"\1_\2", name)
+    words = re.sub(r"([a-z0-9])([A-Z])", r"\1_\2", words)
+    return f"_{words.lower()}"
+
+
+def field_type(description: FieldDesc) -> FieldType:
+    """Translate rosbags' description of a field into its ROS 2 type."""
+    if description[0] == Nodetype.BASE or description[0] == Nodetype.NAME:
+        return _element_type(description)
+    inner, size = description[1]
+    assert isinstance(inner, tuple)
+    assert isinstance(size, int)
+    element = _element_type(inner)
+    if description[0] == Nodetype.ARRAY:
+        return Array(element, size)
+    return BoundedSequence(element, size) if size else UnboundedSequence(element)
+
+
+def _element_type(description: BaseDesc | NameDesc) -> ElementType:
+    if description[0] == Nodetype.NAME:
+        package, kind, name = description[1].split("/")
+        return NamespacedType((package, kind), name)
+    name, bound = description[1]
+    if name == "string":
+        return BoundedString(bound) if bound else UnboundedString()
+    if name == "wstring":
+        return BoundedWString(bound) if bound else UnboundedWString()
+    return BasicType(_IDL_NAMES.get(name, name))

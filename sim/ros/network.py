@@ -1,0 +1,101 @@
+"""The network: which publishers reach which subscriptions, and which service answers a call.
+
+Delivery takes no time. Everything here is called with the host's lock held.
+"""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from sim.ros.qos import mismatches
+
+if TYPE_CHECKING:
+    from sim.ros.publisher import Publisher
+    from sim.ros.service import Service
+    from sim.ros.subscription import Subscription
+
+
+@dataclass(frozen=True, slots=True)
+class Request:
+    """A service request on its way; ``answer`` takes the response to whoever asked."""
+
+    data: Any
+    call: int
+    sent: int
+    answer: Callable[[Any], None]
+
+
+class Network:
+    """Every publisher, subscription and service of the process, by full name."""
+
+    def __init__(self) -> None:
+        self._publishers: defaultdict[str, list[Publisher]] = defaultdict(list)
+        self._subscriptions: defaultdict[str, list[Subscription]] = defaultdict(list)
+        self._services: defaultdict[str, list[Service]] = defaultdict(list)
+
+    def publishers(self, topic: str) -> tuple[Publisher, ...]:
+        """The publishers on a topic."""
+        return tuple(self._publishers.get(topic, ()))
+
+    def subscriptions(self, topic: str) -> tuple[Subscription, ...]:
+        """The subscriptions to a topic."""
+        return tuple(self._subscriptions.get(topic, ()))
+
+    def has_service(self, name: str, srv_type: type) -> bool:
+        """Whether somebody offers a service of that name and type."""
+        return self._server(name, srv_type) is not None
+
+    def join_publisher(self, publisher: Publisher) -> None:
+        """A publisher came up: it is matched with every subscription that can hear it."""
+        self._publishers[publisher.topic].append(publisher)
+        for subscription in self._subscriptions.get(publisher.topic, ()):
+            self._match(publisher, subscription)
+
+    def join_subscription(self, subscription: Subscription) -> None:
+        """A subscription came up: matched, and given what transient-local publishers have kept."""
+        self._subscriptions[subscription.topic].append(subscription)
+        for publisher in self._publishers.get(subscription.topic, ()):
+            if self._match(publisher, subscription):
+                publisher.catch_up(subscription)
+
+    def join_service(self, service: Service) -> None:
+        """A service came up."""
+        self._services[service.name].append(service)
+
+    def leave_publisher(self, publisher: Publisher) -> None:
+        """A publisher went away."""
+        self._publishers[publisher.topic].remove(publisher)
+
+    def leave_subscription(self, subscription: Subscription) -> None:
+        """A subscription went away; nobody sends to it any more."""
+        self._subscriptions[subscription.topic].remove(subscription)
+        for publisher in self._publishers.get(subscription.topic, ()):
+            publisher.forget(subscription)
+
+    def leave_service(self, service: Service) -> None:
+        """A service went away."""
+        self._services[service.name].remove(service)
+
+    def send_request(self, name: str, srv_type: type, request: Request) -> bool:
+        """Take a request to the service; without one it is lost (False)."""
+        server = self._server(name, srv_type)
+        if server is None:
+            return False
+        server.deliver(request)
+        return True
+
+    def _server(self, name: str, srv_type: type) -> Service | None:
+        return next((each for each in self._services.get(name, ()) if each.srv_type is srv_type), None)
+
+    def _match(self, publisher: Publisher, subscription: Subscription) -> bool:
+        if publisher.msg_type is not subscription.msg_type:
+            return False
+        problems = list(mismatches(publisher.qos_profile, subscription.qos_profile))
+        if problems:
+            publisher.incompatible_with(subscription, problems[-1])
+            return False
+        publisher.reach(subscription)
+        return True

@@ -1,0 +1,420 @@
+"""Nodes: what a program builds its publishers, subscriptions, timers, services and clients on."""
+
+from __future__ import annotations
+
+import weakref
+from collections.abc import Callable, Iterator
+from heapq import heappop, heappush
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from sim.ros.callback_groups import (
+    CallbackGroup,
+    MutuallyExclusiveCallbackGroup,
+    ReentrantCallbackGroup,
+)
+from sim.ros.client import Client
+from sim.ros.clock import Clock, ROSClock
+from sim.ros.context import Context
+from sim.ros.entity import Entity
+from sim.ros.guard_condition import GuardCondition
+from sim.ros.host import WaitsExplained
+from sim.ros.logging import RcutilsLogger, get_logger
+from sim.ros.names import expand_service, expand_topic, validate_namespace, validate_node_name
+from sim.ros.publisher import Publisher
+from sim.ros.qos import QoSProfile, as_profile, qos_profile_services_default
+from sim.ros.service import Service
+from sim.ros.subscription import Subscription
+from sim.ros.timer import Rate, Timer
+from sim.ros.utilities import get_default_context
+from sim.trace.events import Reason
+
+if TYPE_CHECKING:
+    from sim.ros.executors import Executor
+
+EntityT = TypeVar("EntityT", bound=Entity)
+
+
+class Node(WaitsExplained):
+    """A node of the ROS graph.
+
+    Raises:
+        NotInitializedException: ``rclpy.init()`` has not been called.
+        InvalidNodeNameException, InvalidNamespaceException: a name breaks the rules.
+    """
+
+    def __init__(self, node_name: str, *, context: Context | None = None, namespace: str | None = None) -> None:
+        self._context = get_default_context() if context is None else context
+        self._context.require_ok()
+        space = "/" + (namespace or "").strip("/")
+        validate_node_name(node_name)
+        validate_namespace(space)
+        self._name = node_name
+        self._namespace = space
+        self._host = self._context.host
+        self._orders = 0
+        self._entities: list[Entity] = []
+        self._publishers: list[Publisher] = []
+        self._pending: dict[Entity, None] = {}
+        self._timer_queue: list[tuple[int, int, Timer]] = []
+        self._warnings: list[str] = []
+        self._executor: weakref.ref[Executor] | None = None
+        self._destroyed = False
+        self._clock = ROSClock()
+        self._logger = get_logger(self.get_fully_qualified_name().strip("/").replace("/", "."))
+        self.trace_id = self._context.probe.node_made(self.get_fully_qualified_name())
+        self._default_callback_group = MutuallyExclusiveCallbackGroup()
+        self._rate_group = ReentrantCallbackGroup()
+        self._host.waiters.add(self)
+
+    # What it is
+
+    @property
+    def context(self) -> Context:
+        """The context it lives in."""
+        return self._context
+
+    @property
+    def default_callback_group(self) -> CallbackGroup:
+        """The mutually exclusive group of all entities that name none."""
+        return self._default_callback_group
+
+    @property
+    def handle(self) -> Node:
+        """The node itself: there is nothing below it here."""
+        return self
+
+    def get_name(self) -> str:
+        """Its name without namespace."""
+        return self._name
+
+    def get_namespace(self) -> str:
+        """Its namespace, ``/`` for none."""
+        return self._namespace
+
+    def get_fully_qualified_name(self) -> str:
+        """Namespace and name, such as ``/arm/sub_node``."""
+        return f"{self._namespace.rstrip('/')}/{self._name}"
+
+    def get_logger(self) -> RcutilsLogger:
+        """Its logger."""
+        return self._logger
+
+    def get_clock(self) -> Clock:
+        """Its clock."""
+        return self._clock
+
+    def resolve_topic_name(self, topic: str) -> str:
+        """The full name of a topic as this node means it."""
+        return expand_topic(topic, self._name, self._namespace)
+
+    def resolve_service_name(self, service: str) -> str:
+        """The full name of a service as this node means it."""
+        return expand_service(service, self._name, self._namespace)
+
+    @property
+    def executor(self) -> Executor | None:
+        """The executor that serves it, if any."""
+        return None if self._executor is None else self._executor()
+
+    @executor.setter
+    def executor(self, new_executor: Executor | None) -> None:
+        current = self.executor
+        if current is new_executor:
+            return
+        self._executor = None
+        if current is not None:
+            current.remove_node(self)
+        if new_executor is not None:
+            self._executor = weakref.ref(new_executor)
+            new_executor.add_node(self)
+
+    # What it has
+
+    @property
+    def publishers(self) -> Iterator[Publisher]:
+        """Its publishers."""
+        yield from tuple(self._publishers)
+
+    @property
+    def subscriptions(self) -> Iterator[Subscription]:
+        """Its subscriptions, oldest first."""
+        yield from self._of(Subscription)
+
+    @property
+    def timers(self) -> Iterator[Timer]:
+        """Its timers, oldest first."""
+        yield from self._of(Timer)
+
+    @property
+    def services(self) -> Iterator[Service]:
+        """Its services, oldest first."""
+        yield from self._of(Service)
+
+    @property
+    def clients(self) -> Iterator[Client]:
+        """Its clients, oldest first."""
+        yield from self._of(Client)
+
+    @property
+    def guards(self) -> Iterator[GuardCondition]:
+        """Its guard conditions, oldest first."""
+        yield from self._of(GuardCondition)
+
+    def _of(self, kind: type[EntityT]) -> tuple[EntityT, ...]:
+        return tuple(each for each in tuple(self._entities) if isinstance(each, kind))
+
+    # Making entities
+
+    def create_publisher(
+        self,
+        msg_type: type,
+        topic: str,
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,  # noqa: ARG002 -- of its events, which never come here
+    ) -> Publisher:
+        """Make a publisher; ``qos_profile`` may be a depth."""
+        publisher = Publisher(self, msg_type, self.resolve_topic_name(topic), as_profile(qos_profile))
+        self._publishers.append(publisher)
+        return publisher
+
+    def create_subscription(
+        self,
+        msg_type: type,
+        topic: str,
+        callback: Callable[[Any], Any],
+        qos_profile: QoSProfile | int,
+        *,
+        callback_group: CallbackGroup | None = None,
+    ) -> Subscription:
+        """Make a subscription; ``qos_profile`` may be a depth."""
+        name, profile = self.resolve_topic_name(topic), as_profile(qos_profile)
+        with self._host.lock:
+            group = self._group(callback_group)
+            subscription = Subscription(self, msg_type, name, callback, group, profile)
+            self._add(subscription)
+            self._host.network.join_subscription(subscription)
+        return subscription
+
+    def create_timer(
+        self,
+        timer_period_sec: float,
+        callback: Callable[[], Any],
+        callback_group: CallbackGroup | None = None,
+        clock: Clock | None = None,
+        autostart: bool = True,
+    ) -> Timer:
+        """Make a timer that calls back every ``timer_period_sec`` seconds."""
+        period = int(float(timer_period_sec) * 1_000_000_000)
+        with self._host.lock:
+            group = self._group(callback_group)
+            timer = Timer(self, period, callback, group, clock or self._clock, autostart=autostart)
+            self._add(timer)
+        return timer
+
+    def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
+        """Make a rate that sleeps ``frequency`` times a second.
+
+        Raises:
+            ValueError: the frequency is not above zero.
+        """
+        if frequency <= 0:
+            raise ValueError("frequency must be > 0")
+        rate = Rate(self._host)
+        rate.timer = self.create_timer(1.0 / frequency, rate.tick, self._rate_group, clock)
+        return rate
+
+    def create_service(
+        self,
+        srv_type: Any,
+        srv_name: str,
+        callback: Callable[[Any, Any], Any],
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: CallbackGroup | None = None,
+    ) -> Service:
+        """Make a service."""
+        name = self.resolve_service_name(srv_name)
+        with self._host.lock:
+            group = self._group(callback_group)
+            service = Service(self, srv_type, name, callback, group, qos_profile)
+            self._add(service)
+            self._host.network.join_service(service)
+        return service
+
+    def create_client(
+        self,
+        srv_type: Any,
+        srv_name: str,
+        *,
+        qos_profile: QoSProfile = qos_profile_services_default,
+        callback_group: CallbackGroup | None = None,
+    ) -> Client:
+        """Make a client of a service."""
+        name = self.resolve_service_name(srv_name)
+        with self._host.lock:
+            client = Client(self, srv_type, name, qos_profile, self._group(callback_group))
+            self._add(client)
+        return client
+
+    def create_guard_condition(
+        self, callback: Callable[[], Any] | None, callback_group: CallbackGroup | None = None
+    ) -> GuardCondition:
+        """Make a guard condition."""
+        with self._host.lock:
+            guard = GuardCondition(self, callback, self._group(callback_group))
+            self._add(guard)
+        return guard
+
+    def _group(self, wanted: CallbackGroup | None) -> CallbackGroup:
+        return self._default_callback_group if wanted is None else wanted
+
+    def _add(self, entity: Entity) -> None:
+        self._entities.append(entity)
+        self._context.probe.entity_made(entity)
+        self._wake_executor()
+
+    # Removing them
+
+    def destroy_publisher(self, publisher: Publisher) -> bool:
+        """Remove a publisher; whether it was this node's."""
+        if publisher not in self._publishers:
+            return False
+        self._publishers.remove(publisher)
+        publisher.destroy()
+        return True
+
+    def destroy_subscription(self, subscription: Subscription) -> bool:
+        """Remove a subscription; whether it was this node's."""
+        with self._host.lock:
+            if not self._remove(subscription):
+                return False
+            self._host.network.leave_subscription(subscription)
+        return True
+
+    def destroy_service(self, service: Service) -> bool:
+        """Remove a service; whether it was this node's."""
+        with self._host.lock:
+            if not self._remove(service):
+                return False
+            self._host.network.leave_service(service)
+        return True
+
+    def destroy_client(self, client: Client) -> bool:
+        """Remove a client; whether it was this node's."""
+        return self._remove(client)
+
+    def destroy_timer(self, timer: Timer) -> bool:
+        """Remove a timer; whether it was this node's."""
+        return self._remove(timer)
+
+    def destroy_guard_condition(self, guard: GuardCondition) -> bool:
+        """Remove a guard condition; whether it was this node's."""
+        return self._remove(guard)
+
+    def destroy_rate(self, rate: Rate) -> bool:
+        """Remove a rate and its timer; whether it was this node's."""
+        rate.destroy()
+        return rate.timer is not None and self._remove(rate.timer)
+
+    def destroy_node(self) -> None:
+        """Remove everything; the executor that serves the node lets go of it."""
+        with self._host.lock:
+            if self._destroyed:
+                return
+            self._destroyed = True
+            self.executor = None
+            for publisher in tuple(self._publishers):
+                self.destroy_publisher(publisher)
+            for entity in tuple(self._entities):
+                entity.destroy()  # type: ignore[attr-defined]  # every kind has it, with its own leave-taking
+
+    def _remove(self, entity: Entity) -> bool:
+        with self._host.lock:
+            if entity not in self._entities:
+                return False
+            self._entities.remove(entity)
+            entity.destroyed = True
+            entity.nothing_left()
+            self._context.probe.entity_gone(entity)
+            self._wake_executor()
+        return True
+
+    # For the executor; all with the host's lock held
+
+    def _next_order(self) -> int:
+        self._orders += 1
+        return self._orders
+
+    def _entity_ready(self, entity: Entity) -> None:
+        self._pending[entity] = None
+        executor = self.executor
+        if executor is not None:
+            executor._entity_ready(entity)
+
+    def _entity_idle(self, entity: Entity) -> None:
+        self._pending.pop(entity, None)
+        self._context.probe.wait_ended(entity)
+
+    def _timer_set(self, timer: Timer) -> None:
+        heappush(self._timer_queue, (timer.due, timer.order, timer))
+        executor = self.executor
+        if executor is not None:
+            executor._timer_set(timer)
+
+    def _collect_due(self, now: int) -> dict[Entity, None]:
+        """Everything that has something to take, once the timers that are due are among it."""
+        while (due := self._next_due()) is not None and due <= now:
+            timer = heappop(self._timer_queue)[2]
+            timer.pending = True
+            timer.ready_since = due
+            self._pending[timer] = None
+        return self._pending
+
+    def _next_due(self) -> int | None:
+        """When the next timer that is not due yet falls due; None without one."""
+        queue = self._timer_queue
+        while queue:
+            due, _, timer = queue[0]
+            if timer.due == due and not (timer.pending or timer.is_canceled() or timer.destroyed):
+                return due
+            heappop(queue)
+        return None
+
+    def _wake_executor(self) -> None:
+        executor = self.executor
+        if executor is not None:
+            executor.wake()
+
+    def _warn_when_spinning(self, text: str) -> None:
+        self._warnings.append(text)
+        self._wake_executor()
+
+    def _speak_warnings(self) -> None:
+        warnings, self._warnings = self._warnings, []
+        for text in warnings:
+            self._logger.warning(text)
+
+    def explain_waits(self) -> None:
+        """Record which of its callbacks wait, and why."""
+        executor = self.executor
+        probe = self._context.probe
+        if not probe.visible:
+            return
+        for entity in self._collect_due(self._host.clock.now()):
+            if executor is None:
+                probe.waits(entity, Reason.NOBODY_SPINS, None, workers_busy=False)
+            else:
+                executor._explain_wait(entity)
+
+    def __enter__(self) -> Node:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.destroy_node()
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__module__}.{type(self).__qualname__} {self.get_fully_qualified_name()}>"

@@ -1,0 +1,255 @@
+"""The probe: turns what happens in executors, queues and nodes into events on the trace.
+
+It gives out the ids, and knows per thread which callback runs there. Every method is called with the
+host's lock held or touches nothing shared, and does no more than append to the sink.
+"""
+
+import inspect
+import threading
+from collections.abc import Callable
+from functools import partial
+from itertools import count
+from typing import TYPE_CHECKING, Any
+
+from sim.trace import events
+from sim.trace.events import AnyEvent, GroupKind, Reason, Severity
+
+if TYPE_CHECKING:
+    from sim.clock import Clock
+    from sim.ros.callback_groups import CallbackGroup
+    from sim.ros.entity import Entity
+
+
+class _Here(threading.local):
+    """What runs on the calling thread."""
+
+    thread = 0
+    entity = 0
+
+
+class Probe:
+    """Records a traced program's doings. ``sink`` takes events in order; appending must be thread-safe."""
+
+    visible = True
+
+    def __init__(self, clock: "Clock", sink: Callable[[AnyEvent], None]) -> None:
+        self._now = clock.now
+        self._sink = sink
+        self._here = _Here()
+        self._threads = count(1)
+        self._nodes = count(1)
+        self._groups = count(1)
+        self._entities = count(1)
+        self._executors = count(1)
+        self._messages = count(1)
+        self._calls = count(1)
+
+    def message_id(self) -> int:
+        """A new id for a message on its way."""
+        return next(self._messages)
+
+    def call_id(self) -> int:
+        """A new id for a service call."""
+        return next(self._calls)
+
+    def executor_made(self, kind: str, threads: int) -> None:
+        """An executor was made."""
+        self._sink(events.ExecutorAppeared(self._now(), next(self._executors), kind, threads))
+
+    def node_made(self, name: str) -> int:
+        """A node was made; returns its id."""
+        node = next(self._nodes)
+        self._sink(events.NodeAppeared(self._now(), node, name))
+        return node
+
+    def entity_made(self, entity: "Entity") -> None:
+        """An entity was made; its group appears with its first entity."""
+        now = self._now()
+        group = self._group_id(now, entity)
+        entity.trace_id = next(self._entities)
+        name, file, first, last = _written_at(entity.shown_callback())
+        self._sink(
+            events.EntityAppeared(
+                now,
+                entity.trace_id,
+                entity.node.trace_id,
+                group,
+                entity.kind,
+                entity.name,
+                name,
+                file,
+                first,
+                last,
+                entity.depth,
+                entity.period,
+            )
+        )
+
+    def _group_id(self, now: int, entity: "Entity") -> int:
+        group = entity.callback_group
+        if group.trace_id == 0:
+            group.trace_id = next(self._groups)
+            kind = group.trace_kind
+            class_name = type(group).__name__
+            self._sink(
+                events.GroupAppeared(now, group.trace_id, entity.node.trace_id, GroupKind(kind), class_name)
+            )
+        return group.trace_id
+
+    def entity_gone(self, entity: "Entity") -> None:
+        """An entity was destroyed."""
+        self.wait_ended(entity)
+        self._sink(events.EntityGone(self._now(), entity.trace_id))
+
+    def ready(self, entity: "Entity", depth: int, message: int) -> None:
+        """Something arrived for an entity."""
+        self._sink(events.EntityReady(self._now(), entity.trace_id, depth, message))
+
+    def dropped(self, entity: "Entity", depth: int, message: int) -> None:
+        """A full queue lost its oldest message."""
+        self._sink(events.MessageDropped(self._now(), entity.trace_id, depth, message))
+
+    def waits(self, entity: "Entity", reason: Reason, holder: "Entity | None", workers_busy: bool) -> None:
+        """A ready callback does not run; recorded when that is new or its reason changed."""
+        state = (reason, 0 if holder is None else holder.trace_id, workers_busy)
+        if entity.wait_shown != state:
+            entity.wait_shown = state
+            self._sink(events.WaitStarted(self._now(), entity.trace_id, entity.ready_since, *state))
+
+    def wait_ended(self, entity: "Entity") -> None:
+        """A callback waits no longer."""
+        if entity.wait_shown is not None:
+            entity.wait_shown = None
+            self._sink(events.WaitEnded(self._now(), entity.trace_id))
+
+    def callback_started(self, entity: "Entity", message: int, age: int, depth: int) -> int:
+        """A callback begins on the calling thread; returns what ran there until now."""
+        outer, self._here.entity = self._here.entity, entity.trace_id
+        thread = self.thread()
+        self._sink(events.CallbackStarted(self._now(), entity.trace_id, thread, message, age, depth))
+        return outer
+
+    def callback_ended(self, entity: "Entity", outer: int) -> None:
+        """The callback that ran on the calling thread ended; ``outer`` runs there again."""
+        self._here.entity = outer
+        self._sink(events.CallbackEnded(self._now(), entity.trace_id, self.thread()))
+
+    def callback_suspended(self, entity: "Entity", outer: int) -> None:
+        """A coroutine callback awaits something and leaves the calling thread."""
+        self._here.entity = outer
+        self._sink(events.CallbackSuspended(self._now(), entity.trace_id, self.thread()))
+
+    def callback_resumed(self, entity: "Entity") -> int:
+        """A coroutine callback goes on on the calling thread; returns what ran there until now."""
+        outer, self._here.entity = self._here.entity, entity.trace_id
+        self._sink(events.CallbackResumed(self._now(), entity.trace_id, self.thread()))
+        return outer
+
+    def callback_failed(self, entity: "Entity", error: BaseException) -> None:
+        """A callback raised."""
+        file, line = _raised_at(error)
+        text = f"{type(error).__name__}: {error}"
+        self._sink(
+            events.CallbackFailed(self._now(), entity.trace_id, self.thread(), text, file, line),
+        )
+
+    def published(self, message: int, topic: str, node: int) -> None:
+        """A message left a publisher."""
+        self._sink(events.Published(self._now(), message, topic, node, self._here.entity))
+
+    def service_called(self, call: int, service: str, request: object) -> None:
+        """A request left for a service."""
+        self._sink(events.ServiceCalled(self._now(), call, service, self._here.entity, repr(request)))
+
+    def service_replied(self, call: int, service: str, response: object) -> None:
+        """A service answered."""
+        self._sink(events.ServiceReplied(self._now(), call, service, repr(response)))
+
+    def call_blocked(self, call: int, service: str) -> None:
+        """The calling thread stands still until a reply comes."""
+        self._sink(events.CallBlocked(self._now(), call, self.thread(), self._here.entity, service))
+
+    def call_unblocked(self, call: int) -> None:
+        """The calling thread goes on after ``call_blocked``."""
+        self._sink(events.CallUnblocked(self._now(), call, self.thread()))
+
+    def logged(self, severity: Severity, logger: str, text: str) -> None:
+        """A log line was written."""
+        thread = self._here.thread or self.thread()
+        self._sink(events.Logged(self._now(), severity, logger, text, thread, self._here.entity))
+
+    def thread(self) -> int:
+        """The id of the calling thread; it appears on the trace when first asked for."""
+        here = self._here
+        if here.thread == 0:
+            here.thread = next(self._threads)
+            name = threading.current_thread().name
+            self._sink(events.ThreadAppeared(self._now(), here.thread, name))
+        return here.thread
+
+
+def _ignore(*_: Any) -> int:
+    return 0
+
+
+class SilentProbe(Probe):
+    """Records nothing, and costs next to nothing."""
+
+    visible = False
+
+    def __init__(self) -> None:
+        self._messages = count(1)
+        self._calls = count(1)
+
+    executor_made = node_made = entity_made = entity_gone = ready = dropped = waits = _ignore  # type: ignore[assignment]
+    wait_ended = callback_started = callback_ended = callback_suspended = _ignore  # type: ignore[assignment]
+    callback_resumed = callback_failed = published = service_called = _ignore  # type: ignore[assignment]
+    service_replied = call_blocked = call_unblocked = logged = thread = _ignore  # type: ignore[assignment]
+
+
+class PublishingProbe(SilentProbe):
+    """Records only what is published: the robot's driver is no part of the program, but its messages are."""
+
+    def __init__(self, program: Probe) -> None:
+        super().__init__()
+        self.message_id = program.message_id  # type: ignore[method-assign]
+        self.call_id = program.call_id  # type: ignore[method-assign]
+        self.published = program.published  # type: ignore[method-assign]
+        self.service_replied = program.service_replied  # type: ignore[method-assign]
+
+
+def _written_at(callback: Callable[..., Any] | None) -> tuple[str, str, int, int]:
+    """Name, file and first and last line of a callback; empty for one without source of its own."""
+    if callback is None:
+        return "", "", 0, 0
+    inner = callback
+    while isinstance(inner, partial):
+        inner = inner.func
+    inner = inspect.unwrap(inner)
+    name = getattr(inner, "__name__", type(inner).__name__)
+    code = getattr(inner, "__code__", None) or getattr(
+        getattr(type(inner), "__call__", None), "__code__", None
+    )
+    if code is None:
+        return name, "", 0, 0
+    lines = [line for _, _, line in code.co_lines() if line is not None]
+    return name, code.co_filename, code.co_firstlineno, max(lines, default=code.co_firstlineno)
+
+
+def _raised_at(error: BaseException) -> tuple[str, int]:
+    """File and line of the innermost frame of the learner's own code, else of the innermost frame."""
+    found = ("", 0)
+    trace = error.__traceback__
+    while trace is not None:
+        file = trace.tb_frame.f_code.co_filename
+        if not _is_ours_or_pythons(trace.tb_frame.f_globals.get("__name__", "")) or not found[0]:
+            found = (file, trace.tb_lineno)
+        trace = trace.tb_next
+    return found
+
+
+def _is_ours_or_pythons(module: str) -> bool:
+    import sys
+
+    root = module.partition(".")[0]
+    return root == "sim" or root in sys.stdlib_module_names and root != "__main__"

@@ -1,0 +1,163 @@
+"""Timers, and rates that sleep by them.
+
+The rule of the next due time is rcl's: one period after the last due time, and if that is past, forward by
+whole periods. Ticks missed meanwhile are not made up.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from sim.ros.clock import Clock
+from sim.ros.entity import Entity, Taken
+from sim.trace.events import EntityKind
+
+if TYPE_CHECKING:
+    from sim.ros.callback_groups import CallbackGroup
+    from sim.ros.host import Host
+    from sim.ros.node import Node
+
+
+def next_due(due: int, period: int, now: int) -> int:
+    """When a timer called at ``now``, due at ``due``, is due next. All in nanoseconds."""
+    following = due + period
+    if following >= now:
+        return following
+    if period == 0:
+        return now
+    missed = -(-(now - following) // period)
+    return following + missed * period
+
+
+class Timer(Entity):
+    """Calls back every ``timer_period_ns`` nanoseconds, the first time one period after its creation.
+
+    Raises:
+        ValueError: the period is negative.
+    """
+
+    kind = EntityKind.TIMER
+    rank = 0
+
+    def __init__(
+        self,
+        node: Node,
+        timer_period_ns: int,
+        callback: Callable[[], Any],
+        callback_group: CallbackGroup,
+        clock: Clock,
+        *,
+        autostart: bool = True,
+    ) -> None:
+        if timer_period_ns < 0:
+            raise ValueError("timer period must be non-negative")
+        super().__init__(node, "", callback_group)
+        self.callback = callback
+        self.clock = clock
+        self.period = timer_period_ns
+        self.due = 0
+        self._host = node.context.host
+        self._last_call = self._host.clock.now()
+        self._canceled = True
+        if autostart:
+            self.reset()
+
+    @property
+    def timer_period_ns(self) -> int:
+        """The period; a new one keeps the pending due time."""
+        return self.period
+
+    @timer_period_ns.setter
+    def timer_period_ns(self, value: int) -> None:
+        if value < 0:
+            raise ValueError("timer period must be non-negative")
+        self.period = int(value)
+
+    def cancel(self) -> None:
+        """Call back no more until ``reset``."""
+        with self._host.lock:
+            self._canceled = True
+            self.nothing_left()
+
+    def reset(self) -> None:
+        """Be due one period from now, cancelled or not."""
+        with self._host.lock:
+            self._canceled = False
+            self.nothing_left()
+            self.due = self._host.clock.now() + self.period
+            self.node._timer_set(self)
+
+    def is_canceled(self) -> bool:
+        """Whether it was cancelled."""
+        return self._canceled
+
+    def is_ready(self) -> bool:
+        """Whether it is due."""
+        return self.still_ready(self._host.clock.now())
+
+    def time_until_next_call(self) -> int | None:
+        """Nanoseconds until it is due, negative when late; None while cancelled."""
+        return None if self._canceled else self.due - self._host.clock.now()
+
+    def time_since_last_call(self) -> int:
+        """Nanoseconds since the last call, or since it was made."""
+        return self._host.clock.now() - self._last_call
+
+    def shown_callback(self) -> Callable[..., Any]:
+        """The callback."""
+        return self.callback
+
+    def still_ready(self, now: int) -> bool:
+        """Whether it is due and neither cancelled nor destroyed."""
+        return not (self._canceled or self.destroyed) and self.due <= now
+
+    def take(self, now: int) -> Taken | None:
+        """Count this call and move on to the next due time."""
+        if not self.still_ready(now):
+            return None
+        late = now - self.due
+        self.due = next_due(self.due, self.period, now)
+        self._last_call = now
+        self.nothing_left()
+        self.node._timer_set(self)
+        return Taken(None, 0, late, 0)
+
+    def invoke(self, taken: Taken) -> Any:
+        """Run the callback."""
+        return self.callback()
+
+    def destroy(self) -> None:
+        """Remove it from its node."""
+        self.node.destroy_timer(self)
+
+
+class Rate:
+    """Sleeps in step with a timer; needs somebody else to spin the node.
+
+    A tick that nobody slept for ends the next sleep at once.
+    """
+
+    def __init__(self, host: Host) -> None:
+        self._signal = host.clock.signal()
+        self._destroyed = False
+        self.timer: Timer | None = None
+
+    def tick(self) -> None:
+        """The timer's callback: let the sleeper go on."""
+        self._signal.set()
+
+    def sleep(self) -> None:
+        """Sleep until the timer's next tick.
+
+        Raises:
+            RuntimeError: the rate was destroyed.
+        """
+        if self._destroyed:
+            raise RuntimeError("Rate cannot sleep because it has been destroyed")
+        self._signal.wait(None)
+
+    def destroy(self) -> None:
+        """Let a sleeper go, and sleep no more."""
+        self._destroyed = True
+        self._signal.set()

@@ -1,0 +1,386 @@
+"""Every event that a run can put on its trace; the one vocabulary that engine, files and screen share.
+
+Times are integer nanoseconds since the run began. Ids are small integers, unique within a run and kind;
+an id is introduced by an ``…Appeared`` event before any other event uses it. Events are tiny because a
+callback writes several of them: on the wire each is a MessagePack array that starts with its tag.
+"""
+
+from enum import StrEnum
+from typing import TypeAlias
+
+import msgspec
+
+ThreadId: TypeAlias = int
+NodeId: TypeAlias = int
+GroupId: TypeAlias = int
+EntityId: TypeAlias = int
+ExecutorId: TypeAlias = int
+MessageId: TypeAlias = int
+CallId: TypeAlias = int
+
+
+class EntityKind(StrEnum):
+    """What an entity of a wait set is."""
+
+    TIMER = "timer"
+    SUBSCRIPTION = "subscription"
+    GUARD = "guard"
+    CLIENT = "client"
+    SERVICE = "service"
+    WAITABLE = "waitable"
+
+
+class GroupKind(StrEnum):
+    """How a callback group admits callbacks."""
+
+    EXCLUSIVE = "exclusive"
+    REENTRANT = "reentrant"
+    CUSTOM = "custom"
+
+
+class Reason(StrEnum):
+    """Why a ready callback does not run."""
+
+    GROUP_HELD = "group held"
+    """Its mutually exclusive group has let another callback in."""
+    NO_FREE_WORKER = "no free worker"
+    """Its group would let it in, but every thread of its executor is running a callback."""
+    NOBODY_SPINS = "nobody spins"
+    """Its node is in no executor, or that executor is not spinning."""
+
+
+class Severity(StrEnum):
+    """Severities of a log line, named as ROS prints them."""
+
+    DEBUG = "DEBUG"
+    INFO = "INFO"
+    WARN = "WARN"
+    ERROR = "ERROR"
+    FATAL = "FATAL"
+
+
+class Event(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """Something that happened in a run, at ``t`` nanoseconds after its beginning."""
+
+    t: int
+
+
+class RunStarted(Event, frozen=True, tag="run_start"):
+    """The run began; ``epoch`` (nanoseconds since 1970) plus ``t`` is the stamp that log lines show."""
+
+    target: str
+    clock: str
+    epoch: int
+
+
+class RunEnded(Event, frozen=True, tag="run_end"):
+    """The run is over: its time was up, its program returned or failed, or somebody stopped it."""
+
+    reason: str
+    failed: bool
+
+
+class ThreadAppeared(Event, frozen=True, tag="thread"):
+    """A thread of the learner's program ran its first callback or was named by its executor."""
+
+    thread: ThreadId
+    name: str
+
+
+class ExecutorAppeared(Event, frozen=True, tag="executor"):
+    """An executor was made; ``threads`` is how many callbacks it can run at once."""
+
+    executor: ExecutorId
+    kind: str
+    threads: int
+
+
+class NodeAppeared(Event, frozen=True, tag="node"):
+    """A node of the learner's program was made; ``name`` is fully qualified (``/sub_node``)."""
+
+    node: NodeId
+    name: str
+
+
+class GroupAppeared(Event, frozen=True, tag="group"):
+    """A callback group got its first entity; ``class_name`` is the Python class of the group."""
+
+    group: GroupId
+    node: NodeId
+    kind: GroupKind
+    class_name: str
+
+
+class EntityAppeared(Event, frozen=True, tag="entity"):
+    """An entity with a callback was made.
+
+    ``name`` is the topic or service (or empty), ``callback`` the function's name, ``file`` and the line
+    range where it is written. ``depth`` is the QoS depth (0 for timers), ``period`` in nanoseconds (0 for
+    others than timers).
+    """
+
+    entity: EntityId
+    node: NodeId
+    group: GroupId
+    kind: EntityKind
+    name: str
+    callback: str
+    file: str
+    first_line: int
+    last_line: int
+    depth: int
+    period: int
+
+
+class EntityGone(Event, frozen=True, tag="entity_gone"):
+    """An entity was destroyed."""
+
+    entity: EntityId
+
+
+class EntityReady(Event, frozen=True, tag="ready"):
+    """A message, request or reply arrived (or a timer fell due); ``depth`` now wait in its queue."""
+
+    entity: EntityId
+    depth: int
+    message: MessageId
+
+
+class MessageDropped(Event, frozen=True, tag="message_drop"):
+    """A full queue lost its oldest message, ``message``, to a newer one; ``depth`` stay."""
+
+    entity: EntityId
+    depth: int
+    message: MessageId
+
+
+class WaitStarted(Event, frozen=True, tag="wait_start"):
+    """A callback has been ready since ``since`` and does not run, for ``reason``.
+
+    ``holder`` is the entity whose callback is in the way (0: none). Another ``WaitStarted`` of the same
+    entity replaces the reason. ``workers_busy`` tells that no thread was free either.
+    """
+
+    entity: EntityId
+    since: int
+    reason: Reason
+    holder: EntityId
+    workers_busy: bool
+
+
+class WaitEnded(Event, frozen=True, tag="wait_end"):
+    """A callback that waited got its thread, or what it waited for is gone."""
+
+    entity: EntityId
+
+
+class CallbackStarted(Event, frozen=True, tag="callback_start"):
+    """A thread began to run an entity's callback.
+
+    Recorded on that thread, after the group let it in and the message was taken, before the callback's
+    first line. ``age`` is nanoseconds since the message was published, or how late a timer is.
+    ``depth`` is what is left in the queue.
+    """
+
+    entity: EntityId
+    thread: ThreadId
+    message: MessageId
+    age: int
+    depth: int
+
+
+class CallbackEnded(Event, frozen=True, tag="callback_end"):
+    """The callback returned or raised, and its group is free of it."""
+
+    entity: EntityId
+    thread: ThreadId
+
+
+class CallbackSuspended(Event, frozen=True, tag="callback_suspend"):
+    """A coroutine callback awaits something; its thread is free, its group still held."""
+
+    entity: EntityId
+    thread: ThreadId
+
+
+class CallbackResumed(Event, frozen=True, tag="callback_resume"):
+    """A suspended coroutine callback runs on, perhaps on another thread."""
+
+    entity: EntityId
+    thread: ThreadId
+
+
+class CallbackFailed(Event, frozen=True, tag="callback_error"):
+    """A callback raised; ``file`` and ``line`` are the innermost ones of the learner's own code."""
+
+    entity: EntityId
+    thread: ThreadId
+    error: str
+    file: str
+    line: int
+
+
+class Published(Event, frozen=True, tag="publish"):
+    """A message was published; ``entity`` is the callback that did it (0: none), ``node`` 0 for the robot."""
+
+    message: MessageId
+    topic: str
+    node: NodeId
+    entity: EntityId
+
+
+class ServiceCalled(Event, frozen=True, tag="service_call"):
+    """A request left for a service; ``entity`` is the calling callback (0: none or from outside)."""
+
+    call: CallId
+    service: str
+    entity: EntityId
+    request: str
+
+
+class ServiceReplied(Event, frozen=True, tag="service_reply"):
+    """The service's answer to a call."""
+
+    call: CallId
+    service: str
+    response: str
+
+
+class CallBlocked(Event, frozen=True, tag="blocked"):
+    """A thread stands still in ``Client.call`` until the reply comes; ``entity`` is the callback it runs."""
+
+    call: CallId
+    thread: ThreadId
+    entity: EntityId
+    service: str
+
+
+class CallUnblocked(Event, frozen=True, tag="unblocked"):
+    """``Client.call`` returned."""
+
+    call: CallId
+    thread: ThreadId
+
+
+class Logged(Event, frozen=True, tag="log"):
+    """A log line of the learner's program; ``entity`` is the callback that wrote it (0: none)."""
+
+    severity: Severity
+    logger: str
+    text: str
+    thread: ThreadId
+    entity: EntityId
+
+
+class Printed(Event, frozen=True, tag="print"):
+    """Text that the program wrote to standard output or error, one line at a time."""
+
+    text: str
+    error: bool
+
+
+class RobotMoved(Event, frozen=True, tag="robot"):
+    """Where the robot is: metres, radians; ``front`` is the true range straight ahead (inf: nothing).
+
+    ``linear`` (m/s) and ``angular`` (rad/s) are its real velocities, ``turned`` (radians, signed) and
+    ``travelled`` (metres) count from the run's beginning.
+    """
+
+    x: float
+    y: float
+    yaw: float
+    front: float
+    linear: float
+    angular: float
+    motors: bool
+    touching: bool
+    turned: float
+    travelled: float
+
+
+class Scanned(Event, frozen=True, tag="scan"):
+    """The laser's ranges over a full turn: little-endian uint16 millimetres, 0 for nothing in range.
+
+    Beam i points at -pi + i·2pi/n from straight ahead, counter-clockwise. ``message`` is the message that
+    carried it.
+    """
+
+    message: MessageId
+    ranges: bytes
+
+
+class VelocityCommanded(Event, frozen=True, tag="cmd_vel"):
+    """The robot's driver took a velocity command, in m/s and rad/s, after clamping."""
+
+    linear: float
+    angular: float
+
+
+class CommandGiven(Event, frozen=True, tag="command"):
+    """The person at the keyboard (or the command line) did something to the run, such as calling a service."""
+
+    text: str
+
+
+class Notice(Event, frozen=True, tag="notice"):
+    """The engine has something to say to the person about the run itself, in one sentence."""
+
+    severity: Severity
+    text: str
+
+
+class EventsLost(Event, frozen=True, tag="lost"):
+    """The trace could not keep up: ``count`` events in all have been thrown away so far."""
+
+    count: int
+
+
+AnyEvent: TypeAlias = (
+    RunStarted
+    | RunEnded
+    | ThreadAppeared
+    | ExecutorAppeared
+    | NodeAppeared
+    | GroupAppeared
+    | EntityAppeared
+    | EntityGone
+    | EntityReady
+    | MessageDropped
+    | WaitStarted
+    | WaitEnded
+    | CallbackStarted
+    | CallbackEnded
+    | CallbackSuspended
+    | CallbackResumed
+    | CallbackFailed
+    | Published
+    | ServiceCalled
+    | ServiceReplied
+    | CallBlocked
+    | CallUnblocked
+    | Logged
+    | Printed
+    | RobotMoved
+    | Scanned
+    | VelocityCommanded
+    | CommandGiven
+    | Notice
+    | EventsLost
+)
+
+_encoder = msgspec.msgpack.Encoder()
+_decoder = msgspec.msgpack.Decoder(list[AnyEvent])
+
+
+def encode(events: list[AnyEvent]) -> bytes:
+    """Pack a batch of events for the pipe or a file."""
+    return _encoder.encode(events)
+
+
+def decode(batch: bytes) -> list[AnyEvent]:
+    """Unpack what ``encode`` packed.
+
+    Raises:
+        msgspec.DecodeError: the bytes are no batch of events.
+    """
+    return _decoder.decode(batch)

@@ -1,0 +1,160 @@
+"""What a timeline knows about a run: the cast, what ran, what waited, and one moment of it all."""
+
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+from sim.trace.events import (
+    CallId,
+    EntityId,
+    EntityKind,
+    ExecutorId,
+    GroupId,
+    GroupKind,
+    MessageId,
+    NodeId,
+    Reason,
+    ThreadId,
+)
+
+Nanoseconds: TypeAlias = int
+
+
+@dataclass(frozen=True, slots=True)
+class Window:
+    """A stretch of time, ``start`` inclusive to ``end`` exclusive, in nanoseconds."""
+
+    start: Nanoseconds
+    end: Nanoseconds
+
+    @property
+    def length(self) -> Nanoseconds:
+        """Nanoseconds from start to end."""
+        return self.end - self.start
+
+
+@dataclass(frozen=True, slots=True)
+class Thread:
+    """A thread that runs callbacks, named as rclpy names it."""
+
+    id: ThreadId
+    name: str
+    since: Nanoseconds
+
+
+@dataclass(frozen=True, slots=True)
+class Executor:
+    """An executor and how many callbacks it can run at once."""
+
+    id: ExecutorId
+    kind: str
+    threads: int
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """A callback group; ``letter`` (A, B, …, Z, A2, …) is given in order of appearance."""
+
+    id: GroupId
+    node: NodeId
+    kind: GroupKind
+    class_name: str
+    letter: str
+
+
+@dataclass(frozen=True, slots=True)
+class Entity:
+    """Something with a callback: a timer, subscription, service, client, guard condition or waitable."""
+
+    id: EntityId
+    node: NodeId
+    group: GroupId
+    kind: EntityKind
+    name: str
+    callback: str
+    file: str
+    first_line: int
+    last_line: int
+    depth: int
+    period: Nanoseconds
+
+    @property
+    def label(self) -> str:
+        """The shortest name a person would call it by: its topic or service, else its callback."""
+        return self.name.rsplit("/", 1)[-1] or self.callback
+
+
+@dataclass(slots=True)
+class Span:
+    """One call of a callback on a thread; ``end`` is None while it runs."""
+
+    start: Nanoseconds
+    end: Nanoseconds | None
+    entity: EntityId
+    thread: ThreadId
+    message: MessageId
+    age: Nanoseconds
+    error: str = ""
+
+    def end_at(self, now: Nanoseconds) -> Nanoseconds:
+        """The end, or ``now`` for a call that still runs."""
+        return now if self.end is None else self.end
+
+
+@dataclass(slots=True)
+class Wait:
+    """A stretch in which a ready callback did not run, for one reason; ``end`` is None while it lasts.
+
+    ``since`` is when the callback became ready: waits that follow each other for changing reasons share it.
+    """
+
+    start: Nanoseconds
+    end: Nanoseconds | None
+    since: Nanoseconds
+    entity: EntityId
+    reason: Reason
+    holder: EntityId
+    workers_busy: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Queue:
+    """A queue at one moment: how many messages wait and how many the run has lost there so far."""
+
+    depth: int
+    dropped: int
+    oldest: Nanoseconds | None
+    """When the message that is next was published or arrived; None for an empty queue."""
+
+
+@dataclass(slots=True)
+class Call:
+    """A service call; the reply is None while it is outstanding."""
+
+    id: CallId
+    service: str
+    caller: EntityId
+    request: str
+    sent: Nanoseconds
+    replied: Nanoseconds | None = None
+    response: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Mark:
+    """A point in time worth a sign on the axis: a command given, a call, a reply, a notice."""
+
+    at: Nanoseconds
+    kind: str
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
+class Moment:
+    """All that a screen shows of one instant ``at``: who runs, who waits and why, what is queued."""
+
+    at: Nanoseconds
+    running: dict[ThreadId, Span] = field(default_factory=dict)
+    waiting: dict[EntityId, Wait] = field(default_factory=dict)
+    queues: dict[EntityId, Queue] = field(default_factory=dict)
+    holders: dict[GroupId, tuple[EntityId, ...]] = field(default_factory=dict)
+    pending_calls: tuple[Call, ...] = ()

@@ -1,0 +1,194 @@
+"""What a run comes to in figures: its callbacks, threads, service calls and the robot."""
+
+import heapq
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import groupby, pairwise
+
+from sim.trace.events import EntityId, RobotMoved
+from sim.trace.model import Call, Entity, Nanoseconds, Span, Wait, Window
+from sim.trace.timeline import Timeline
+from sim.trace.words import spoken_name, why_waiting
+
+TURNING = 0.02
+"""From how many rad/s on the robot counts as turning, and not as drifting while it drives straight."""
+TURN = 0.5
+"""From how many radians in one direction on it counts as a turn."""
+
+
+@dataclass(frozen=True, slots=True)
+class LongestWait:
+    """The longest that a ready callback was kept from running; ``why`` is what kept it most of that time."""
+
+    length: Nanoseconds
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class CallbackFigures:
+    """What became of one callback.
+
+    ``running`` is the share (0 upwards; above 1 if calls overlap) of the run that its calls took;
+    ``late`` the age of the oldest message it took, or how late a timer was at worst.
+    """
+
+    entity: Entity
+    name: str
+    group: str
+    calls: int
+    running: float
+    longest_wait: LongestWait | None
+    late: Nanoseconds
+    drops: int
+    errors: int
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceFigures:
+    """Calls of one service; ``round_trips`` are the times from request to reply of those answered."""
+
+    service: str
+    calls: int
+    round_trips: tuple[Nanoseconds, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RobotFigures:
+    """How the robot got about: turns with their radians in all, metres travelled, and where it is now."""
+
+    turns: int
+    turned: float
+    travelled: float
+    x: float
+    y: float
+    yaw: float
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """A run in figures; ``robot`` is None for a run without one."""
+
+    target: str
+    clock: str
+    length: Nanoseconds
+    ending: str
+    lost: int
+    callbacks: tuple[CallbackFigures, ...]
+    threads_used: int
+    threads_at_once: int
+    services: tuple[ServiceFigures, ...]
+    robot: RobotFigures | None
+
+
+def summarise(timeline: Timeline) -> Summary:
+    """The figures of a run as far as its timeline goes."""
+    whole = Window(min(0, timeline.end), timeline.end + 1)
+    spans = [timeline.spans_on(thread, whole) for thread in timeline.threads]
+    return Summary(
+        target=timeline.started.target if timeline.started else "",
+        clock=timeline.started.clock if timeline.started else "",
+        length=timeline.end,
+        ending=timeline.ended.reason if timeline.ended else "",
+        lost=timeline.lost,
+        callbacks=tuple(_callbacks(timeline, whole)),
+        threads_used=sum(bool(of_thread) for of_thread in spans),
+        threads_at_once=_most_at_once(span for of_thread in spans for span in of_thread),
+        services=tuple(_services(timeline.calls)),
+        robot=_robot(timeline, whole),
+    )
+
+
+def _callbacks(timeline: Timeline, whole: Window) -> Iterator[CallbackFigures]:
+    names = _names(timeline)
+    for entity in timeline.entities.values():
+        spans = timeline.spans_of(entity.id, whole)
+        waits = timeline.waits_of(entity.id, whole)
+        drops = timeline.drops_of(entity.id, whole)
+        if not (entity.callback or spans or waits or drops):
+            continue
+        group = timeline.groups.get(entity.group)
+        running = sum(span.end_at(timeline.end) - span.start for span in spans)
+        yield CallbackFigures(
+            entity=entity,
+            name=names[entity.id],
+            group=group.letter if group else "",
+            calls=timeline.calls_of(entity.id, whole),
+            running=running / timeline.end if timeline.end else 0.0,
+            longest_wait=_longest(waits, timeline),
+            late=max((span.age for span in spans), default=0),
+            drops=drops,
+            errors=sum(bool(span.error) for span in spans),
+        )
+
+
+def _names(timeline: Timeline) -> dict[EntityId, str]:
+    """What each entity is called: its callback, with its topic, service or node where others share that."""
+    spoken = {entity.id: spoken_name(entity) for entity in timeline.entities.values()}
+    shared = Counter(spoken.values())
+    return {
+        entity.id: spoken[entity.id]
+        if shared[spoken[entity.id]] == 1
+        else f"{spoken[entity.id]} ({entity.name or timeline.nodes.get(entity.node, '')})"
+        for entity in timeline.entities.values()
+    }
+
+
+def _longest(waits: Iterable[Wait], timeline: Timeline) -> LongestWait | None:
+    """The longest series of waits; those of one series share the time since when they are ready."""
+    longest: LongestWait | None = None
+    for _, each in groupby(waits, key=lambda wait: wait.since):
+        series = list(each)
+        ends = [timeline.end if wait.end is None else wait.end for wait in series]
+        length = max(ends) - series[0].start
+        if length > (longest.length if longest else 0):
+            shares: defaultdict[str, int] = defaultdict(int)
+            for wait, end in zip(series, ends, strict=True):
+                shares[why_waiting(wait, timeline)] += end - wait.start
+            longest = LongestWait(length, max(shares, key=shares.__getitem__))
+    return longest
+
+
+def _most_at_once(spans: Iterable[Span]) -> int:
+    """The most threads that ran callbacks at the same time."""
+    most = 0
+    running: list[tuple[float, int]] = []
+    for span in sorted(spans, key=lambda span: span.start):
+        while running and running[0][0] <= span.start:
+            heapq.heappop(running)
+        heapq.heappush(running, (float("inf") if span.end is None else span.end, span.thread))
+        most = max(most, len({thread for _, thread in running}))
+    return most
+
+
+def _services(calls: Iterable[Call]) -> Iterator[ServiceFigures]:
+    by_service: defaultdict[str, list[Call]] = defaultdict(list)
+    for call in calls:
+        by_service[call.service].append(call)
+    for service, made in by_service.items():
+        answered = tuple(call.replied - call.sent for call in made if call.replied is not None)
+        yield ServiceFigures(service, len(made), answered)
+
+
+def _robot(timeline: Timeline, whole: Window) -> RobotFigures | None:
+    trail = timeline.trail(whole)
+    if not trail:
+        return None
+    turns = [abs(angle) for angle in _stretches(trail) if abs(angle) > TURN]
+    last = trail[-1]
+    return RobotFigures(len(turns), sum(turns), last.travelled, last.x, last.y, last.yaw)
+
+
+def _stretches(trail: Iterable[RobotMoved]) -> Iterator[float]:
+    """The signed angles, in radians, of the stretches in which the robot turned in one direction."""
+    for direction, steps in groupby(pairwise(trail), key=lambda step: _direction(*step)):
+        if direction:
+            yield sum(after.turned - before.turned for before, after in steps)
+
+
+def _direction(before: RobotMoved, after: RobotMoved) -> int:
+    """1 for turning left, -1 for turning right, 0 for neither."""
+    angle = after.turned - before.turned
+    if abs(angle) < TURNING * (after.t - before.t) / 1e9 or angle == 0.0:
+        return 0
+    return 1 if angle > 0 else -1

@@ -1,0 +1,160 @@
+"""Finding classes by name, and building no more than asked for."""
+
+from __future__ import annotations
+
+import dataclasses
+import threading
+from pathlib import Path
+
+import pytest
+from rosbags.typesys import Stores, get_typestore
+
+from sim.ros.interfaces import (
+    DefinitionError,
+    Kind,
+    UnknownInterfaceError,
+    add_definitions,
+    message,
+    message_of_type,
+    names,
+    packages,
+    service,
+)
+from sim.ros.interfaces.interface_definition import Definition
+from sim.ros.interfaces.jazzy import FILLER_FIELD, JazzyMessages, jazzy_tables
+from sim.ros.interfaces.registry import Registry
+
+
+class Recording(JazzyMessages):
+    """The Jazzy messages, with a list of those asked for."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.asked: list[str] = []
+
+    def message(self, package: str, name: str) -> Definition:
+        self.asked.append(name)
+        return super().message(package, name)
+
+
+def every(kind: Kind) -> list[tuple[str, str]]:
+    return [(package, name) for package in sorted(packages()) for name in names(package, kind)]
+
+
+def test_a_class_is_built_once_with_what_it_contains_and_nothing_else() -> None:
+    source = Recording()
+    registry = Registry(source)
+    assert source.asked == []
+    twist = registry.message("geometry_msgs", "Twist")
+    assert registry.message("geometry_msgs", "Twist") is twist
+    assert source.asked == ["Twist", "Vector3"]
+
+
+def test_threads_asking_at_once_get_one_class() -> None:
+    registry = Registry(JazzyMessages())
+    found: list[object] = []
+    start = threading.Barrier(8)
+
+    def ask() -> None:
+        start.wait()
+        found.append(registry.message("nav_msgs", "Odometry"))
+
+    threads = [threading.Thread(target=ask) for _ in range(8)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert len(found) == 8
+    assert len(set(map(id, found))) == 1
+
+
+def test_the_tables_are_those_of_rosbags_jazzy_store() -> None:
+    assert jazzy_tables() == get_typestore(Stores.ROS2_JAZZY).fielddefs
+
+
+def test_reading_the_tables_leaves_the_classes_of_rosbags_whole() -> None:
+    jazzy_tables.cache_clear()
+    jazzy_tables()
+    assert all(dataclasses.is_dataclass(cls) for cls in get_typestore(Stores.ROS2_JAZZY).types.values())
+
+
+def test_every_jazzy_message_is_there() -> None:
+    assert {f"{package}/msg/{name}" for package, name in every("msg")} >= set(jazzy_tables())
+
+
+@pytest.mark.parametrize(("package", "name"), every("msg"))
+def test_every_message_can_be_made(package: str, name: str) -> None:
+    cls = message(package, name)
+    assert cls() == cls()
+    assert FILLER_FIELD not in repr(cls())
+
+
+@pytest.mark.parametrize(("package", "name"), every("srv"))
+def test_every_service_has_request_and_response(package: str, name: str) -> None:
+    found = service(package, name)
+    assert repr(found.Request()).startswith(f"{package}.srv.{name}_Request(")
+    assert repr(found.Response()).startswith(f"{package}.srv.{name}_Response(")
+
+
+def test_the_services_of_the_lessons_and_of_parameters_are_there() -> None:
+    assert names("std_srvs", "srv") == ("Empty", "SetBool", "Trigger")
+    assert names("example_interfaces", "srv") == ("AddTwoInts", "SetBool", "Trigger")
+    assert len(names("rcl_interfaces", "srv")) == 8
+
+
+def test_a_service_class_cannot_be_instantiated() -> None:
+    set_bool = service("std_srvs", "SetBool")
+    with pytest.raises(NotImplementedError):
+        set_bool()
+    assert set_bool.__name__ == "SetBool"
+    assert set_bool.__module__ == "std_srvs.srv._set_bool"
+
+
+def test_constants_and_defaults_of_services_are_kept() -> None:
+    assert service("nav_msgs", "LoadMap").Response.RESULT_UNDEFINED_FAILURE == 255
+    assert service("type_description_interfaces", "GetTypeDescription").Request().include_type_sources is True
+
+
+def test_full_names_lead_to_the_same_classes() -> None:
+    assert message_of_type("std_msgs/msg/Int32") is message("std_msgs", "Int32")
+    assert message_of_type("std_srvs/srv/SetBool_Request") is service("std_srvs", "SetBool").Request
+    assert message_of_type("std_srvs/srv/SetBool_Response") is service("std_srvs", "SetBool").Response
+
+
+@pytest.mark.parametrize("name", ["Int32", "std_msgs/Int32", "std_msgs/action/Int32", "std_srvs/srv/SetBool"])
+def test_a_name_of_another_form_is_refused(name: str) -> None:
+    with pytest.raises(UnknownInterfaceError, match=f"^{name!r} is not the full name of a message"):
+        message_of_type(name)
+
+
+def test_unknown_names_lead_to_the_nearest() -> None:
+    with pytest.raises(
+        UnknownInterfaceError, match="^there is no package 'std_mgs'; did you mean 'std_msgs'?"
+    ):
+        message("std_mgs", "Int32")
+    with pytest.raises(
+        UnknownInterfaceError, match="^std_msgs has no message 'Int33'; did you mean 'Int32'?"
+    ):
+        message("std_msgs", "Int33")
+    with pytest.raises(
+        UnknownInterfaceError, match="^std_srvs has no service 'SetBol'; did you mean 'SetBool'?"
+    ):
+        service("std_srvs", "SetBol")
+    with pytest.raises(UnknownInterfaceError, match="^there is no package 'qqq'$"):
+        names("qqq", "msg")
+
+
+def test_a_service_asked_for_as_a_message_is_told_apart() -> None:
+    with pytest.raises(
+        UnknownInterfaceError, match="^std_srvs has 'SetBool' as a service, not as a message$"
+    ):
+        message("std_srvs", "SetBool")
+
+
+def test_a_folder_may_not_redefine_what_is_known(tmp_path: Path) -> None:
+    file = tmp_path / "std_msgs" / "msg" / "Int32.msg"
+    file.parent.mkdir(parents=True)
+    file.write_text("int64 data\n")
+    with pytest.raises(DefinitionError, match="^std_msgs/msg/Int32 is already defined elsewhere$"):
+        add_definitions(tmp_path)
+    assert message("std_msgs", "Int32").get_fields_and_field_types() == {"data": "int32"}

@@ -1,0 +1,104 @@
+"""The lessons that are there, their order, and finding one by its id."""
+
+import subprocess
+import sys
+
+import pytest
+
+from lessons.catalogue import ROOT, UnknownLesson, find, lessons
+from lessons.lesson import Lesson
+
+every_lesson = pytest.mark.parametrize("lesson", lessons(), ids=lambda lesson: lesson.id)
+
+KEYS = {"s", "S", "space", "t", "r"}
+
+
+def test_the_lessons_stand_in_teaching_order() -> None:
+    assert [lesson.id for lesson in lessons()] == [
+        "single-thread",
+        "shared-group",
+        "split-groups",
+        "exclusive-2-threads",
+        "reentrant-2-threads",
+        "reentrant-1-thread",
+    ]
+
+
+def test_the_lessons_are_numbered_without_a_gap() -> None:
+    assert [lesson.number for lesson in lessons()] == list(range(1, len(lessons()) + 1))
+
+
+def test_every_lesson_folder_is_in_the_catalogue() -> None:
+    folders = {path.parent for path in ROOT.glob("unit*/*/node.py")}
+    assert folders == {lesson.folder for lesson in lessons()}
+
+
+def test_a_lesson_is_found_by_its_id() -> None:
+    for lesson in lessons():
+        assert find(lesson.id) is lesson
+
+
+@pytest.mark.parametrize(
+    ("asked", "nearest"),
+    [
+        ("split-group", "split-groups"),
+        ("SINGLE-THREAD", "single-thread"),
+        ("reentrant-1-threads", "reentrant-1-thread"),
+        ("exclusive", "exclusive-2-threads"),
+    ],
+)
+def test_an_unknown_id_is_answered_with_the_nearest(asked: str, nearest: str) -> None:
+    with pytest.raises(UnknownLesson) as caught:
+        find(asked)
+    assert str(caught.value) == (
+        f"No lesson is called '{asked}'; the nearest is '{nearest}', and 'cbtui list' shows all."
+    )
+
+
+@pytest.mark.parametrize("asked", ["", "§", "no such thing\n"])
+def test_an_id_like_no_other_still_gets_one_line(asked: str) -> None:
+    with pytest.raises(UnknownLesson, match="'cbtui list' shows all") as caught:
+        find(asked)
+    assert len(str(caught.value).splitlines()) == 1
+
+
+@every_lesson
+def test_a_guide_fits_beside_the_lanes(lesson: Lesson) -> None:
+    lines = lesson.guide.splitlines()
+    assert lines[0] == f"# {lesson.title}"
+    assert 25 <= len(lines) <= 40
+
+
+@every_lesson
+def test_a_guide_leads_on_to_the_next_lesson(lesson: Lesson) -> None:
+    following = [other.title for other in lessons() if other.number == lesson.number + 1]
+    for title in following:
+        assert f"**Next:** *{title}*" in lesson.guide
+
+
+@every_lesson
+def test_what_to_try_names_keys_that_the_guide_names_too(lesson: Lesson) -> None:
+    assert lesson.tries
+    for tried in lesson.tries:
+        assert tried.key in KEYS
+        assert f"`{tried.key}`" in lesson.guide
+
+
+@every_lesson
+def test_what_is_read_in_one_line_fits_in_one_line(lesson: Lesson) -> None:
+    for text in (lesson.title, lesson.executor, lesson.groups):
+        assert len(text) <= 24
+    assert len(lesson.teaches) <= 100
+    assert lesson.teaches.endswith(".")
+
+
+def test_listing_the_lessons_imports_nothing_heavy() -> None:
+    heavy = {"textual", "rich", "numpy", "rosbags", "pybullet", "attrs", "asyncio"}
+    code = f"""
+import sys
+from lessons.catalogue import lessons
+lessons()
+print(sorted({heavy!r} & set(sys.modules)))
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == "[]"
