@@ -36,7 +36,10 @@ class Session:
         context = multiprocessing.get_context("spawn")
         self._pipe, self._far_end = context.Pipe()
         self._process: BaseProcess = context.Process(
-            target=_engine, args=(msgspec.msgpack.encode(setup), self._far_end), name="cbtui-engine", daemon=True
+            target=_engine,
+            args=(msgspec.msgpack.encode(setup), self._far_end),
+            name="cbtui-engine",
+            daemon=True,
         )
         self._reader = threading.Thread(target=self._read, name="trace-reader", daemon=True)
 

@@ -96,8 +96,8 @@ class Row:
         self.inks[start : start + len(cells)] = [ink] * len(cells)
 
     def blank(self, start: int, end: int) -> bool:
-        """Tell whether the columns from ``start`` to before ``end`` lie in the row and are empty."""
-        return start >= 0 and end <= len(self.cells) and all(cell == " " for cell in self.cells[start:end])
+        """Tell whether the columns from ``start`` to before ``end`` lie in the row and are untouched."""
+        return start >= 0 and end <= len(self.cells) and all(ink is BLANK for ink in self.inks[start:end])
 
     def runs(self) -> list[Run]:
         """Return the row as runs of one ink each."""

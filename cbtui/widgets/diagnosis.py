@@ -79,7 +79,9 @@ def _latest_notice(timeline: Timeline, at: Nanoseconds) -> Notice | None:
 def _of_waits(waits: list[Wait], moment: Moment, timeline: Timeline) -> Diagnosis:
     longest = waits[0]
     waited = moment.at - longest.since
-    others = f"; {len(waits) - 1} more wait" if len(waits) > 2 else "; 1 more waits" if len(waits) == 2 else ""
+    others = (
+        f"; {len(waits) - 1} more wait" if len(waits) > 2 else "; 1 more waits" if len(waits) == 2 else ""
+    )
     text = f"{name_of(longest.entity, timeline)} waits {duration(waited)}: {_why(longest, moment, timeline)}"
     return Diagnosis(text + others, Weight.TROUBLE if waited >= _SERIOUS else Weight.WAITS)
 

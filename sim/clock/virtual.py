@@ -104,7 +104,7 @@ class VirtualClock:
         self.before_jump: Callable[[], None] = _nothing
         """Called whenever time is about to pass, on whichever thread is at hand; it must not wait."""
         self.steps = 0
-        """How often a thread came to a wait; a run whose steps stand still, and which does not rest, is stuck."""
+        """How often a thread came to a wait; a run that neither takes steps nor rests is stuck."""
         self.rests = False
         """Whether the run waits for its pace, for the end of a pause, or for something from outside."""
         self.current = VirtualThread("MainThread")
@@ -165,7 +165,7 @@ class VirtualClock:
             Stopped: the run was stopped, and this is another thread.
         """
         me = self.current
-        if self._stopping:
+        if self._stopped():
             return self._wind_up(me)
         me.waiting = True
         me.woken = False
@@ -173,9 +173,7 @@ class VirtualClock:
         if deadline is not None:
             heappush(self._deadlines, (deadline, me.current_wait, me))
         self._hand_on(me)
-        if self._stopping:
-            return self._wind_up(me)
-        return me.woken
+        return self._wind_up(me) if self._stopped() else me.woken
 
     def unpark(self, thread: VirtualThread) -> None:
         """Let a parked thread run again, after those that can run already; else nothing happens."""
@@ -191,7 +189,7 @@ class VirtualClock:
             self._outside.notify()
 
     def set_speed(self, speed: float | None) -> None:
-        """Pass ``speed`` virtual seconds per real second (None: as many as possible); call through ``inject``."""
+        """Pass ``speed`` virtual seconds per real second, None: all it can. Call it through ``inject``."""
         with self._outside:
             self._anchor_at(self._paced_now())
             self._speed = speed
@@ -215,6 +213,9 @@ class VirtualClock:
         self._stopping = True
         for thread in sorted(self._threads, key=lambda each: (not each.is_main, each.current_wait)):
             self.unpark(thread)
+
+    def _stopped(self) -> bool:
+        return self._stopping
 
     def _wind_up(self, me: VirtualThread) -> bool:
         if not me.is_main:

@@ -37,7 +37,7 @@ class Stop(msgspec.Struct, frozen=True, tag="stop"):
 Command: TypeAlias = Pause | Resume | SetSpeed | CallService | ResetWorld | Stop
 
 _encoder = msgspec.msgpack.Encoder()
-_decoder = msgspec.msgpack.Decoder(Command)
+_decoder: msgspec.msgpack.Decoder[Command] = msgspec.msgpack.Decoder(Command)
 
 
 def encode(command: Command) -> bytes:

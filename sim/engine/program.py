@@ -4,6 +4,7 @@ import runpy
 import sys
 import threading
 import traceback
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,6 +22,7 @@ class Outcome:
 def run_program(path: str, arguments: tuple[str, ...]) -> Outcome:
     """Run the file in this thread, and wait for the threads that it leaves."""
     sys.argv = [path, *arguments]
+    warnings.formatwarning = _as_short_warning
     sys.path.insert(0, str(Path(path).parent))
     try:
         runpy.run_path(path, run_name="__main__")
@@ -33,6 +35,14 @@ def run_program(path: str, arguments: tuple[str, ...]) -> Outcome:
         _print_traceback(error, path)
         return Outcome(_failure(error, path), failed=True)
     return Outcome("the program returned", failed=False)
+
+
+def _as_short_warning(
+    message: Warning | str, category: type[Warning], filename: str, lineno: int, line: str | None = None
+) -> str:
+    """A warning as Python prints it, but with the file's name alone."""
+    source = f"\n  {line.strip()}" if line else ""
+    return f"{Path(filename).name}:{lineno}: {category.__name__}: {message}{source}\n"
 
 
 def _join_left_threads() -> None:

@@ -1,4 +1,4 @@
-"""Service calls from outside the program: what ``ros2 service call`` would send, sent at a moment of the run."""
+"""Service calls from outside the program, as ``ros2 service call`` would send them."""
 
 from collections.abc import Callable
 from typing import Any

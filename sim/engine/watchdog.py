@@ -55,7 +55,9 @@ class Watchdog:
         while frame is not None:
             file = frame.f_code.co_filename
             module = frame.f_globals.get("__name__", "").partition(".")[0]
-            if module not in {"sim", "runpy"} and module not in sys.stdlib_module_names or module == "__main__":
+            if (
+                module not in {"sim", "runpy"} and module not in sys.stdlib_module_names
+            ) or module == "__main__":
                 place = f"{Path(file).name}:{frame.f_lineno}, in {frame.f_code.co_name}"
                 break
             frame = frame.f_back

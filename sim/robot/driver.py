@@ -26,13 +26,13 @@ TICK = 0.05
 """Seconds between two measurements: 20 Hz."""
 
 _LATENCY = 3_000_000
-"""Nanoseconds from a tick to the odometry, and from there to the scan: what a driver takes to read them."""
+"""Nanoseconds from a tick to the odometry, and from there to the scan: reading a sensor takes time."""
 
 _SENSOR_QOS = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class Driver:
-    """Drives one robot until the host's time ends. ``record`` takes what the trace is to know of the robot."""
+"""Nanoseconds from a tick to the odometry, and from there to the scan."""
 
     def __init__(self, host: Host, record: Callable[[AnyEvent], None]) -> None:
         """Build the world.
@@ -43,7 +43,7 @@ class Driver:
         self._host = host
         self._record = record
         self._world = World()
-        self._context = Context(host=host, probe=PublishingProbe(host.probe))
+        self._context = Context(host=host, probe=PublishingProbe(host.clock, host.probe))
         self._context.init([])
         self._node = Node("robot_driver", context=self._context)
         self._twist = message("geometry_msgs", "Twist")

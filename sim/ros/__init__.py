@@ -12,7 +12,13 @@ from sim.ros.context import Context
 from sim.ros.executors import Executor, SingleThreadedExecutor
 from sim.ros.node import Node
 from sim.ros.task import Future
-from sim.ros.utilities import get_default_context, get_rmw_implementation_identifier, ok, shutdown, try_shutdown
+from sim.ros.utilities import (
+    get_default_context,
+    get_rmw_implementation_identifier,
+    ok,
+    shutdown,
+    try_shutdown,
+)
 
 __all__ = [
     "Context",

@@ -90,7 +90,9 @@ class Client(Entity):
             self._pending_requests[call] = future
             future.add_done_callback(self.remove_pending_request)
             self._probe.service_called(call, self.name, copy)
-            outgoing = Request(copy, call, self._host.clock.now(), lambda response: self._arrive(call, response))
+            outgoing = Request(
+                copy, call, self._host.clock.now(), lambda response: self._arrive(call, response)
+            )
             self._host.network.send_request(self.name, self.srv_type, outgoing)
         return future
 

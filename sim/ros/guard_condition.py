@@ -19,9 +19,7 @@ class GuardCondition(Entity):
     kind = EntityKind.GUARD
     rank = 2
 
-    def __init__(
-        self, node: Node, callback: Callable[[], Any] | None, callback_group: CallbackGroup
-    ) -> None:
+    def __init__(self, node: Node, callback: Callable[[], Any] | None, callback_group: CallbackGroup) -> None:
         super().__init__(node, "", callback_group)
         self.callback = callback
         self._host = node.context.host

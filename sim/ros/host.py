@@ -57,7 +57,7 @@ def current_host() -> Host:
     with _making:
         if _host is None:
             clock = RealClock()
-            _host = Host(clock=clock, probe=SilentProbe())
+            _host = Host(clock=clock, probe=SilentProbe(clock))
         return _host
 
 

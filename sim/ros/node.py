@@ -43,7 +43,9 @@ class Node(WaitsExplained):
         InvalidNodeNameException, InvalidNamespaceException: a name breaks the rules.
     """
 
-    def __init__(self, node_name: str, *, context: Context | None = None, namespace: str | None = None) -> None:
+    def __init__(
+        self, node_name: str, *, context: Context | None = None, namespace: str | None = None
+    ) -> None:
         self._context = get_default_context() if context is None else context
         self._context.require_ok()
         space = "/" + (namespace or "").strip("/")
@@ -172,7 +174,7 @@ class Node(WaitsExplained):
         topic: str,
         qos_profile: QoSProfile | int,
         *,
-        callback_group: CallbackGroup | None = None,  # noqa: ARG002 -- of its events, which never come here
+        callback_group: CallbackGroup | None = None,
     ) -> Publisher:
         """Make a publisher; ``qos_profile`` may be a depth."""
         publisher = Publisher(self, msg_type, self.resolve_topic_name(topic), as_profile(qos_profile))

@@ -5,6 +5,7 @@ host's lock held or touches nothing shared, and does no more than append to the 
 """
 
 import inspect
+import sys
 import threading
 from collections.abc import Callable
 from functools import partial
@@ -16,7 +17,6 @@ from sim.trace.events import AnyEvent, GroupKind, Reason, Severity
 
 if TYPE_CHECKING:
     from sim.clock import Clock
-    from sim.ros.callback_groups import CallbackGroup
     from sim.ros.entity import Entity
 
 
@@ -188,34 +188,41 @@ class Probe:
         return here.thread
 
 
-def _ignore(*_: Any) -> int:
-    return 0
-
-
 class SilentProbe(Probe):
-    """Records nothing, and costs next to nothing."""
+    """Records nothing."""
 
     visible = False
 
-    def __init__(self) -> None:
-        self._messages = count(1)
-        self._calls = count(1)
-
-    executor_made = node_made = entity_made = entity_gone = ready = dropped = waits = _ignore  # type: ignore[assignment]
-    wait_ended = callback_started = callback_ended = callback_suspended = _ignore  # type: ignore[assignment]
-    callback_resumed = callback_failed = published = service_called = _ignore  # type: ignore[assignment]
-    service_replied = call_blocked = call_unblocked = logged = thread = _ignore  # type: ignore[assignment]
+    def __init__(self, clock: "Clock") -> None:
+        super().__init__(clock, _forget)
 
 
 class PublishingProbe(SilentProbe):
-    """Records only what is published: the robot's driver is no part of the program, but its messages are."""
+    """Records only messages and replies: the robot's driver is no part of the program, what it sends is."""
 
-    def __init__(self, program: Probe) -> None:
-        super().__init__()
-        self.message_id = program.message_id  # type: ignore[method-assign]
-        self.call_id = program.call_id  # type: ignore[method-assign]
-        self.published = program.published  # type: ignore[method-assign]
-        self.service_replied = program.service_replied  # type: ignore[method-assign]
+    def __init__(self, clock: "Clock", program: Probe) -> None:
+        super().__init__(clock)
+        self._program = program
+
+    def message_id(self) -> int:
+        """A new id for a message, among the program's."""
+        return self._program.message_id()
+
+    def call_id(self) -> int:
+        """A new id for a service call, among the program's."""
+        return self._program.call_id()
+
+    def published(self, message: int, topic: str, node: int) -> None:
+        """A message left a publisher; the trace names no node for it."""
+        self._program.published(message, topic, 0)
+
+    def service_replied(self, call: int, service: str, response: object) -> None:
+        """A service answered."""
+        self._program.service_replied(call, service, response)
+
+
+def _forget(_event: AnyEvent) -> None:
+    """Take an event that nobody wants."""
 
 
 def _written_at(callback: Callable[..., Any] | None) -> tuple[str, str, int, int]:
@@ -227,9 +234,7 @@ def _written_at(callback: Callable[..., Any] | None) -> tuple[str, str, int, int
         inner = inner.func
     inner = inspect.unwrap(inner)
     name = getattr(inner, "__name__", type(inner).__name__)
-    code = getattr(inner, "__code__", None) or getattr(
-        getattr(type(inner), "__call__", None), "__code__", None
-    )
+    code = getattr(inner, "__code__", None) or getattr(type(inner).__call__, "__code__", None)
     if code is None:
         return name, "", 0, 0
     lines = [line for _, _, line in code.co_lines() if line is not None]
@@ -249,7 +254,5 @@ def _raised_at(error: BaseException) -> tuple[str, int]:
 
 
 def _is_ours_or_pythons(module: str) -> bool:
-    import sys
-
     root = module.partition(".")[0]
-    return root == "sim" or root in sys.stdlib_module_names and root != "__main__"
+    return root == "sim" or (root in sys.stdlib_module_names and root != "__main__")

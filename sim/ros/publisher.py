@@ -7,7 +7,7 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 from sim.ros.exceptions import InvalidHandle
-from sim.ros.interfaces import copy_message
+from sim.ros.interfaces import Message, copy_message
 from sim.ros.qos import DurabilityPolicy, QoSProfile
 from sim.ros.subscription import Delivery
 
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 class Publisher:
     """Sends messages of one type to every matching subscription of a topic. Thread-safe."""
 
-    def __init__(self, node: Node, msg_type: type, topic: str, qos_profile: QoSProfile) -> None:
+    def __init__(self, node: Node, msg_type: type[Message], topic: str, qos_profile: QoSProfile) -> None:
         self.node = node
         self.msg_type = msg_type
         self.topic = topic

@@ -77,7 +77,10 @@ QoSDurabilityPolicy = DurabilityPolicy
 QoSLivelinessPolicy = LivelinessPolicy
 
 
-@dataclass(slots=True, kw_only=True, unsafe_hash=False)
+_UNSPECIFIED = Duration()
+
+
+@dataclass(slots=True, init=False)
 class QoSProfile:
     """How a publisher, subscription, service or client treats its messages.
 
@@ -89,10 +92,10 @@ class QoSProfile:
     depth: int = 0
     reliability: ReliabilityPolicy = ReliabilityPolicy.RELIABLE
     durability: DurabilityPolicy = DurabilityPolicy.VOLATILE
-    lifespan: Duration = Duration()
-    deadline: Duration = Duration()
+    lifespan: Duration = _UNSPECIFIED
+    deadline: Duration = _UNSPECIFIED
     liveliness: LivelinessPolicy = LivelinessPolicy.SYSTEM_DEFAULT
-    liveliness_lease_duration: Duration = Duration()
+    liveliness_lease_duration: Duration = _UNSPECIFIED
     avoid_ros_namespace_conventions: bool = False
 
     def __init__(self, **settings: Any) -> None:
@@ -124,10 +127,10 @@ _DEFAULTS: dict[str, Any] = {
     "depth": 0,
     "reliability": ReliabilityPolicy.RELIABLE,
     "durability": DurabilityPolicy.VOLATILE,
-    "lifespan": Duration(),
-    "deadline": Duration(),
+    "lifespan": _UNSPECIFIED,
+    "deadline": _UNSPECIFIED,
     "liveliness": LivelinessPolicy.SYSTEM_DEFAULT,
-    "liveliness_lease_duration": Duration(),
+    "liveliness_lease_duration": _UNSPECIFIED,
     "avoid_ros_namespace_conventions": False,
 }
 

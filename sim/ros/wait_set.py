@@ -1,4 +1,4 @@
-"""Which callbacks are ready, and in which order they are served: rclpy's rules, free of threads and waiting."""
+"""Which callbacks are ready, and in which order they are served: rclpy's rules, without threads."""
 
 from __future__ import annotations
 
@@ -25,7 +25,9 @@ def snapshot(nodes: Iterable[Node], now: int) -> deque[Entity]:
     for node in nodes:
         pending = node._collect_due(now)
         if pending:
-            let_in = [each for each in pending if not each.handed_out and each.callback_group.can_execute(each)]
+            let_in = [
+                each for each in pending if not each.handed_out and each.callback_group.can_execute(each)
+            ]
             let_in.sort(key=_serving_order)
             ready.extend(let_in)
     return ready

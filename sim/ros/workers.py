@@ -138,4 +138,3 @@ class WorkerPool:
             self._dismissed = True
             for worker in self._workers:
                 worker.signal.set()
-

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from array import array
 from typing import Any
 
@@ -10,6 +11,7 @@ from hypothesis import strategies as st
 
 from sim.ros.interfaces import Message, message
 from sim.ros.interfaces.field_types import (
+    FLOAT_LIMITS,
     INTEGER_LIMITS,
     Array,
     BasicType,
@@ -59,4 +61,9 @@ def _basic(typename: str) -> st.SearchStrategy[Any]:
         return st.binary(min_size=1, max_size=1)
     if typename == "boolean":
         return st.booleans()
-    return st.floats(allow_nan=False, width=32 if typename == "float" else 64)
+    if typename == "double":
+        return st.floats(allow_nan=False)
+    # rosidl's limit, which has fewer digits, leaves out the very largest 32-bit float.
+    return st.floats(allow_nan=False, width=32).filter(
+        lambda v: math.isinf(v) or abs(v) <= FLOAT_LIMITS["float"]
+    )

@@ -52,7 +52,7 @@ def test_dir_lists_names_without_building_them() -> None:
 
 
 def test_an_unknown_name_fails_as_in_any_module() -> None:
-    with pytest.raises(ImportError, match="^cannot import name 'Int33' from 'std_msgs.msg'"):
+    with pytest.raises(ImportError, match=r"^cannot import name 'Int33' from 'std_msgs.msg'"):
         run("from std_msgs.msg import Int33")
     with pytest.raises(AttributeError, match=r"^module 'std_msgs.msg' has no attribute 'Int33'$"):
         run("import std_msgs.msg\nstd_msgs.msg.Int33")

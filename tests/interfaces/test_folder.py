@@ -82,7 +82,7 @@ def test_wide_strings_are_texts(workspace: Workspace) -> None:
     wide = workspace.registry().message("robot_msgs", "Wide")
     assert list(wide.get_fields_and_field_types().values()) == ["wstring", "wstring<2>", "sequence<wstring>"]
     assert wide(bound="äö").bound == "äö"
-    with pytest.raises(AssertionError, match="^The 'bound' field must be string value not longer than 2$"):
+    with pytest.raises(AssertionError, match=r"^The 'bound' field must be string value not longer than 2$"):
         wide(bound="abc")
 
 

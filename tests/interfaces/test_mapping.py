@@ -47,7 +47,7 @@ def test_fixed_arrays_take_lists_of_the_right_length() -> None:
     pose = message("geometry_msgs", "PoseWithCovariance")
     assert message_from_mapping(pose, {"covariance": [1] * 36}).covariance.sum() == 36.0
     with pytest.raises(
-        MappingError, match="^covariance: The 'covariance' field must be a set or sequence with length 36"
+        MappingError, match=r"^covariance: The 'covariance' field must be a set or sequence with length 36"
     ):
         message_from_mapping(pose, {"covariance": [1]})
 

@@ -78,21 +78,21 @@ def test_a_message_with_nan_equals_nothing() -> None:
 
 
 def test_messages_have_no_hash() -> None:
-    with pytest.raises(TypeError, match="^unhashable type: 'Twist'$"):
+    with pytest.raises(TypeError, match=r"^unhashable type: 'Twist'$"):
         hash(Twist())
 
 
 def test_an_unknown_attribute_is_refused() -> None:
-    with pytest.raises(AttributeError, match="^'Twist' object has no attribute 'foo'$"):
+    with pytest.raises(AttributeError, match=r"^'Twist' object has no attribute 'foo'$"):
         Twist().foo = 1
-    with pytest.raises(AttributeError, match="^'Twist' object has no attribute 'foo'$"):
+    with pytest.raises(AttributeError, match=r"^'Twist' object has no attribute 'foo'$"):
         print(Twist().foo)
 
 
 def test_constructors_take_known_keywords_only() -> None:
-    with pytest.raises(AssertionError, match="^Invalid arguments passed to constructor: foo$"):
+    with pytest.raises(AssertionError, match=r"^Invalid arguments passed to constructor: foo$"):
         Twist(foo=1)
-    with pytest.raises(AssertionError, match="^Invalid arguments passed to constructor: bar, foo$"):
+    with pytest.raises(AssertionError, match=r"^Invalid arguments passed to constructor: bar, foo$"):
         Twist(foo=1, linear=Vector3(), bar=2)
     positional: Any = Int32
     with pytest.raises(TypeError, match=r"^Int32.__init__\(\) takes 1 positional argument but 2 were given$"):

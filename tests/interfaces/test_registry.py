@@ -129,24 +129,24 @@ def test_a_name_of_another_form_is_refused(name: str) -> None:
 
 def test_unknown_names_lead_to_the_nearest() -> None:
     with pytest.raises(
-        UnknownInterfaceError, match="^there is no package 'std_mgs'; did you mean 'std_msgs'?"
+        UnknownInterfaceError, match=r"^there is no package 'std_mgs'; did you mean 'std_msgs'\?$"
     ):
         message("std_mgs", "Int32")
     with pytest.raises(
-        UnknownInterfaceError, match="^std_msgs has no message 'Int33'; did you mean 'Int32'?"
+        UnknownInterfaceError, match=r"^std_msgs has no message 'Int33'; did you mean 'Int32'\?$"
     ):
         message("std_msgs", "Int33")
     with pytest.raises(
-        UnknownInterfaceError, match="^std_srvs has no service 'SetBol'; did you mean 'SetBool'?"
+        UnknownInterfaceError, match=r"^std_srvs has no service 'SetBol'; did you mean 'SetBool'\?$"
     ):
         service("std_srvs", "SetBol")
-    with pytest.raises(UnknownInterfaceError, match="^there is no package 'qqq'$"):
+    with pytest.raises(UnknownInterfaceError, match=r"^there is no package 'qqq'$"):
         names("qqq", "msg")
 
 
 def test_a_service_asked_for_as_a_message_is_told_apart() -> None:
     with pytest.raises(
-        UnknownInterfaceError, match="^std_srvs has 'SetBool' as a service, not as a message$"
+        UnknownInterfaceError, match=r"^std_srvs has 'SetBool' as a service, not as a message$"
     ):
         message("std_srvs", "SetBool")
 
@@ -155,6 +155,6 @@ def test_a_folder_may_not_redefine_what_is_known(tmp_path: Path) -> None:
     file = tmp_path / "std_msgs" / "msg" / "Int32.msg"
     file.parent.mkdir(parents=True)
     file.write_text("int64 data\n")
-    with pytest.raises(DefinitionError, match="^std_msgs/msg/Int32 is already defined elsewhere$"):
+    with pytest.raises(DefinitionError, match=r"^std_msgs/msg/Int32 is already defined elsewhere$"):
         add_definitions(tmp_path)
     assert message("std_msgs", "Int32").get_fields_and_field_types() == {"data": "int32"}

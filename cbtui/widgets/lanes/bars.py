@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from cbtui.theme import GLYPHS, Glyphs, Ink, Role
+from cbtui.theme import Glyphs, Ink, Role
 from cbtui.widgets.cells import Row
 from cbtui.widgets.durations import duration
 from cbtui.widgets.lanes.columns import Column, Stretch, stretches
@@ -11,6 +11,7 @@ from cbtui.widgets.lanes.status import is_late, short
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
 from sim.trace.model import Entity, Group, Nanoseconds, Span, Wait
 from sim.trace.timeline import Timeline
+from sim.trace.words import why_waiting
 
 _WAIT_SHOWS_FROM = 2
 """Eighths of a column: shorter waits beside calls are not worth hatching."""
@@ -29,7 +30,7 @@ class Bars:
     numbers: dict[int, int]
 
     def thread(self, row: Row, columns: Sequence[Column[Span] | None]) -> None:
-        """Draw a thread's calls: bars with the group's letter and the callback's name, ticks for short ones."""
+        """Draw a thread's calls: bars with group letter and callback name, ticks for short ones."""
         for stretch in stretches(columns):
             number = self._number(stretch.top.entity)
             self._columns(row, stretch, Ink(Role.BAR, number))
@@ -50,32 +51,31 @@ class Bars:
             row.fill(stretch.first, stretch.after, self.glyphs.line, ink)
             callback = self.timeline.entities[stretch.top.entity].callback
             thread = self.timeline.threads[stretch.top.thread].name
-            texts = (
-                f"held by {callback} on {short_thread(thread)}",
-                f"held by {callback}",
-                f"by {short(callback)}",
-            )
+            held = f"held by {callback}"
+            texts = (f"{held} on {short_thread(thread)}", held, f"by {short(callback)}")
             self._words(row, stretch.first, stretch.after, texts)
 
     def _together(self, row: Row, columns: Sequence[Column[Span] | None], ink: Ink) -> None:
         """Draw a group that lets everyone in: a line where one runs, a double one where several do."""
-        for place, column in enumerate(columns):
-            if column is not None and column.at_once > 1:
-                row.put(place, self.glyphs.double_line, ink)
-            elif column is not None:
-                row.put(place, self.glyphs.line if column.at_once else self.glyphs.point, ink)
-        for first, after, most in _crowds(columns):
-            self._words(row, first, after, (f"{most} at once",))
+        for stretch in stretches(columns):
+            if len(stretch.columns) == 1 and stretch.columns[0].at_once < 2:
+                row.put(stretch.first, self.glyphs.point, ink)
+                continue
+            self._line(row, stretch, ink)
+            callback = self.timeline.entities[stretch.top.entity].callback
+            most = max(column.at_once for column in stretch.columns)
+            texts = (f"{most} at once",) if most > 1 else (f"runs {callback}", f"runs {short(callback)}")
+            self._words(row, stretch.first, stretch.after, texts)
 
     def calls(self, row: Row, columns: Sequence[Column[Span] | None], entity: Entity) -> None:
         """Draw when a callback runs: a mark for a short call, a line with its thread for a long one."""
         number = self._number(entity.id)
         late = []
         for stretch in stretches(columns):
-            if len(stretch.columns) < 3:
+            if all(column.eighths < 8 for column in stretch.columns):
                 self._columns(row, stretch, Ink(Role.BAR, number))
             else:
-                row.fill(stretch.first, stretch.after, self.glyphs.line, Ink(Role.LINE, number))
+                self._line(row, stretch, Ink(Role.LINE, number))
                 span = stretch.top
                 took = duration(span.end_at(self.now) - span.start)
                 thread = short_thread(self.timeline.threads[span.thread].name)
@@ -91,48 +91,41 @@ class Bars:
         self, row: Row, columns: Sequence[Column[Wait] | None], calls: Sequence[Column[Span] | None]
     ) -> None:
         """Draw when a callback waits: hatching, and the reason in words."""
-        number = -1
         for stretch in stretches(columns):
             number = self._number(stretch.top.entity)
             hatch = self.glyphs.hatch[stretch.top.reason]
-            shown = [
-                place
-                for place, column in enumerate(stretch.columns, stretch.first)
-                if _wins(column, calls[place])
-            ]
+            shown = [place for place, column in stretch.places() if _wins(column, calls[place])]
             for place in shown:
                 row.put(place, hatch, Ink(Role.HATCH, number))
-            if len(shown) > 3:
-                self._words(row, shown[0] + 1, shown[-1] + 1, self._reasons(stretch.top))
+            first, after = _longest_part(shown)
+            self._words(row, first, after, self._reasons(stretch.top))
 
     def _reasons(self, wait: Wait) -> tuple[str, ...]:
         """Return ways to say why a callback waits, from the fullest to the shortest."""
         lasts = wait.end is None or wait.end > self.now
         took = duration((self.now if lasts else wait.end or self.now) - wait.start)
         verb = "waits" if lasts else "waited"
-        reason, *shorter = self._words_of(wait)
-        return (
-            f"{verb} {took}: {reason}",
-            *(f"{verb} {took}: {one}" for one in shorter),
-            f"{verb} {took}",
-            took,
-        )
+        reasons = self._words_of(wait)
+        whole = (f"{verb} {took}: {reason}" for reason in reasons)
+        return (*whole, f"{took}: {reasons[-1]}", *reasons, f"{verb} {took}", took)
 
     def _words_of(self, wait: Wait) -> tuple[str, ...]:
         if wait.reason is not Reason.GROUP_HELD:
             return (wait.reason.value,)
         if wait.holder == wait.entity:
             return ("its last call still runs", "still runs")
-        letter = self.timeline.groups[self.timeline.entities[wait.entity].group].letter
-        if wait.holder not in self.timeline.entities:
-            return (f"{letter} held",)
-        callback = self.timeline.entities[wait.holder].callback
-        return (f"{letter} held by {callback}", f"{letter} held by {short(callback)}", f"{letter} held")
+        full = why_waiting(wait, self.timeline)
+        brief = full.removeprefix("group ")
+        return (full, brief, short(brief))
 
     def _columns(self, row: Row, stretch: Stretch[Span], ink: Ink) -> None:
-        for place, column in enumerate(stretch.columns, stretch.first):
-            side = self.glyphs.right if column.ends_right else self.glyphs.left
+        for place, column in stretch.places():
+            side = self.glyphs.right if column.runs_on else self.glyphs.left
             row.put(place, side[column.eighths], ink)
+
+    def _line(self, row: Row, stretch: Stretch[Span], ink: Ink) -> None:
+        for place, column in stretch.places():
+            row.put(place, self.glyphs.double_line if column.at_once > 1 else self.glyphs.line, ink)
 
     def _seam(self, row: Row, stretch: Stretch[Span]) -> None:
         """Part a bar from the one that it follows at once."""
@@ -141,7 +134,7 @@ class Bars:
             row.cells[before] = self.glyphs.left[7]
 
     def _label(self, row: Row, stretch: Stretch[Span], ink: Ink) -> None:
-        whole = [place for place, column in enumerate(stretch.columns, stretch.first) if column.eighths == 8]
+        whole = [place for place, column in stretch.places() if column.eighths == 8]
         if len(whole) < 2:
             return
         entity = self.timeline.entities[stretch.top.entity]
@@ -163,10 +156,10 @@ class Bars:
                 return
 
     def _words(self, row: Row, first: int, after: int, texts: Sequence[str]) -> None:
-        """Write the first of the texts that fits between two columns, with room around it."""
+        """Write the first of the texts that fits between two columns and leaves some of what it names."""
         for text in texts:
-            if len(text) + 4 <= after - first:
-                row.write(first + 1, f" {text} ", _WORDS)
+            if len(text) + 5 <= after - first:
+                row.write(first + 2, f" {text} ", _WORDS)
                 return
 
     def _number(self, entity: EntityId) -> int:
@@ -185,15 +178,13 @@ def _wins(wait: Column[Wait], call: Column[Span] | None) -> bool:
     return wait.eighths >= _WAIT_SHOWS_FROM and wait.eighths > call.eighths
 
 
-def _crowds(columns: Sequence[Column[Span] | None]) -> list[tuple[int, int, int]]:
-    """Return stretches of columns in which several ran at once: first, after, and how many at most."""
-    crowds: list[tuple[int, int, int]] = []
-    for place, column in enumerate(columns):
-        if column is None or column.at_once < 2:
-            continue
-        if crowds and crowds[-1][1] == place:
-            first, _, most = crowds[-1]
-            crowds[-1] = (first, place + 1, max(most, column.at_once))
-        else:
-            crowds.append((place, place + 1, column.at_once))
-    return crowds
+def _longest_part(places: Sequence[int]) -> tuple[int, int]:
+    """Return the longest part without a gap of ascending columns: its first, and the one after it."""
+    longest = first = after = 0
+    best = (0, 0)
+    for place in places:
+        first = first if place == after else place
+        after = place + 1
+        if after - first > longest:
+            longest, best = after - first, (first, after)
+    return best

@@ -1,7 +1,7 @@
 """Intervals summed up column by column, so that a lane costs the same however much it shows."""
 
 from bisect import bisect_left
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from operator import attrgetter
 from typing import Generic, NamedTuple, Protocol, TypeVar
 
@@ -38,13 +38,13 @@ I = TypeVar("I", bound=Interval)  # noqa: E741 the one type variable here, for a
 class Column(NamedTuple, Generic[I]):
     """What happened in one column.
 
-    ``eighths`` is how much of it was taken, at least 1; ``ends_right`` tells that what happened began in
-    its second half or ran on into the next; ``top`` is the interval that took most of it, ``at_once`` how
-    many there were at its beginning.
+    ``eighths`` is how much of it was taken, at least 1; ``top`` is the interval that took most of it, and
+    ``runs_on`` tells that it began here and lasts into the next column; ``at_once`` is how many there were
+    at the same time.
     """
 
     eighths: int
-    ends_right: bool
+    runs_on: bool
     top: I
     at_once: int
 
@@ -60,6 +60,10 @@ class Stretch(NamedTuple, Generic[I]):
     def after(self) -> int:
         """The first column that does not belong to it."""
         return self.first + len(self.columns)
+
+    def places(self) -> Iterable[tuple[int, Column[I]]]:
+        """The columns with their places."""
+        return enumerate(self.columns, self.first)
 
 
 class Columns(Generic[I]):
@@ -131,19 +135,23 @@ def _column(
 ) -> Column[I] | None:
     """Sum up one column: what runs as it begins, and every ``step``-th of what begins in it."""
     taken = 0
-    most = -1
+    longest = -1
     top: I | None = None
+    ends: list[Nanoseconds] = []
+    at_once = 0
     for place, one in enumerate((*running, *begun)):
         end = edge if one.end is None else one.end
         here = min(end, window.end) - max(one.start, window.start)
         taken += here * (1 if place < len(running) else step)
-        if here > most:
-            most, top = here, one
+        if here > longest:
+            longest, top = here, one
+        ends = [other for other in ends if other > one.start]
+        ends.append(end)
+        at_once = max(at_once, len(ends))
     if top is None:
         return None
     eighths = min(8, max(1, round(8 * taken / window.length)))
-    middle = window.start + window.length // 2
-    return Column(eighths, top.start >= middle or _runs_on(top, window), top, len(running))
+    return Column(eighths, _runs_on(top, window), top, at_once)
 
 
 def _runs_on(interval: Interval, window: Window) -> bool:

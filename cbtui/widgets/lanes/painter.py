@@ -1,6 +1,8 @@
 """Paints lanes as rows of text in inks; needs no terminal, so that a picture can be tested as text."""
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from cbtui.theme import GLYPHS, Charset, Ink, Role, Run
 from cbtui.widgets.cells import Row, fit
@@ -41,7 +43,7 @@ class Layout:
 
 def layout_for(width: int) -> Layout:
     """Share out a width: the narrower, the shorter names and statuses, until only lanes are left."""
-    for least, names, statuses in ((120, 23, 25), (72, 13, 15), (48, 10, 10), (24, 6, 0)):
+    for least, names, statuses in ((120, 23, 25), (72, 13, 17), (48, 10, 10), (24, 6, 0)):
         if width >= least:
             return Layout(names, width - names - statuses - 2, statuses)
     return Layout(0, max(1, width - 2), 0)
@@ -82,7 +84,7 @@ class Painter:
         self.charset = charset
         self.service = service
         self._timeline: Timeline | None = None
-        self._spans: dict[tuple[type[Lane], int], Columns[Span]] = {}
+        self._spans: dict[tuple[str, int], Columns[Span]] = {}
         self._waits: dict[int, Columns[Wait]] = {}
 
     def text(self, timeline: Timeline, window: Window, now: Nanoseconds, width: int, height: int) -> str:
@@ -90,7 +92,7 @@ class Painter:
         return self.paint(timeline, window, now, width, height).text
 
     def paint(self, timeline: Timeline, window: Window, now: Nanoseconds, width: int, height: int) -> Picture:
-        """Paint the lanes of a window of time, with the cursor at ``now``, in ``width`` x ``height`` cells."""
+        """Paint the lanes of a window, with the cursor at ``now``, in ``width`` x ``height`` cells."""
         if timeline is not self._timeline:
             self._timeline = timeline
             self._spans.clear()
@@ -110,21 +112,24 @@ class Painter:
         """Return the summed-up calls of a lane."""
         match lane:
             case ThreadLane(thread):
-                key, query = thread.id, timeline.spans_on
+                return self._kept(timeline.spans_on, thread.id)
             case GroupLane(group):
-                key, query = group.id, timeline.spans_in
+                return self._kept(timeline.spans_in, group.id)
             case MemberLane(entity) | SoleLane(entity):
-                key, query = entity.id, timeline.spans_of
+                return self._kept(timeline.spans_of, entity.id)
             case ServiceLane():
                 return Columns(lambda _: ())
-        if (type(lane), key) not in self._spans:
-            self._spans[type(lane), key] = Columns(lambda window: query(key, window))
-        return self._spans[type(lane), key]
+
+    def _kept(self, query: Callable[[int, Window], Sequence[Span]], subject: int) -> Columns[Span]:
+        key = (query.__name__, subject)
+        if key not in self._spans:
+            self._spans[key] = Columns(partial(query, subject))
+        return self._spans[key]
 
     def waits(self, entity: Entity, timeline: Timeline) -> Columns[Wait]:
         """Return the summed-up waits of a callback."""
         if entity.id not in self._waits:
-            self._waits[entity.id] = Columns(lambda window: timeline.waits_of(entity.id, window))
+            self._waits[entity.id] = Columns(partial(timeline.waits_of, entity.id))
         return self._waits[entity.id]
 
 
@@ -170,9 +175,14 @@ class _Frame:
             if mark.kind == "command":
                 row.put(self._scale.column_of(mark.at), self._glyphs.up, MARK)
         self._mark_now(row)
-        name = f"+{hidden} more lanes" if hidden else "seconds"
+        name = f"+{hidden} lanes" if hidden else "seconds"
         unit = f"{duration(self._scale.per_column)}/col" if self._layout.statuses >= 15 else ""
         return self._framed([Run(name, FAINT)], row, Run(unit, FAINT))
+
+    @property
+    def _now_column(self) -> int:
+        """The cursor's column; the last one when the picture ends exactly there."""
+        return self._scale.column_of(self._now - (self._now == self._scale.window.end))
 
     def _draw(self, row: Row, lane: Lane, columns: list[Column[Span] | None]) -> None:
         match lane:
@@ -190,11 +200,11 @@ class _Frame:
                 draw_calls(row, self._calls.of(service), self._scale, self._edge)
 
     def _latest(self, columns: list[Column[Span] | None]) -> Span | None:
-        shown = columns[: max(0, self._scale.column_of(self._now) + 1)]
+        shown = columns[: max(0, self._now_column + 1)]
         return next((column.top for column in reversed(shown) if column is not None), None)
 
     def _mark_now(self, row: Row) -> None:
-        column = self._scale.column_of(self._now)
+        column = self._now_column
         if not 0 <= column < len(row.cells):
             return
         if column >= 3:
@@ -220,7 +230,7 @@ class _Frame:
 
     def _show_cursor(self, row: Row) -> None:
         """Show where the cursor stands and what lies after it, when it is not at the edge."""
-        column = self._scale.column_of(self._now)
+        column = self._now_column
         if not 0 <= column < len(row.cells) or column >= self._scale.column_of(self._edge):
             return
         if row.blank(column, column + 1):
@@ -246,11 +256,12 @@ class _Frame:
 
     def _sole_name(self, entity: Entity, group: Group) -> str:
         room = self._layout.names - len(group.letter) - 2
-        name = self._entity_name(entity, room - 5)
-        for kind in (group.kind.value, group.kind.value[:4], ""):
-            if len(kind) + len(name) + 1 <= room:
-                return f"{kind} {name}".lstrip()
-        return self._entity_name(entity, room)
+        whole, brief = group.kind.value, group.kind.value[:4]
+        names = (entity.label, short(entity.label))
+        for text in (f"{kind} {name}" for kind in (whole, brief) for name in names):
+            if len(text) <= room:
+                return text
+        return short(entity.label)
 
     def _entity_name(self, entity: Entity, room: int) -> str:
         return entity.label if len(entity.label) <= room else short(entity.label)

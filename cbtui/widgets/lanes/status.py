@@ -5,7 +5,6 @@ from dataclasses import dataclass
 from cbtui.theme import GLYPHS, Charset, Ink, Role, Run
 from cbtui.widgets.durations import duration
 from cbtui.widgets.lanes.calls import Calls
-from cbtui.widgets.lanes.columns import Column
 from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, SoleLane, ThreadLane
 from sim.trace.events import EntityKind, GroupKind
 from sim.trace.model import Entity, Group, Moment, Span, Thread, Window
@@ -93,14 +92,12 @@ class Status:
     def _queue(self, entity: Entity, latest: Span | None) -> Run:
         queue = self.timeline.queue(entity.id, self.moment.at)
         full = entity.depth and queue.depth >= entity.depth
-        parts = [f"{queue.depth}/{entity.depth}" + ("!" if full else "")]
-        if self.width >= _WIDE:
-            parts.insert(0, "queue")
-        if queue.dropped:
-            parts.append(f"lost {_count(queue.dropped)}")
-        elif self.width >= _WIDE and latest is not None:
-            parts.append(f"{GLYPHS[self.charset].between} age {duration(latest.age)}")
-        return Run(" ".join(parts), WARN if full else PLAIN)
+        level = f"{queue.depth}/{entity.depth}{' !' if full else ''}"
+        lost = f" lost {_count(queue.dropped)}" if queue.dropped else ""
+        age = "" if latest is None else f" {GLYPHS[self.charset].between} age {duration(latest.age)}"
+        texts = (f"queue {level}{lost}{age}", f"queue {level}{lost}", f"{level}{lost}", level)
+        fitting = (text for text in texts if len(text) < self.width)
+        return Run(next(fitting, level), WARN if full else PLAIN)
 
 
 def is_late(span: Span, timer: Entity) -> bool:

@@ -103,6 +103,14 @@ def copy_message(message: MessageT) -> MessageT:
     return cast("MessageT", message.__interface__.copy(message))
 
 
+def assemble(cls: type[MessageT], values: Mapping[str, Any]) -> MessageT:
+    """Return a message with a value for every field, stored as they are: they were checked once."""
+    message = cls.__new__(cls)
+    for name, value in values.items():
+        setattr(message, f"_{name}", value)
+    return message
+
+
 def type_name(cls: type[Message] | ServiceType) -> str:
     """Return the full name of a class: ``std_msgs/msg/Int32``, ``std_srvs/srv/SetBool``."""
     return cls.__type_name__

@@ -13,7 +13,7 @@ import numpy as np
 from attrs import frozen
 from rosbags.interfaces import Nodetype
 
-from sim.ros.interfaces.base import Interface, Message
+from sim.ros.interfaces.base import Interface, Message, assemble
 from sim.ros.interfaces.field_types import (
     Array,
     BasicType,
@@ -58,7 +58,7 @@ def from_cdr(cls: type[MessageT], data: bytes) -> MessageT:
     name = cls.__type_name__
     try:
         return cast("MessageT", _store_with(cls).deserialize_cdr(data, name))
-    except (SerdeError, AssertionError) as error:
+    except SerdeError as error:
         raise ValueError(f"these {len(data)} bytes hold no {name}: {error}") from None
 
 
@@ -112,7 +112,8 @@ def _outward(message: Message) -> SimpleNamespace:
 def _inward(cls: type[Message], values: Sequence[Any]) -> Message:
     """Return the message of the values rosbags read, which stand in the order of the fields."""
     codings = _codings(cls.__interface__).items()
-    return cls(**{name: coding.inward(value) for (name, coding), value in zip(codings, values, strict=False)})
+    pairs = zip(codings, values, strict=False)
+    return assemble(cls, {name: coding.inward(value) for (name, coding), value in pairs})
 
 
 def _coding(of: FieldType) -> _Coding:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from rosbags.typesys import TypesysError
-from rosbags.typesys.base import BASE_NAMES, BaseType, Cardinality, Field, Type, create_field_desc
+from rosbags.typesys.base import BASE_NAMES, BaseType, Cardinality, Field, NamedType, Type, create_field_desc
 from rosbags.typesys.msg import MSGParser
 from rosbags.typesys.peg import Failure, Success
 
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 _NAME = re.compile(r"[A-Z][A-Za-z0-9]*")
 _FIELD_NAME = re.compile(r"[a-z](_?[a-z0-9]+)*")
 _PACKAGE_NAME = _FIELD_NAME
+_TYPE_NAME = re.compile(r"\w+/msg/\w+")
 
 
 class DefinitionFolder:
@@ -141,4 +142,9 @@ def _require_fields(fields: list[Field], origin: str) -> None:
             raise DefinitionError(f"{origin}: the field name {entry.name!r} is a keyword of Python")
         if entry.name in seen:
             raise DefinitionError(f"{origin}: the field {entry.name!r} is defined twice")
+        if isinstance(entry.typ.ref, NamedType) and not _TYPE_NAME.fullmatch(entry.typ.ref.name):
+            written = entry.typ.ref.name
+            raise DefinitionError(
+                f"{origin}: the type of {entry.name!r}, {written}, is not of the form package/Name"
+            )
         seen.add(entry.name)

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from sim.ros.interfaces.base import Message, ServiceType
+from sim.ros.interfaces.base import Message, ServiceType, assemble
 from sim.ros.interfaces.interface_definition import Kind
-from sim.ros.interfaces.registry import Registry
+from sim.ros.interfaces.registry import Registry, UnknownInterfaceError
+
+_FULL_NAME = re.compile(
+    r"(?P<package>\w+)/(msg/(?P<message>\w+)|srv/(?P<service>\w+)_(?P<half>Request|Response))"
+)
 
 
 def message(package: str, name: str) -> type[Message]:
@@ -68,19 +73,23 @@ def message_of_type(type_name: str) -> type[Message]:
     """Return a message class by full name; requests and responses are ``std_srvs/srv/SetBool_Request``.
 
     Raises:
-        UnknownInterfaceError: as `message` and `service`.
+        UnknownInterfaceError: the name has another form, or as `message` and `service`.
     """
-    package, kind, name = type_name.split("/")
-    if kind == "msg":
-        return message(package, name)
-    owner, _, half = name.rpartition("_")
-    found = service(package, owner)
-    return found.Request if half == "Request" else found.Response
+    form = _FULL_NAME.fullmatch(type_name)
+    if form is None:
+        raise UnknownInterfaceError(
+            f"{type_name!r} is not the full name of a message, request or response, "
+            "such as std_msgs/msg/Int32 or std_srvs/srv/SetBool_Request"
+        )
+    if form["message"]:
+        return message(form["package"], form["message"])
+    owner = service(form["package"], form["service"])
+    return owner.Request if form["half"] == "Request" else owner.Response
 
 
 def restore(type_name: str, values: Mapping[str, Any]) -> Message:
     """Return the message that a pickle or a copy describes."""
-    return message_of_type(type_name)(**values)
+    return assemble(message_of_type(type_name), values)
 
 
 @cache
