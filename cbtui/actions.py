@@ -1,4 +1,4 @@
-"""The one registry of what a person can do: keys, footer, palette, help and any remapping all read it.
+"""The one registry of what a person can do: keys, footer, palette and help all read it.
 
 A screen only implements ``action_<id>`` for the actions of its scope, and says in ``check_action`` which of
 them have a meaning now.
@@ -13,6 +13,8 @@ from typing import NamedTuple
 from textual.actions import parse
 from textual.binding import Binding
 
+from cbtui.theme import Charset
+
 
 class Scope(StrEnum):
     """Where an action works."""
@@ -20,6 +22,8 @@ class Scope(StrEnum):
     EVERYWHERE = "Everywhere"
     MENU = "Menu"
     LESSON = "Lesson"
+    THREADS = "Choice of threads"
+    HELP = "Help"
 
 
 class Action(NamedTuple):
@@ -64,14 +68,21 @@ ACTIONS = (
     Action("later", "right", "look back", "Look at a later stretch of the run", Scope.LESSON),
     Action("slower", "minus", "speed", "Let virtual time pass more slowly", Scope.LESSON),
     Action("faster", "plus", "speed", "Let virtual time pass faster", Scope.LESSON),
-    Action("zoom_out", "less_than_sign", "time", "Show a longer stretch of time on the lanes", Scope.LESSON),
-    Action("zoom_in", "greater_than_sign", "time", "Show a shorter stretch of time on the lanes", Scope.LESSON),
+    Action("zoom_out", "less_than_sign", "time", "Show a longer stretch of time", Scope.LESSON),
+    Action("zoom_in", "greater_than_sign", "time", "Show a shorter stretch of time", Scope.LESSON),
     Action("next_pane", "tab", "next pane", "Go to the next pane", Scope.LESSON),
     Action("maximise", "z", "zoom", "Let one pane fill the screen; press again to go back", Scope.LESSON),
     Action("next_lesson", "n", "next", "Open the next lesson", Scope.LESSON),
     Action("leave", "q", "menu", "End the run and go back to the menu", Scope.LESSON),
     Action("leave", "q", "quit", "Leave the console", Scope.MENU),
-    Action("palette", "ctrl+p", "commands", "Find any command, or another colour theme", Scope.EVERYWHERE),
+    *(
+        Action(f"choose({number})", str(number), "threads", "Run with so many threads", Scope.THREADS)
+        for number in range(1, 9)
+    ),
+    Action("choose(0)", "o", "the program's own", "Run with the program's own number", Scope.THREADS),
+    Action("close", "escape,q", "close", "Close the window, and leave everything as it is", Scope.THREADS),
+    Action("close", "escape,q,question_mark", "close", "Go back to where you were", Scope.HELP),
+    Action("command_palette", "ctrl+p", "commands", "Find any command, and colour themes", Scope.EVERYWHERE),
     Action("help", "question_mark", "help", "Show every key and what it does", Scope.EVERYWHERE),
 )
 
@@ -84,6 +95,11 @@ def actions_of(scope: Scope) -> tuple[Action, ...]:
 def bindings_of(*scopes: Scope) -> list[Binding]:
     """Return the key bindings of the actions that belong to exactly these scopes."""
     return [_binding(action) for action in ACTIONS if action.scope in scopes]
+
+
+def target_of(action: Action) -> str:
+    """Return the action with the place that implements it, as a click or the palette has to name it."""
+    return f"{'app' if action.scope is Scope.EVERYWHERE else 'screen'}.{action.id}"
 
 
 def _binding(action: Action) -> Binding:
@@ -113,6 +129,7 @@ _SIGNS = {
     "greater_than_sign": ">",
     "question_mark": "?",
     "ctrl+p": "^p",
+    "escape": "esc",
 }
 _PLAIN_SIGNS = _SIGNS | {
     "enter": "enter",
@@ -124,13 +141,14 @@ _PLAIN_SIGNS = _SIGNS | {
 }
 
 
-def signs_of(actions: Iterable[Action], plain: bool) -> str:
-    """Return the keys of some actions as people write them; ``plain`` avoids everything but ASCII."""
+def signs_of(actions: Iterable[Action], charset: Charset) -> str:
+    """Return the keys of some actions as people write them."""
     keys = [action.key for action in actions]
     if len(keys) > 2 and all(key.isdigit() for key in keys):
         return f"{keys[0]}-{keys[-1]}"
-    signs = _PLAIN_SIGNS if plain else _SIGNS
-    return " ".join(signs.get(key, key) for key in keys)
+    signs = _PLAIN_SIGNS if charset is Charset.ASCII else _SIGNS
+    first = [key.partition(",")[0] for key in keys]
+    return " ".join(signs.get(key, key) for key in first)
 
 
 def method_of(action: Action) -> tuple[str, tuple[object, ...]]:

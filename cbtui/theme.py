@@ -131,7 +131,6 @@ class Glyphs:
     up: str
     back: str
     now: str
-    minus: str
     ellipsis: str
     degree: str
     cross: str
@@ -144,13 +143,16 @@ _BLOCKS = Glyphs(
     line="─",
     double_line="═",
     point="·",
-    hatch={Reason.GROUP_HELD: "╱", Reason.NO_FREE_WORKER: "╲", Reason.NOBODY_SPINS: "╳"},
+    hatch={
+        Reason.GROUP_HELD: "\N{BOX DRAWINGS LIGHT DIAGONAL UPPER RIGHT TO LOWER LEFT}",
+        Reason.NO_FREE_WORKER: "\N{BOX DRAWINGS LIGHT DIAGONAL UPPER LEFT TO LOWER RIGHT}",
+        Reason.NOBODY_SPINS: "\N{BOX DRAWINGS LIGHT DIAGONAL CROSS}",
+    },
     frame="│",
     cursor="┊",
     up="▲",
     back="◂",
     now="▲",
-    minus="−",
     ellipsis="…",
     degree="°",
     cross="✗",
@@ -168,7 +170,6 @@ _PLAIN = Glyphs(
     up="^",
     back="<",
     now="^",
-    minus="-",
     ellipsis="~",
     degree=" deg",
     cross="X",

@@ -10,7 +10,8 @@ from cbtui.theme import GLYPHS, Charset, Ink, Role, Run
 
 BLANK = Ink(Role.TEXT)
 
-_UNSHOWABLE = {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp"}
+_UNSHOWABLE = {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp", "Zs"}
+_PICTURES = {chr(code): chr(0x2400 + code) for code in range(0x20)} | {"\x7f": "␡", "\xa0": " "}
 
 
 def visible(text: str, charset: Charset) -> str:
@@ -29,13 +30,10 @@ def _shown(character: str, charset: Charset) -> str:
         return character
     if charset is Charset.ASCII:
         return "?"
-    if character < " ":
-        return chr(0x2400 + ord(character))
-    if character == "\x7f":
-        return "␡"
-    if unicodedata.category(character) in _UNSHOWABLE or cell_len(character) == 0:
-        return "�"
-    return character
+    if character in _PICTURES:
+        return _PICTURES[character]
+    unshowable = unicodedata.category(character) in _UNSHOWABLE or cell_len(character) == 0
+    return "�" if unshowable else character
 
 
 @lru_cache(maxsize=4096)

@@ -4,6 +4,8 @@ from dataclasses import dataclass
 from enum import Enum, auto
 
 from cbtui.concurrency import Concurrency
+from cbtui.live_run import LiveRun, State
+from cbtui.playhead import Playhead
 from cbtui.widgets.durations import duration
 from sim.trace.events import Notice, Reason, Severity
 from sim.trace.model import Call, Moment, Nanoseconds, Wait
@@ -32,6 +34,25 @@ class Diagnosis:
 
     text: str
     weight: Weight
+
+
+def verdict(run: LiveRun, playhead: Playhead, concurrency: Concurrency) -> Diagnosis:
+    """Return what to say of the moment on screen; at a run's end, how it ended and how to go on."""
+    timeline = run.timeline
+    if playhead.at is None:
+        if run.loss is not None:
+            return Diagnosis(f"engine lost: {run.loss.rstrip('.')}; press r to run again", Weight.TROUBLE)
+        if run.state is State.ENDED:
+            return _of_the_end(timeline)
+    return diagnose(timeline, playhead.now(timeline.end), concurrency)
+
+
+def _of_the_end(timeline: Timeline) -> Diagnosis:
+    ended = timeline.ended
+    if ended is None:
+        return Diagnosis("the run is over; press r to run again", Weight.FINE)
+    weight = Weight.TROUBLE if ended.failed else Weight.FINE
+    return Diagnosis(f"the run is over: {ended.reason.rstrip('.')}; press r to run again", weight)
 
 
 def diagnose(timeline: Timeline, at: Nanoseconds, concurrency: Concurrency) -> Diagnosis:

@@ -5,15 +5,15 @@ from dataclasses import dataclass
 
 from textual.events import Click
 from textual.geometry import Size
-from textual.reactive import reactive
 
-from cbtui.actions import Action, Scope, actions_of, method_of, signs_of, together
+from cbtui.actions import Action, Scope, actions_of, method_of, signs_of, target_of, together
 from cbtui.theme import Charset, Ink, Role, Run
 from cbtui.widgets.painted import Painted
 
 _KEY = Ink(Role.STRONG)
 _LABEL = Ink(Role.FAINT)
 _GAP = "  "
+_ALWAYS = ("leave", "close", "help")
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,11 +33,10 @@ class Entry:
 class KeyBar(Painted):
     """Shows the keys of a scope; a click on one does what it does. Call ``changed`` when others work."""
 
-    charset: reactive[Charset] = reactive(Charset.BRAILLE)
-
-    def __init__(self, scope: Scope) -> None:
+    def __init__(self, scope: Scope, charset: Charset) -> None:
         super().__init__()
         self._scope = scope
+        self._charset = charset
 
     def rows(self, size: Size) -> Sequence[Sequence[Run]]:
         """Paint the keys."""
@@ -47,36 +46,32 @@ class KeyBar(Painted):
         taken = sum(len(run.text) for run in runs)
         return [[*runs, Run(" " * (size.width - taken), _LABEL)]]
 
-    def watch_charset(self) -> None:
-        """Paint in other glyphs."""
-        self.changed()
-
     async def on_click(self, event: Click) -> None:
         """Do what the key under the pointer does; of several keys, the one that is nearest."""
         start = 1
         for entry in self._entries(self.size.width):
             if start <= event.x < start + entry.width:
                 place = max(0, (event.x - start) * len(entry.actions) // max(1, len(entry.keys)))
-                await self.screen.run_action(entry.actions[min(place, len(entry.actions) - 1)].id)
+                await self.app.run_action(target_of(entry.actions[min(place, len(entry.actions) - 1)]))
                 return
             start += entry.width
 
     def _entries(self, width: int) -> list[Entry]:
         working = [action for action in actions_of(self._scope) if self._works(action)]
-        return choose(entries(working, plain=self.charset is Charset.ASCII), width - 1)
+        return choose(entries(working, self._charset), width - 1)
 
     def _works(self, action: Action) -> bool:
         return self.screen.check_action(*method_of(action)) is not False
 
 
-def entries(actions: Iterable[Action], plain: bool) -> list[Entry]:
+def entries(actions: Iterable[Action], charset: Charset) -> list[Entry]:
     """Return what the bar says of some actions."""
-    return [Entry(signs_of(group, plain), group[0].label, group) for group in together(actions, "label")]
+    return [Entry(signs_of(group, charset), group[0].label, group) for group in together(actions, "label")]
 
 
 def choose(every: list[Entry], width: int) -> list[Entry]:
     """Return the entries that fit: the way out and the help always, then the first ones."""
-    last = [entry for entry in every if any(action.id in ("leave", "help") for action in entry.actions)]
+    last = [entry for entry in every if entry.actions[0].id in _ALWAYS]
     room = width - sum(entry.width for entry in last) + len(_GAP)
     chosen = []
     for entry in every:

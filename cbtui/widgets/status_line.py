@@ -55,34 +55,28 @@ def status_of(title: str, run: LiveRun, playhead: Playhead, usual_executor: str)
 def _pace(run: LiveRun) -> str:
     if not run.virtual:
         return "real"
-    return "virtual max" if run.speed is None else f"virtual ×{run.speed:.1f}"
+    return "virtual max" if run.speed is None else f"virtual ×{run.speed:.1f}"  # noqa: RUF001
 
 
 class StatusLine(Painted):
     """Shows a status."""
 
     status: reactive[Status | None] = reactive(None)
-    charset: reactive[Charset] = reactive(Charset.BRAILLE)
 
     def rows(self, size: Size) -> Sequence[Sequence[Run]]:
         """Paint the line."""
-        return [] if self.status is None else [status_row(self.status, size.width, self.charset)]
+        return [] if self.status is None else [status_row(self.status, size.width)]
 
     def watch_status(self) -> None:
         """Tell something else."""
         self.changed()
 
-    def watch_charset(self) -> None:
-        """Paint in other glyphs."""
-        self.changed()
 
-
-def status_row(status: Status, width: int, charset: Charset) -> list[Run]:
+def status_row(status: Status, width: int) -> list[Run]:
     """Return the line in exactly ``width`` columns; the executor gives way first, then the pace."""
-    plain = charset is Charset.ASCII
     title = Run(f" {status.title}", _STRONG)
-    state = _state(status, plain)
-    pace = Run(f"  {status.pace.replace('×', 'x') if plain else status.pace}", _PLAIN)
+    state = _state(status)
+    pace = Run(f"  {status.pace}", _PLAIN)
     time = Run(f"t {status.at / 1e9:.3f} s", _STRONG)
     executor = Run(status.executor, _PLAIN)
     losses = _losses(status)
@@ -94,23 +88,23 @@ def status_row(status: Status, width: int, charset: Charset) -> list[Run]:
         room = width - sum(len(run.text) for run in parts) - 1
         if room >= len(title.text) + 2:
             break
-    return [Run(fit(title.text, room, charset), _STRONG), *parts, Run(" ", _PLAIN)]
+    return [Run(fit(title.text, room, Charset.BRAILLE), _STRONG), *parts, Run(" ", _PLAIN)]
 
 
-def _state(status: Status, plain: bool) -> Run:
+def _state(status: Status) -> Run:
     if status.state is State.LOST:
-        return Run("x LOST" if plain else "✗ LOST", _WARN)
+        return Run("✗ LOST", _WARN)
     if status.back:
-        return Run(f"{'<' if plain else '◂'} BACK {duration(status.back)}", _WARN)
+        return Run(f"◂ BACK {duration(status.back)}", _WARN)
     match status.state:
         case State.STARTING:
-            return Run("o STARTING" if plain else "○ STARTING", _FAINT)
+            return Run("○ STARTING", _FAINT)
         case State.LIVE:
-            return Run("* LIVE" if plain else "● LIVE", _STRONG)
+            return Run("● LIVE", _STRONG)
         case State.PAUSED:
-            return Run("|| PAUSED" if plain else "‖ PAUSED", _WARN)
+            return Run("‖ PAUSED", _WARN)
         case State.ENDED:
-            return Run("# ENDED" if plain else "■ ENDED", _STRONG)
+            return Run("■ ENDED", _STRONG)
 
 
 def _losses(status: Status) -> list[Run]:

@@ -24,8 +24,6 @@ _get_ident = threading.get_ident
 _monotonic_ns = time.monotonic_ns
 _Thread = threading.Thread
 _start_thread = threading.Thread.start
-_Condition = threading.Condition
-_RLock = threading.RLock
 
 VIRTUAL_EPOCH = 1_700_000_000 * 1_000_000_000
 """Every virtual run begins at this moment (14 November 2023), so its stamps are the same each time."""
@@ -94,7 +92,8 @@ class VirtualClock:
         self._ready: deque[VirtualThread] = deque()
         self._deadlines: list[tuple[int, int, VirtualThread | Callable[[], None]]] = []
         self._inbox: deque[Callable[[], None]] = deque()
-        self._outside = _Condition(_RLock())
+        self._bell = _allocate_lock()
+        self._bell.acquire()
         self._speed = speed
         self._paused = False
         self._anchor_virtual = 0
@@ -184,29 +183,27 @@ class VirtualClock:
 
     def inject(self, action: Callable[[], None]) -> None:
         """Have ``action`` run at the moment the run has reached; it must not wait. Any thread may call it."""
-        with self._outside:
-            self._inbox.append(action)
-            self._outside.notify()
+        self._inbox.append(action)
+        if self._bell.locked():
+            try:
+                self._bell.release()
+            except RuntimeError:  # another thread rang it between the question and the answer
+                return
 
     def set_speed(self, speed: float | None) -> None:
         """Pass ``speed`` virtual seconds per real second, None: all it can. Call it through ``inject``."""
-        with self._outside:
-            self._anchor_at(self._paced_now())
-            self._speed = speed
-            self._outside.notify()
+        self._anchor_at(self._paced_now())
+        self._speed = speed
 
     def pause(self) -> None:
         """Stop time at the moment the run has reached; call through ``inject``."""
-        with self._outside:
-            self._anchor_at(self._paced_now())
-            self._paused = True
+        self._anchor_at(self._paced_now())
+        self._paused = True
 
     def resume(self) -> None:
         """Let time go on after ``pause``; call through ``inject``."""
-        with self._outside:
-            self._anchor_at(self._anchor_virtual)
-            self._paused = False
-            self._outside.notify()
+        self._anchor_at(self._anchor_virtual)
+        self._paused = False
 
     def stop(self) -> None:
         """End the run: every wait, now and later, raises. Call it from ``call_at`` or ``inject``."""
@@ -274,17 +271,15 @@ class VirtualClock:
 
     def _pass_time(self, target: int | None) -> bool:
         """Wait as long as the pace wants; False if something from outside came first and was done."""
-        with self._outside:
-            while not self._inbox:
-                delay = self._delay_until(target)
-                if delay is not None and delay <= 0:
-                    return True
-                self.rests = True
-                self._outside.wait(None if delay is None else delay / 1e9)
-                self.rests = False
-            self._now = max(self._now, self._paced_now(target))
-            actions = list(self._inbox)
-            self._inbox.clear()
+        while not self._inbox:
+            delay = self._delay_until(target)
+            if delay is not None and delay <= 0:
+                return True
+            self.rests = True
+            self._bell.acquire(timeout=-1 if delay is None else delay / 1e9)
+            self.rests = False
+        self._now = max(self._now, self._paced_now(target))
+        actions = [self._inbox.popleft() for _ in range(len(self._inbox))]
         for action in actions:
             action()
         return False

@@ -32,7 +32,7 @@ _SENSOR_QOS = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class Driver:
-"""Nanoseconds from a tick to the odometry, and from there to the scan."""
+    """Drives a robot until the host's time ends. ``record`` takes what the trace is to know of the robot."""
 
     def __init__(self, host: Host, record: Callable[[AnyEvent], None]) -> None:
         """Build the world.

@@ -461,7 +461,8 @@ class MultiThreadedExecutor(Executor):
             raise ValueError("max_workers must be greater than 0")
         if self.threads == 1:
             warnings.warn(
-                "MultiThreadedExecutor is used with a single thread.\nUse the SingleThreadedExecutor instead.",
+                "MultiThreadedExecutor is used with a single thread.\n"
+                "Use the SingleThreadedExecutor instead.",
                 stacklevel=2,
             )
         super().__init__(context=chosen)

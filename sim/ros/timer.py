@@ -20,13 +20,17 @@ if TYPE_CHECKING:
 
 
 def next_due(due: int, period: int, now: int) -> int:
-    """When a timer called at ``now``, due at ``due``, is due next. All in nanoseconds."""
+    """When a timer called at ``now``, due at ``due``, is due next. All in nanoseconds.
+
+    A tick at the very moment of a late call is missed like those before it: on a real machine the call is
+    always a little later than the moment that set it free.
+    """
     following = due + period
-    if following >= now:
+    if following > now:
         return following
     if period == 0:
         return now
-    missed = -(-(now - following) // period)
+    missed = (now - following) // period + 1
     return following + missed * period
 
 

@@ -9,7 +9,6 @@ needs no hand-over between threads.
 from __future__ import annotations
 
 from collections import deque
-from itertools import count
 from typing import TYPE_CHECKING, Any
 
 from sim.clock import Signal
@@ -18,8 +17,6 @@ from sim.ros.task import Task
 
 if TYPE_CHECKING:
     from sim.ros.executors import MultiThreadedExecutor, Work
-
-_pool_numbers = count()
 
 
 class Worker:
@@ -43,7 +40,7 @@ class WorkerPool:
         self._executor = executor
         self._lock = executor._lock
         self._clock = executor._clock
-        self._name = f"ThreadPoolExecutor-{next(_pool_numbers)}"
+        self._name = f"ThreadPoolExecutor-{next(executor._host.pool_numbers)}"
         self._workers: list[Worker] = []
         self._idle: deque[Worker] = deque()
         self._queue: deque[Work] = deque()

@@ -83,7 +83,7 @@ class Summary:
 
 def summarise(timeline: Timeline) -> Summary:
     """The figures of a run as far as its timeline goes."""
-    whole = Window(min(0, timeline.end), timeline.end + 1)
+    whole = Window(0, timeline.end + 1)
     spans = [timeline.spans_on(thread, whole) for thread in timeline.threads]
     return Summary(
         target=timeline.started.target if timeline.started else "",
@@ -181,7 +181,8 @@ def _robot(timeline: Timeline, whole: Window) -> RobotFigures | None:
 
 def _stretches(trail: Iterable[RobotMoved]) -> Iterator[float]:
     """The signed angles, in radians, of the stretches in which the robot turned in one direction."""
-    for direction, steps in groupby(pairwise(trail), key=lambda step: _direction(*step)):
+    timed = (step for step in pairwise(trail) if step[0].t < step[1].t)
+    for direction, steps in groupby(timed, key=lambda step: _direction(*step)):
         if direction:
             yield sum(after.turned - before.turned for before, after in steps)
 
@@ -189,6 +190,6 @@ def _stretches(trail: Iterable[RobotMoved]) -> Iterator[float]:
 def _direction(before: RobotMoved, after: RobotMoved) -> int:
     """1 for turning left, -1 for turning right, 0 for neither."""
     angle = after.turned - before.turned
-    if abs(angle) < TURNING * (after.t - before.t) / 1e9 or angle == 0.0:
+    if abs(angle) < TURNING * (after.t - before.t) / 1e9:
         return 0
     return 1 if angle > 0 else -1

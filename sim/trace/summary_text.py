@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from sim.trace.model import Nanoseconds
 from sim.trace.summary import CallbackFigures, RobotFigures, ServiceFigures, Summary
 
-HEADS = ("callback", "group", "calls", "running", "late by", "lost", "errors")
+HEADS = ("callback", "group", "calls", "running", "late by", "drops", "errors")
 LATE_BY = "late by: the oldest message it took, or how late its timer was at worst"
 
 
@@ -35,9 +35,9 @@ def duration(length: Nanoseconds) -> str:
 
 
 def _heading(summary: Summary) -> Iterator[str]:
-    time = " ".join(word for word in (summary.clock, "time") if word)
+    clock = f" of {summary.clock} time" if summary.clock else ""
     ending = f": {summary.ending}" if summary.ending else ""
-    yield f"{summary.target or 'run'}, {duration(summary.length)} of {time}{ending}"
+    yield f"{summary.target or 'run'}, {duration(summary.length)}{clock}{ending}"
     if summary.lost:
         yield f"The trace lost {summary.lost} events, so some figures below are too small."
 
@@ -100,8 +100,14 @@ def _service(figures: ServiceFigures) -> str:
 
 def _robot(figures: RobotFigures) -> str:
     turns = _counted(figures.turns, "turn") + (f" ({figures.turned:.1f} rad)" if figures.turns else "")
-    pose = f"at x {figures.x:.2f} y {figures.y:.2f} heading {math.degrees(figures.yaw):.0f}°"
+    x, y, heading = _rounded(figures.x, 2), _rounded(figures.y, 2), _rounded(math.degrees(figures.yaw), 0)
+    pose = f"at x {x:.2f} y {y:.2f} heading {heading:.0f}°"
     return f"{turns}, {figures.travelled:.2f} m travelled, {pose}"
+
+
+def _rounded(value: float, places: int) -> float:
+    """Rounded, and never minus zero."""
+    return round(value, places) + 0.0
 
 
 def _counted(count: int, what: str) -> str:

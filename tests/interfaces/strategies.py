@@ -24,7 +24,7 @@ from sim.ros.interfaces.field_types import (
 )
 from sim.ros.interfaces.sequences import typecode
 
-_TEXT = st.text(st.characters(exclude_characters="\x00", exclude_categories=("Cs",)), max_size=8)
+_TEXT = st.text(st.characters(codec="utf-8", exclude_characters="\x00"), max_size=8)
 
 
 def messages(cls: type[Message]) -> st.SearchStrategy[Any]:

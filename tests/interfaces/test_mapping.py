@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from sim.ros.interfaces import MappingError, message, message_from_mapping, service
+from sim.ros.interfaces import MappingError, Message, message, message_from_mapping, service
 
 Twist = message("geometry_msgs", "Twist")
 Vector3 = message("geometry_msgs", "Vector3")
@@ -46,32 +46,51 @@ def test_plain_values_become_the_fields_kind(name: str, given: object, stored: o
 def test_fixed_arrays_take_lists_of_the_right_length() -> None:
     pose = message("geometry_msgs", "PoseWithCovariance")
     assert message_from_mapping(pose, {"covariance": [1] * 36}).covariance.sum() == 36.0
-    with pytest.raises(
-        MappingError, match=r"^covariance: The 'covariance' field must be a set or sequence with length 36"
-    ):
+    with pytest.raises(MappingError, match=r"^covariance: The 'covariance' field must be .* with length 36 "):
         message_from_mapping(pose, {"covariance": [1]})
 
 
 @pytest.mark.parametrize(
-    ("cls", "mapping", "text"),
+    ("name", "mapping", "text"),
     [
-        (Twist, {"liner": {}}, "geometry_msgs/msg/Twist has no field 'liner'; its fields are linear, angular"),
-        (Twist, {"linear": {"q": 1}}, "linear: geometry_msgs/msg/Vector3 has no field 'q'; its fields are x, y, z"),
-        (Twist, {"linear": {"y": "a"}}, "linear.y: a number is wanted, not 'a'"),
-        (Twist, {"linear": {"y": True}}, "linear.y: a number is wanted, not True"),
-        (Twist, {"linear": 3}, "linear: geometry_msgs/msg/Vector3 is written as {field: value, …}, not as 3"),
-        (Marker, {"points": {"x": 1}}, "points: sequence<geometry_msgs/Point> is written as [value, …], not as {'x': 1}"),
-        (Marker, {"points": [{}, {"x": None}]}, "points[1].x: a number is wanted, not None"),
-        (message("std_msgs", "Int8"), {"data": 300}, "data: The 'data' field must be an integer in [-128, 127]"),
-        (message("std_msgs", "Int8"), {"data": 1.0}, "data: an integer is wanted, not 1.0"),
-        (message("std_msgs", "Bool"), {"data": "yes"}, "data: true or false is wanted, not 'yes'"),
-        (message("std_msgs", "Byte"), {"data": 256}, "data: an integer from 0 to 255 is wanted, not 256"),
-        (message("std_msgs", "String"), {"data": []}, "data: a text is wanted, not []"),
-        (message("std_msgs", "Empty"), {"data": 1}, "std_msgs/msg/Empty has no field 'data'; it has no fields"),
-        (Twist, [1], "geometry_msgs/msg/Twist is written as {field: value, …}, not as [1]"),
+        ("Int8", {"data": 300}, "data: The 'data' field must be an integer in [-128, 127]"),
+        ("Int8", {"data": 1.0}, "data: an integer is wanted, not 1.0"),
+        ("Bool", {"data": "yes"}, "data: true or false is wanted, not 'yes'"),
+        ("Byte", {"data": 256}, "data: an integer from 0 to 255 is wanted, not 256"),
+        ("String", {"data": []}, "data: a text is wanted, not []"),
+        ("Empty", {"data": 1}, "std_msgs/msg/Empty has no field 'data'; it has no fields"),
     ],
-)  # fmt: skip
-def test_a_mistake_is_named_with_its_place(cls: Any, mapping: Any, text: str) -> None:
+)
+def test_a_value_that_does_not_fit_is_named(name: str, mapping: dict[str, object], text: str) -> None:
+    assert mistake(message("std_msgs", name), mapping) == text
+
+
+def test_an_unknown_field_names_the_known_ones() -> None:
+    assert mistake(Twist, {"liner": {}}) == (
+        "geometry_msgs/msg/Twist has no field 'liner'; its fields are linear, angular"
+    )
+    assert mistake(Twist, {"linear": {"q": 1}}) == (
+        "linear: geometry_msgs/msg/Vector3 has no field 'q'; its fields are x, y, z"
+    )
+
+
+def test_a_mistake_inside_is_named_with_its_place() -> None:
+    assert mistake(Twist, {"linear": {"y": "a"}}) == "linear.y: a number is wanted, not 'a'"
+    assert mistake(Twist, {"linear": {"y": True}}) == "linear.y: a number is wanted, not True"
+    assert mistake(Marker, {"points": [{}, {"x": None}]}) == "points[1].x: a number is wanted, not None"
+
+
+def test_a_value_of_the_wrong_shape_is_told_the_right_one() -> None:
+    assert mistake(Twist, [1]) == "geometry_msgs/msg/Twist is written as {field: value, …}, not as [1]"
+    assert mistake(Twist, {"linear": 3}) == (
+        "linear: geometry_msgs/msg/Vector3 is written as {field: value, …}, not as 3"
+    )
+    assert mistake(Marker, {"points": {"x": 1}}) == (
+        "points: sequence<geometry_msgs/Point> is written as [value, …], not as {'x': 1}"
+    )
+
+
+def mistake(cls: type[Message], mapping: Any) -> str:
     with pytest.raises(MappingError) as wrong:
         message_from_mapping(cls, mapping)
-    assert str(wrong.value) == text
+    return str(wrong.value)

@@ -134,9 +134,7 @@ def test_two_messages_share_no_default() -> None:
         ("lifecycle_msgs", "State", "PRIMARY_STATE_ACTIVE", 3),
     ],
 )
-def test_constants_are_on_the_class_and_its_messages(
-    package: str, name: str, constant: str, value: object
-) -> None:
+def test_constants_are_on_class_and_message(package: str, name: str, constant: str, value: object) -> None:
     cls = message(package, name)
     assert getattr(cls, constant) == value
     assert getattr(cls(), constant) == value

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import threading
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
@@ -127,28 +128,22 @@ def test_a_name_of_another_form_is_refused(name: str) -> None:
         message_of_type(name)
 
 
-def test_unknown_names_lead_to_the_nearest() -> None:
-    with pytest.raises(
-        UnknownInterfaceError, match=r"^there is no package 'std_mgs'; did you mean 'std_msgs'\?$"
-    ):
-        message("std_mgs", "Int32")
-    with pytest.raises(
-        UnknownInterfaceError, match=r"^std_msgs has no message 'Int33'; did you mean 'Int32'\?$"
-    ):
-        message("std_msgs", "Int33")
-    with pytest.raises(
-        UnknownInterfaceError, match=r"^std_srvs has no service 'SetBol'; did you mean 'SetBool'\?$"
-    ):
-        service("std_srvs", "SetBol")
-    with pytest.raises(UnknownInterfaceError, match=r"^there is no package 'qqq'$"):
-        names("qqq", "msg")
-
-
-def test_a_service_asked_for_as_a_message_is_told_apart() -> None:
-    with pytest.raises(
-        UnknownInterfaceError, match=r"^std_srvs has 'SetBool' as a service, not as a message$"
-    ):
-        message("std_srvs", "SetBool")
+@pytest.mark.parametrize(
+    ("find", "package", "name", "text"),
+    [
+        (message, "std_mgs", "Int32", "there is no package 'std_mgs'; did you mean 'std_msgs'?"),
+        (message, "std_msgs", "Int33", "std_msgs has no message 'Int33'; did you mean 'Int32'?"),
+        (service, "std_srvs", "SetBol", "std_srvs has no service 'SetBol'; did you mean 'SetBool'?"),
+        (message, "qqq", "Int32", "there is no package 'qqq'"),
+        (message, "std_srvs", "SetBool", "std_srvs has 'SetBool' as a service, not as a message"),
+    ],
+)
+def test_unknown_names_lead_to_the_nearest(
+    find: Callable[[str, str], object], package: str, name: str, text: str
+) -> None:
+    with pytest.raises(UnknownInterfaceError) as unknown:
+        find(package, name)
+    assert str(unknown.value) == text
 
 
 def test_a_folder_may_not_redefine_what_is_known(tmp_path: Path) -> None:

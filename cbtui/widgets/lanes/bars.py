@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from cbtui.theme import Glyphs, Ink, Role
 from cbtui.widgets.cells import Row
 from cbtui.widgets.durations import duration
-from cbtui.widgets.lanes.columns import Column, Stretch, stretches
+from cbtui.widgets.lanes.columns import Column, Interval, Stretch, stretches
 from cbtui.widgets.lanes.status import is_late, short
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
 from sim.trace.model import Entity, Group, Nanoseconds, Span, Wait
@@ -34,8 +34,9 @@ class Bars:
         for stretch in stretches(columns):
             number = self._number(stretch.top.entity)
             self._columns(row, stretch, Ink(Role.BAR, number))
-            self._seam(row, stretch)
-            self._label(row, stretch, Ink(Role.LABEL, number))
+            if len(stretch.columns) > 1:
+                self._seam(row, stretch)
+                self._label(row, stretch, Ink(Role.LABEL, number))
             self._failure(row, stretch)
 
     def group(self, row: Row, columns: Sequence[Column[Span] | None], group: Group) -> None:
@@ -45,7 +46,7 @@ class Bars:
             self._together(row, columns, ink)
             return
         for stretch in stretches(columns):
-            if len(stretch.columns) == 1:
+            if stretch.is_short:
                 row.put(stretch.first, self.glyphs.point, ink)
                 continue
             row.fill(stretch.first, stretch.after, self.glyphs.line, ink)
@@ -58,7 +59,7 @@ class Bars:
     def _together(self, row: Row, columns: Sequence[Column[Span] | None], ink: Ink) -> None:
         """Draw a group that lets everyone in: a line where one runs, a double one where several do."""
         for stretch in stretches(columns):
-            if len(stretch.columns) == 1 and stretch.columns[0].at_once < 2:
+            if stretch.is_short and stretch.columns[0].at_once < 2:
                 row.put(stretch.first, self.glyphs.point, ink)
                 continue
             self._line(row, stretch, ink)
@@ -72,12 +73,12 @@ class Bars:
         number = self._number(entity.id)
         late = []
         for stretch in stretches(columns):
-            if all(column.eighths < 8 for column in stretch.columns):
+            if stretch.is_short:
                 self._columns(row, stretch, Ink(Role.BAR, number))
             else:
                 self._line(row, stretch, Ink(Role.LINE, number))
                 span = stretch.top
-                took = duration(span.end_at(self.now) - span.start)
+                took = self._took(span)
                 thread = short_thread(self.timeline.threads[span.thread].name)
                 texts = (f"runs {took} on {thread}", f"runs {took}", "runs")
                 self._words(row, stretch.first, stretch.after, texts)
@@ -95,6 +96,8 @@ class Bars:
             number = self._number(stretch.top.entity)
             hatch = self.glyphs.hatch[stretch.top.reason]
             shown = [place for place, column in stretch.places() if _wins(column, calls[place])]
+            if len(shown) > 1 and calls[shown[-1]] is not None and shown[-1] == stretch.after - 1:
+                del shown[-1]
             for place in shown:
                 row.put(place, hatch, Ink(Role.HATCH, number))
             first, after = _longest_part(shown)
@@ -102,12 +105,18 @@ class Bars:
 
     def _reasons(self, wait: Wait) -> tuple[str, ...]:
         """Return ways to say why a callback waits, from the fullest to the shortest."""
-        lasts = wait.end is None or wait.end > self.now
-        took = duration((self.now if lasts else wait.end or self.now) - wait.start)
-        verb = "waits" if lasts else "waited"
+        took = self._took(wait)
+        verb = "waits" if wait.end is None or wait.end > self.now else "waited"
         reasons = self._words_of(wait)
         whole = (f"{verb} {took}: {reason}" for reason in reasons)
         return (*whole, f"{took}: {reasons[-1]}", *reasons, f"{verb} {took}", took)
+
+    def _took(self, interval: Interval) -> str:
+        """Return how long something lasts up to the cursor; in all if it begins later."""
+        end = self.now if interval.end is None else interval.end
+        if interval.start <= self.now:
+            end = min(end, self.now)
+        return duration(max(0, end - interval.start))
 
     def _words_of(self, wait: Wait) -> tuple[str, ...]:
         if wait.reason is not Reason.GROUP_HELD:
@@ -130,7 +139,7 @@ class Bars:
     def _seam(self, row: Row, stretch: Stretch[Span]) -> None:
         """Part a bar from the one that it follows at once."""
         before = stretch.first - 1
-        if len(stretch.columns) > 1 and before >= 0 and row.cells[before] == self.glyphs.left[8]:
+        if before >= 0 and row.cells[before] == self.glyphs.left[8]:
             row.cells[before] = self.glyphs.left[7]
 
     def _label(self, row: Row, stretch: Stretch[Span], ink: Ink) -> None:
@@ -140,7 +149,7 @@ class Bars:
         entity = self.timeline.entities[stretch.top.entity]
         letter = self.timeline.groups[entity.group].letter
         for text in (f"{letter} {entity.callback}", f"{letter} {short(entity.callback)}", letter):
-            if len(text) + 1 <= len(whole):
+            if len(text) + 3 <= len(whole) or text == letter:
                 row.write(whole[0], f"{text} ", ink)
                 return
 

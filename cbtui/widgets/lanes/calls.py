@@ -18,11 +18,12 @@ _LATEST = 500
 
 
 class Calls:
-    """The latest calls of a run, by service."""
+    """The latest calls of a run, the very latest first."""
 
     def __init__(self, timeline: Timeline) -> None:
+        self.latest = list(islice(reversed(timeline.calls), _LATEST))
         self._by_service: dict[str, list[Call]] = {}
-        for call in islice(reversed(timeline.calls), _LATEST):
+        for call in self.latest:
             self._by_service.setdefault(call.service, []).append(call)
 
     def of(self, service: str) -> Sequence[Call]:

@@ -9,7 +9,7 @@ from cbtui.widgets.lanes.scale import Scale
 from sim.trace.events import EntityId
 from sim.trace.model import Nanoseconds, Window
 
-MOST_A_COLUMN = 24
+MOST_A_COLUMN = 16
 """How many of the intervals that begin in one column are looked at; of more, an even sample."""
 
 _SETTLED_AFTER: Nanoseconds = 100_000_000
@@ -61,6 +61,12 @@ class Stretch(NamedTuple, Generic[I]):
         """The first column that does not belong to it."""
         return self.first + len(self.columns)
 
+    @property
+    def is_short(self) -> bool:
+        """Tell whether no column was wholly taken."""
+        columns = self.columns
+        return columns[0].eighths < 8 and (len(columns) == 1 or all(column.eighths < 8 for column in columns))
+
     def places(self) -> Iterable[tuple[int, Column[I]]]:
         """The columns with their places."""
         return enumerate(self.columns, self.first)
@@ -88,7 +94,11 @@ class Columns(Generic[I]):
         fresh = self._summed(missing, edge) if missing else {}
         self._settled = max(0, (edge - _SETTLED_AFTER) // scale.per_column)
         self._told = self._running_at(self._settled)
-        self._kept.update((number, column) for number, column in fresh.items() if number < self._settled)
+        self._kept.update(
+            (number, column)
+            for number, column in fresh.items()
+            if number < self._settled and (column is None or column.top.end is not None)
+        )
         return [
             self._kept[number] if number in self._kept else fresh.get(number)
             for number in range(scale.first, scale.first + scale.columns)
@@ -107,20 +117,25 @@ class Columns(Generic[I]):
             self._kept = {number: column for number, column in self._kept.items() if number < since}
 
     def _summed(self, numbers: Sequence[int], edge: Nanoseconds) -> dict[int, Column[I] | None]:
+        """Sum up all columns from the first of ascending numbers to the last."""
         length = self._per_column
         found = self._query(Window(numbers[0] * length, (numbers[-1] + 1) * length))
         if not found:
             return dict.fromkeys(numbers)
         by_start = attrgetter("start")
         summed: dict[int, Column[I] | None] = {}
-        low = 0
-        for number in numbers:
-            start = number * length
-            low = bisect_left(found, start, lo=low, key=by_start)
-            high = bisect_left(found, start + length, lo=low, key=by_start)
+        high = bisect_left(found, numbers[0] * length, key=by_start)
+        running = self._running(numbers[0] * length)
+        for number in range(numbers[0], numbers[-1] + 1):
+            window = Window(number * length, (number + 1) * length)
+            low, high = high, bisect_left(found, window.end, lo=high, key=by_start)
             step = max(1, -(-(high - low) // MOST_A_COLUMN))
             begun = [found[place] for place in range(low, high, step)]
-            summed[number] = _column(self._running(start), begun, step, Window(start, start + length), edge)
+            summed[number] = _column(running, begun, step, window, edge) if running or begun else None
+            if step > 1:
+                running = self._running(window.end)
+            else:
+                running = [one for one in (*running, *begun) if one.end is None or one.end > window.end]
         return summed
 
     def _running(self, at: Nanoseconds) -> list[I]:

@@ -32,6 +32,10 @@ NOW = Ink(Role.NOW)
 MARK = Ink(Role.MARK)
 
 
+LEAST_WIDTH = 20
+"""Columns below which lanes are left blank."""
+
+
 @dataclass(frozen=True, slots=True)
 class Layout:
     """How a width is shared out: names at the left, lanes, statuses at the right; a frame between."""
@@ -42,11 +46,11 @@ class Layout:
 
 
 def layout_for(width: int) -> Layout:
-    """Share out a width: the narrower, the shorter names and statuses, until only lanes are left."""
-    for least, names, statuses in ((120, 23, 25), (72, 13, 17), (48, 10, 10), (24, 6, 0)):
+    """Share out a width of ``LEAST_WIDTH`` or more: the narrower, the shorter names and statuses."""
+    for least, names, statuses in ((120, 23, 25), (72, 12, 16), (48, 10, 10), (LEAST_WIDTH, 6, 0)):
         if width >= least:
             return Layout(names, width - names - statuses - 2, statuses)
-    return Layout(0, max(1, width - 2), 0)
+    raise ValueError(f"lanes need {LEAST_WIDTH} columns, got {width}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,10 +101,12 @@ class Painter:
             self._timeline = timeline
             self._spans.clear()
             self._waits.clear()
-        layout = layout_for(width)
+        layout = layout_for(max(width, LEAST_WIDTH))
         scale = scale_for(window, layout.columns)
         moment = timeline.moment(now)
         every = all_lanes(timeline, self.service)
+        if width < LEAST_WIDTH:
+            return Picture(((Run(" " * width, PLAIN),),) * height, (), layout, scale)
         lanes = choose(every, height - 1, timeline, scale.window, moment)
         frame = _Frame(self, timeline, scale, layout, now, moment)
         rows = [frame.lane(lane) for lane in lanes] if height > 0 else []
@@ -168,13 +174,11 @@ class _Frame:
     def axis(self, hidden: int) -> list[Run]:
         """Paint the time axis; ``hidden`` lanes that had no room are told of at its left."""
         row = Row(self._layout.columns, self._charset)
-        for column, text in labels(self._scale):
-            if row.blank(column, column + len(text) + 1):
-                row.write(column, text, FAINT)
-        for mark in self._timeline.marks(self._scale.window):
-            if mark.kind == "command":
-                row.put(self._scale.column_of(mark.at), self._glyphs.up, MARK)
         self._mark_now(row)
+        for column, text in labels(self._scale):
+            if row.blank(max(column - 1, 0), column + len(text) + 1):
+                row.write(column, text, FAINT)
+        self._mark_commands(row)
         name = f"+{hidden} lanes" if hidden else "seconds"
         unit = f"{duration(self._scale.per_column)}/col" if self._layout.statuses >= 15 else ""
         return self._framed([Run(name, FAINT)], row, Run(unit, FAINT))
@@ -203,12 +207,19 @@ class _Frame:
         shown = columns[: max(0, self._now_column + 1)]
         return next((column.top for column in reversed(shown) if column is not None), None)
 
+    def _mark_commands(self, row: Row) -> None:
+        """Mark what the person did, but for the calls that a service's lane shows."""
+        shown = {self._scale.column_of(call.sent) for call in self._calls.latest}
+        for mark in self._timeline.marks(self._scale.window):
+            column = self._scale.column_of(mark.at)
+            if mark.kind == "command" and column not in shown and row.inks[column] is not NOW:
+                row.put(column, self._glyphs.up, MARK)
+
     def _mark_now(self, row: Row) -> None:
         column = self._now_column
         if not 0 <= column < len(row.cells):
             return
         if column >= 3:
-            row.fill(max(0, column - 4), column - 2, " ", PLAIN)
             row.write(column - 3, f"now{self._glyphs.now}", NOW)
         else:
             row.write(column, f"{self._glyphs.now}now ", NOW)
@@ -231,7 +242,8 @@ class _Frame:
     def _show_cursor(self, row: Row) -> None:
         """Show where the cursor stands and what lies after it, when it is not at the edge."""
         column = self._now_column
-        if not 0 <= column < len(row.cells) or column >= self._scale.column_of(self._edge):
+        at_edge = self._now + self._scale.per_column >= self._edge
+        if at_edge or not 0 <= column < len(row.cells):
             return
         if row.blank(column, column + 1):
             row.put(column, self._glyphs.cursor, NOW)
@@ -255,7 +267,7 @@ class _Frame:
         return Run(f"{group.letter} ", Ink(Role.LETTER, self._numbers[group.id]))
 
     def _sole_name(self, entity: Entity, group: Group) -> str:
-        room = self._layout.names - len(group.letter) - 2
+        room = self._layout.names - len(group.letter) - 1
         whole, brief = group.kind.value, group.kind.value[:4]
         names = (entity.label, short(entity.label))
         for text in (f"{kind} {name}" for kind in (whole, brief) for name in names):

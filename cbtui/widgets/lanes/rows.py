@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from sim.trace.events import EntityId, EntityKind, GroupId
-from sim.trace.model import Entity, Group, Moment, Thread, Window
+from sim.trace.events import EntityId, EntityKind, GroupId, ThreadId
+from sim.trace.model import Entity, Group, Moment, Nanoseconds, Thread, Window
 from sim.trace.timeline import Timeline
 
 HOUSEKEEPING = frozenset(
@@ -87,8 +87,18 @@ def _working_threads(timeline: Timeline) -> list[Thread]:
     threads = list(timeline.threads.values())
     if len(threads) < 2:
         return threads
-    whole = Window(0, timeline.end + 1)
-    return [one for one in threads if one.name != "MainThread" or timeline.spans_on(one.id, whole)]
+    end = timeline.end
+    return [one for one in threads if one.name != "MainThread" or ever_ran(timeline, one.id, end)]
+
+
+def ever_ran(timeline: Timeline, thread: ThreadId, at: Nanoseconds) -> bool:
+    """Tell whether a thread ran any callback up to ``at``; looks no further than the first ones."""
+    reach = 1_000_000_000
+    while reach < at:
+        if timeline.spans_on(thread, Window(0, reach)):
+            return True
+        reach *= 2
+    return bool(timeline.spans_on(thread, Window(0, at + 1)))
 
 
 def choose(lanes: list[Lane], room: int, timeline: Timeline, window: Window, moment: Moment) -> list[Lane]:
@@ -134,4 +144,4 @@ class _Worth:
             return 8
         if self.timeline.waits_of(entity, self.window):
             return 7
-        return 5 if self.timeline.spans_of(entity, self.window) else 1
+        return 5 if self.timeline.calls_of(entity, self.window) else 1

@@ -5,7 +5,7 @@ from typing import NamedTuple
 from sim.trace.model import Nanoseconds, Window
 
 _SECOND = 1_000_000_000
-_MANTISSAS = (10, 15, 20, 25, 30, 40, 50, 60, 80)
+_MANTISSAS = (10, 12, 15, 18, 20, 22, 25, 30, 35, 40, 45, 50, 60, 70, 80, 90)
 _LABEL_STEPS = (1, 2, 5)
 _LABEL_ROOM = 8
 

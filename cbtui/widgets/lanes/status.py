@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from cbtui.theme import GLYPHS, Charset, Ink, Role, Run
 from cbtui.widgets.durations import duration
 from cbtui.widgets.lanes.calls import Calls
-from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, SoleLane, ThreadLane
+from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, SoleLane, ThreadLane, ever_ran
 from sim.trace.events import EntityKind, GroupKind
 from sim.trace.model import Entity, Group, Moment, Span, Thread, Window
 from sim.trace.timeline import Timeline
@@ -48,7 +48,7 @@ class Status:
         if running is not None:
             now = f"  {self._caller(running)} {duration(self.moment.at - running.start)}"
             return Run(f"{share:4.0%}{now if self.width >= _WIDE else ' busy'}", PLAIN)
-        if share == 0 and not self.timeline.spans_on(thread.id, Window(0, self.moment.at + 1)):
+        if share == 0 and not ever_ran(self.timeline, thread.id, self.moment.at):
             return Run("  0%  never needed" if self.width >= _WIDE else "  0% unused", FAINT)
         return Run(f"{share:4.0%} busy", PLAIN if share else FAINT)
 
@@ -92,7 +92,7 @@ class Status:
     def _queue(self, entity: Entity, latest: Span | None) -> Run:
         queue = self.timeline.queue(entity.id, self.moment.at)
         full = entity.depth and queue.depth >= entity.depth
-        level = f"{queue.depth}/{entity.depth}{' !' if full else ''}"
+        level = f"{queue.depth}/{entity.depth}{'!' if full else ''}"
         lost = f" lost {_count(queue.dropped)}" if queue.dropped else ""
         age = "" if latest is None else f" {GLYPHS[self.charset].between} age {duration(latest.age)}"
         texts = (f"queue {level}{lost}{age}", f"queue {level}{lost}", f"{level}{lost}", level)

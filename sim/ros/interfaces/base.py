@@ -29,7 +29,15 @@ class Interface:
     """Returns a message as a subscriber receives it."""
 
 
-class Message:
+class MessageType(type):
+    """The class of message classes; it tells type checkers of the constants that definitions bring."""
+
+    if TYPE_CHECKING:
+
+        def __getattr__(cls, name: str) -> Any: ...
+
+
+class Message(metaclass=MessageType):
     """A ROS 2 message, or the request or response of a service.
 
     Its classes come from `message` and `service`. As in rclpy, the constructor takes field values
@@ -42,7 +50,7 @@ class Message:
         AttributeError: assignment to an attribute that is no field.
     """
 
-    __slots__ = ()
+    __slots__: tuple[str, ...] = ()
     __interface__: ClassVar[Interface]
     __type_name__: ClassVar[str]
     SLOT_TYPES: ClassVar[tuple[FieldType, ...]] = ()

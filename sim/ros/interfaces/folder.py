@@ -143,8 +143,7 @@ def _require_fields(fields: list[Field], origin: str) -> None:
         if entry.name in seen:
             raise DefinitionError(f"{origin}: the field {entry.name!r} is defined twice")
         if isinstance(entry.typ.ref, NamedType) and not _TYPE_NAME.fullmatch(entry.typ.ref.name):
-            written = entry.typ.ref.name
             raise DefinitionError(
-                f"{origin}: the type of {entry.name!r}, {written}, is not of the form package/Name"
+                f"{origin}: the type of {entry.name!r}, {entry.typ.ref.name}, is not of the form package/Name"
             )
         seen.add(entry.name)

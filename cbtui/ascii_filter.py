@@ -1,0 +1,46 @@
+"""Makes sure that nothing but ASCII reaches a terminal that shows nothing else."""
+
+from functools import lru_cache
+from unicodedata import normalize
+
+from rich.cells import cell_len
+from rich.segment import Segment
+from textual.color import Color
+from textual.filter import LineFilter
+
+_SIGNS = dict(
+    zip(
+        "─━═│┃║┄┅┆┇┈┉┊┋╌╍╎╏╭╮╰╯╱╲╳●○■◂▸▶▲▼✓✗×·•▪‣…–—−‖“”‘’«»←→↑↓␣⏎◷",  # noqa: RUF001
+        "--=|||--||--||--||++++/\\x*o#<>>^v+xx.***~---=\"\"''<><>^v_<@",
+        strict=True,
+    )
+)
+
+
+class AsciiFilter(LineFilter):
+    """Replaces every character beyond ASCII by the plainest one like it, column by column."""
+
+    def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
+        """Return the segments in ASCII; what carries no text, such as a cursor movement, stays."""
+        return [Segment(in_ascii(text), style, control) for text, style, control in segments]
+
+
+@lru_cache(maxsize=4096)
+def in_ascii(text: str) -> str:
+    """Return text of the same width in ASCII."""
+    return text if text.isascii() else "".join(map(_plain, text))
+
+
+def _plain(character: str) -> str:
+    if character.isascii():
+        return character
+    if character in _SIGNS:
+        return _SIGNS[character]
+    if "\u2500" <= character <= "\u257f":
+        return "+"
+    if "\u2580" <= character <= "\u259f":
+        return "#"
+    if "\u2800" <= character <= "\u28ff":
+        return " " if character == "\u2800" else "."
+    base = normalize("NFKD", character)[0]
+    return base if base.isascii() and cell_len(character) == 1 else "?" * cell_len(character)

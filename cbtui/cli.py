@@ -1,0 +1,217 @@
+"""The ``cbtui`` command: opens the console, lists lessons, runs them headless.
+
+Whatever a command needs is imported when it runs: ``cbtui --help`` must answer at once.
+"""
+
+import argparse
+import math
+import sys
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING, NoReturn
+
+if TYPE_CHECKING:
+    from lessons.lesson import Lesson
+
+_MAX_THREADS = 64
+_DEFAULT_SECONDS = 60.0
+_CHARSETS = ("braille", "block", "ascii")
+
+
+class _Parser(argparse.ArgumentParser):
+    """A parser whose complaints are one line."""
+
+    def error(self, message: str) -> NoReturn:
+        """Say what was wrong and where to read more, and exit with 2."""
+        self.exit(2, f"{self.prog}: {message} (see {self.prog} --help)\n")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line; returns the exit code: 0 well, 1 the run failed, 2 the command was wrong."""
+    options = _parser().parse_args(argv)
+    action: Callable[[argparse.Namespace], int] = options.action
+    return action(options)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="cbtui",
+        description="A terminal teaching console for ROS 2 callback groups and executors.",
+        epilog="Without a command the console opens on its menu of lessons.",
+    )
+    parser.add_argument("--version", action="version", version=f"cbtui {_version()}")
+    _add_console_options(parser)
+    parser.set_defaults(action=_open_console, lesson=None)
+    commands = parser.add_subparsers(title="commands", metavar="COMMAND")
+
+    listing = commands.add_parser("list", help="list the lessons")
+    listing.set_defaults(action=_list)
+
+    opening = commands.add_parser("open", help="open a lesson in the console")
+    opening.add_argument("lesson", metavar="LESSON")
+    _add_console_options(opening)
+    opening.set_defaults(action=_open_console)
+
+    running = commands.add_parser(
+        "run",
+        help="run a lesson without the console",
+        description="Run a lesson headless: its log goes to stderr, a summary to stdout.",
+    )
+    _add_run_options(running)
+    running.set_defaults(action=_run)
+    return parser
+
+
+def _add_console_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--charset", choices=_CHARSETS, default="braille", help="what the screen is drawn with (%(default)s)"
+    )
+
+
+def _add_run_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("lesson", metavar="LESSON", help="a lesson's id, see cbtui list")
+    parser.add_argument(
+        "--for",
+        dest="seconds",
+        metavar="SECONDS",
+        type=_duration,
+        default=_DEFAULT_SECONDS,
+        help="how long the run lasts in its own time (%(default)g)",
+    )
+    parser.add_argument(
+        "--threads", metavar="N", type=_threads, help="number of threads of the lesson's executor"
+    )
+    parser.add_argument(
+        "--call",
+        dest="calls",
+        metavar="SECONDS",
+        type=_moment,
+        action="append",
+        default=[],
+        help="call the lesson's SetBool service at that time; may be given again",
+    )
+    parser.add_argument(
+        "--call-data", choices=("true", "false"), default="true", help="what the calls send (%(default)s)"
+    )
+    parser.add_argument(
+        "--clock", choices=("virtual", "real"), default="virtual", help="which time it runs on (%(default)s)"
+    )
+    parser.add_argument(
+        "--speed",
+        metavar="X",
+        type=_speed,
+        default=math.inf,
+        help="virtual seconds per real second, or max (max)",
+    )
+    parser.add_argument("--events", metavar="FILE.jsonl", help="write every event as a line of JSON")
+
+
+def _number(text: str, what: str) -> float:
+    try:
+        number = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number; give {what}") from None
+    if not math.isfinite(number):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a finite number; give {what}")
+    return number
+
+
+def _duration(text: str) -> float:
+    seconds = _number(text, "seconds, such as 60")
+    if seconds <= 0:
+        raise argparse.ArgumentTypeError(f"a run cannot last {text} seconds; give more than 0")
+    return seconds
+
+
+def _moment(text: str) -> float:
+    seconds = _number(text, "seconds, such as 2.55")
+    if seconds < 0:
+        raise argparse.ArgumentTypeError(f"{text} s is before the run begins; give 0 or more")
+    return seconds
+
+
+def _threads(text: str) -> int:
+    try:
+        threads = int(text)
+    except ValueError:
+        sentence = f"{text!r} is not a whole number; give 1 to {_MAX_THREADS}"
+        raise argparse.ArgumentTypeError(sentence) from None
+    if not 1 <= threads <= _MAX_THREADS:
+        raise argparse.ArgumentTypeError(
+            f"an executor cannot have {threads} threads here; give 1 to {_MAX_THREADS}"
+        )
+    return threads
+
+
+def _speed(text: str) -> float:
+    if text == "max":
+        return math.inf
+    speed = _number(text, "a factor such as 2, or max")
+    if speed <= 0:
+        raise argparse.ArgumentTypeError(f"time cannot pass {text} times as fast; give more than 0, or max")
+    return speed
+
+
+def _version() -> str:
+    from importlib.metadata import PackageNotFoundError, version
+
+    try:
+        return version("cbtui")
+    except PackageNotFoundError:
+        return "(not installed)"
+
+
+def _lesson(name: str) -> "Lesson":
+    """The lesson of that id; an unknown one ends the program with one line and 2."""
+    from lessons.catalogue import UnknownLesson, find
+
+    try:
+        return find(name)
+    except UnknownLesson as error:
+        _refuse(str(error))
+
+
+def _refuse(sentence: str) -> NoReturn:
+    sys.stderr.write(f"cbtui: {sentence}\n")
+    raise SystemExit(2)
+
+
+def _list(_options: argparse.Namespace) -> int:
+    from lessons.catalogue import lessons
+
+    known = lessons()
+    width = max(len(lesson.id) for lesson in known)
+    for lesson in known:
+        sys.stdout.write(f"{lesson.number}  {lesson.id:{width}}  {lesson.title}: {lesson.executor}\n")
+    return 0
+
+
+def _open_console(options: argparse.Namespace) -> int:
+    if options.lesson is not None:
+        _lesson(options.lesson)
+    if not (sys.stdin.isatty() and sys.stdout.isatty()):
+        _refuse("the console needs a terminal; use cbtui run LESSON where there is none")
+    from cbtui.app import CbtuiApp
+
+    CbtuiApp(charset=options.charset, start_lesson=options.lesson).run()
+    return 0
+
+
+def _run(options: argparse.Namespace) -> int:
+    lesson = _lesson(options.lesson)
+    late = [call for call in options.calls if call >= options.seconds]
+    if late:
+        _refuse(f"a call at {late[0]:g} s comes when the run of {options.seconds:g} s is over; see --for")
+    if options.clock == "real" and options.speed != math.inf:
+        _refuse("--speed needs the virtual clock; leave it out with --clock real")
+    from cbtui.headless import run_headless
+
+    return run_headless(
+        lesson,
+        seconds=options.seconds,
+        threads=options.threads,
+        calls=options.calls,
+        call_data=options.call_data == "true",
+        clock=options.clock,
+        speed=None if options.speed == math.inf else options.speed,
+        events_path=options.events,
+    )

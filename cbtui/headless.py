@@ -1,0 +1,138 @@
+"""Runs a lesson without the console: its log to stderr, its summary to stdout, its events to a file."""
+
+import sys
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from queue import Queue
+from typing import BinaryIO, TypeAlias
+
+import msgspec
+
+from cbtui.lesson_setup import setup_for
+from cbtui.session import Session
+from cbtui.theme import Charset
+from cbtui.widgets.cells import visible
+from lessons.lesson import Lesson
+from sim.engine.commands import Stop
+from sim.engine.setup import RunSetup, TimedCall
+from sim.trace.events import AnyEvent, Logged, Notice, Printed, RunStarted
+from sim.trace.jsonl import JsonLines
+from sim.trace.summary import summarise
+from sim.trace.summary_text import plain_text
+from sim.trace.timeline import Timeline
+
+_SECOND = 1_000_000_000
+_BATCHES = 64
+"""Batches that may wait for this process; a full queue holds the engine up, and nothing is lost."""
+
+News: TypeAlias = "list[AnyEvent] | str | None"
+
+
+def run_headless(
+    lesson: Lesson,
+    *,
+    seconds: float,
+    threads: int | None,
+    calls: Sequence[float],
+    call_data: bool,
+    clock: str,
+    speed: float | None,
+    events_path: str | None,
+) -> int:
+    """Run a lesson to its end; returns the exit code: 0 well, 1 it failed, 2 the events file cannot be."""
+    setup = msgspec.structs.replace(
+        setup_for(lesson, threads=threads, speed=speed),
+        clock=clock,
+        until=round(seconds * _SECOND),
+        calls=tuple(TimedCall(round(at * _SECOND), call_data) for at in sorted(calls)),
+    )
+    with ExitStack() as files:
+        try:
+            file = None if events_path is None else files.enter_context(Path(events_path).open("wb"))
+        except OSError as error:
+            sys.stderr.write(f"cbtui: cannot write events to {events_path}: {error.strerror}\n")
+            return 2
+        try:
+            return _Headless(setup, file).run()
+        except OSError as error:
+            sys.stderr.write(f"cbtui: the run was cut short: {error.strerror}\n")
+            return 1
+
+
+class _Headless:
+    """One run: takes the news of its session on this thread, one batch after another."""
+
+    def __init__(self, setup: RunSetup, events_file: BinaryIO | None) -> None:
+        self._news: Queue[News] = Queue(_BATCHES)
+        self._session = Session(setup, self._news.put, self._news.put)
+        self._timeline = Timeline()
+        self._file = events_file
+        self._lines = JsonLines()
+        self._log = _LogPrinter()
+
+    def run(self) -> int:
+        """Run to the end, whatever ends it, and print the summary."""
+        self._session.start()
+        interrupted = False
+        try:
+            loss = self._follow()
+        except KeyboardInterrupt:
+            interrupted = True
+            self._session.send(Stop())
+            loss = self._follow()
+        finally:
+            self._session.stop()
+        sys.stdout.write(plain_text(summarise(self._timeline)))
+        sys.stdout.flush()
+        return 130 if interrupted else self._verdict(loss)
+
+    def _follow(self) -> str | None:
+        """Take news until the last; what was lost, if the engine was."""
+        for events in iter(self._batches()):
+            self._timeline.extend(events)
+            self._log.print(events)
+            if self._file is not None:
+                self._file.writelines(self._lines.lines(events))
+        return self._loss
+
+    def _batches(self) -> Iterator[list[AnyEvent]]:
+        while isinstance(news := self._news.get(), list):
+            yield news
+        self._loss = news
+
+    def _verdict(self, loss: str | None) -> int:
+        if loss is not None:
+            sys.stderr.write(f"cbtui: {loss} at {self._timeline.end / _SECOND:.3f} s; run it again\n")
+            return 1
+        ended = self._timeline.ended
+        if ended is not None and ended.failed:
+            sys.stderr.write(f"cbtui: {ended.reason}\n")
+            return 1
+        return 0
+
+
+class _LogPrinter:
+    """Prints what the program logs as ROS does, and what it prints where it printed it."""
+
+    def __init__(self) -> None:
+        self._epoch = 0
+
+    def print(self, events: list[AnyEvent]) -> None:
+        """Print the lines among the events; control characters are shown, not obeyed."""
+        for event in events:
+            match event:
+                case Logged(t=t, severity=severity, logger=logger, text=text):
+                    seconds, nanoseconds = divmod(self._epoch + t, _SECOND)
+                    _write(f"[{severity}] [{seconds}.{nanoseconds:09d}] [{logger}]: {text}", error=True)
+                case Printed(text=text, error=error):
+                    _write(text, error=error)
+                case Notice(severity=severity, text=text):
+                    _write(f"cbtui: {text}", error=True)
+                case RunStarted(epoch=epoch):
+                    self._epoch = epoch
+
+
+def _write(line: str, *, error: bool) -> None:
+    stream = sys.stderr if error else sys.stdout
+    stream.write("\n".join(visible(part, Charset.BRAILLE) for part in line.split("\n")) + "\n")

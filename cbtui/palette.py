@@ -1,0 +1,37 @@
+"""The registry's actions in the command palette."""
+
+from collections.abc import Coroutine, Iterator
+from functools import partial
+from typing import Any
+
+from textual.command import DiscoveryHit, Hit, Hits, Provider
+
+from cbtui.actions import Action, Scope, actions_of, method_of, target_of
+
+
+class ActionsProvider(Provider):
+    """Offers the actions that work on the screen below the palette."""
+
+    async def discover(self) -> Hits:
+        """Offer all of them."""
+        for action in self._actions():
+            yield DiscoveryHit(action.help, self._run(action))
+
+    async def search(self, query: str) -> Hits:
+        """Offer those whose help or label fits."""
+        matcher = self.matcher(query)
+        for action in self._actions():
+            score = max(matcher.match(action.help), matcher.match(action.label))
+            if score > 0:
+                yield Hit(score, matcher.highlight(action.help), self._run(action), help=f"key {action.key}")
+
+    def _actions(self) -> Iterator[Action]:
+        scope: Scope | None = getattr(self.screen, "SCOPE", None)
+        if scope is None:
+            return
+        for action in actions_of(scope):
+            if action.id != "command_palette" and self.screen.check_action(*method_of(action)) is not False:
+                yield action
+
+    def _run(self, action: Action) -> "partial[Coroutine[Any, Any, bool]]":
+        return partial(self.app.run_action, target_of(action))

@@ -1,0 +1,53 @@
+"""Every key and what it does, from the registry."""
+
+from collections.abc import Iterator, Sequence
+from typing import ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.containers import Container, VerticalScroll
+from textual.content import Content
+from textual.widgets import Static
+
+from cbtui.actions import ACTIONS, Action, Scope, bindings_of, signs_of, together
+from cbtui.screens.sized import SizedModal
+from cbtui.theme import Charset
+from cbtui.widgets.key_bar import KeyBar
+
+_SHOWN = (Scope.LESSON, Scope.MENU, Scope.EVERYWHERE)
+
+
+class HelpScreen(SizedModal[None]):
+    """Lists the keys of all screens."""
+
+    SCOPE = Scope.HELP
+    CSS_PATH = "window.tcss"
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.HELP)]
+
+    def __init__(self, charset: Charset) -> None:
+        super().__init__()
+        self._charset = charset
+
+    def compose(self) -> ComposeResult:
+        """Lay out the list."""
+        with Container(classes="window") as window:
+            window.border_title = "Keys"
+            with VerticalScroll():
+                yield Static(Content("\n").join(_sections(self._charset)))
+            yield KeyBar(Scope.HELP, self._charset)
+
+    def action_close(self) -> None:
+        """Go back."""
+        self.dismiss()
+
+
+def _sections(charset: Charset) -> Iterator[Content]:
+    for scope in _SHOWN:
+        actions = [action for action in ACTIONS if action.scope is scope]
+        rows = [_row(group, charset) for group in together(actions, "help")]
+        yield Content("\n").join([Content.styled(scope.value, "bold $text-primary"), *rows, Content("")])
+
+
+def _row(actions: Sequence[Action], charset: Charset) -> Content:
+    keys = signs_of(actions, charset)
+    return Content.assemble((f"{keys:>7}", "bold $text-accent"), f"  {actions[0].help}")

@@ -1,0 +1,336 @@
+"""A lesson on screen: its run on lanes, the moment in words, and guide, source, robot and log."""
+
+import asyncio
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, ClassVar, cast
+
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.containers import Container
+from textual.events import DescendantFocus
+from textual.message import Message
+from textual.widget import Widget
+
+from cbtui.actions import PANES, Scope, bindings_of
+from cbtui.arena_plan import arena_plan
+from cbtui.concurrency import Concurrency
+from cbtui.lesson_setup import setup_for
+from cbtui.live_run import SPEEDS, LiveRun, OpenSession
+from cbtui.playhead import SPANS, Playhead
+from cbtui.screens.layout import Layout
+from cbtui.screens.sized import SizedScreen
+from cbtui.screens.threads import ThreadsScreen
+from cbtui.theme import Charset
+from cbtui.widgets.arena_map import ArenaMap
+from cbtui.widgets.code import CodeView
+from cbtui.widgets.diagnosis import call_note, verdict
+from cbtui.widgets.diagnosis_line import DiagnosisLine
+from cbtui.widgets.guide import Guide
+from cbtui.widgets.key_bar import KeyBar
+from cbtui.widgets.lanes import Lanes
+from cbtui.widgets.log import LogView
+from cbtui.widgets.status_line import StatusLine, status_of
+from cbtui.widgets.tabs import Tabs, title_of
+from lessons.lesson import Lesson
+from sim.trace.events import AnyEvent
+
+if TYPE_CHECKING:
+    from cbtui.app import CbtuiApp
+
+FRAMES_A_SECOND = 25
+
+
+class LessonScreen(SizedScreen[None]):
+    """Runs a lesson and shows it: everything on it is a function of the run's timeline and of a moment.
+
+    Events come from the session's thread as one message a batch, and only make the timeline longer; a timer
+    draws what there is new. However fast a run is, the screen is drawn ``FRAMES_A_SECOND`` times at most.
+    """
+
+    SCOPE = Scope.LESSON
+    CSS_PATH = "lesson.tcss"
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.LESSON)]
+    AUTO_FOCUS = "#guide"
+
+    class Delivered(Message):
+        """A batch of events of the run with this number."""
+
+        def __init__(self, run: int, events: list[AnyEvent]) -> None:
+            super().__init__()
+            self.run = run
+            self.events = events
+
+    class Over(Message):
+        """The engine of the run with this number is gone; ``loss`` says how, if it should not be."""
+
+        def __init__(self, run: int, loss: str | None) -> None:
+            super().__init__()
+            self.run = run
+            self.loss = loss
+
+    def __init__(
+        self, lesson: Lesson, lessons: Sequence[Lesson], open_session: OpenSession, charset: Charset
+    ) -> None:
+        super().__init__()
+        self._lesson = lesson
+        self._lessons = lessons
+        self._open_session = open_session
+        self._charset = charset
+        self._threads: int | None = None
+        self._runs = 0
+        self._playhead = Playhead()
+        self._pane = PANES[0]
+        self._stale = True
+        self._offered: tuple[object, ...] = ()
+        self._begin(speed=1.0)
+
+    @property
+    def live_run(self) -> LiveRun:
+        """The run on screen."""
+        return self._run
+
+    def compose(self) -> ComposeResult:
+        """Lay out lines, lanes and panes."""
+        yield StatusLine()
+        yield Lanes()
+        yield Tabs()
+        with Container(id="panes"):
+            yield Guide(self._lesson.guide, id="guide")
+            yield CodeView(self._lesson.node_path, id="code")
+            yield ArenaMap(arena_plan(), id="robot")
+            yield LogView(id="log")
+        yield DiagnosisLine()
+        yield KeyBar(Scope.LESSON, self._charset)
+
+    def on_mount(self) -> None:
+        """Start the run and the timer that draws it."""
+        lanes, robot = self.query_one(Lanes), self.query_one(ArenaMap)
+        lanes.charset = robot.charset = self._charset
+        lanes.service = self._lesson.service.name
+        robot.can_focus = True
+        for name in PANES:
+            self._widget(name).border_title = title_of(name)
+        self._show(self._pane)
+        self._run.start()
+        self.set_interval(1 / FRAMES_A_SECOND, self._draw_if_stale)
+
+    async def on_unmount(self) -> None:
+        """End the engine, whatever way the screen is left."""
+        await asyncio.to_thread(self._run.stop)
+
+    # what the engine tells
+
+    def _hand_over(self, message: Message) -> None:
+        """Bring something from the session's thread to the screen's; one that is closing lets it drop."""
+        self.post_message(message)
+
+    @on(Delivered)
+    def _take(self, message: Delivered) -> None:
+        if message.run == self._runs:
+            self._run.take(message.events)
+            self._stale = True
+
+    @on(Over)
+    def _note_the_end(self, message: Over) -> None:
+        if message.run == self._runs:
+            self._run.over(message.loss)
+            self._stale = True
+
+    # drawing
+
+    def draw(self) -> None:
+        """Show the moment that the playhead is at."""
+        self._stale = False
+        if self.layout_now is Layout.SMALL:
+            return
+        run, timeline = self._run, self._run.timeline
+        now = self._playhead.now(timeline.end)
+        title = f"{self._lesson.number}/{len(self._lessons)} {self._lesson.title}"
+        self.query_one(StatusLine).status = status_of(title, run, self._playhead, self._lesson.executor)
+        lanes = self.query_one(Lanes)
+        lanes.window, lanes.now, lanes.timeline = self._playhead.window(timeline.end), now, timeline
+        line = self.query_one(DiagnosisLine)
+        line.diagnosis = verdict(run, self._playhead, self._concurrency)
+        line.note = call_note(timeline, now)
+        for name in PANES:
+            if self._widget(name).display:
+                self._draw_pane(name)
+        self._offer_keys()
+
+    def laid_out(self) -> None:
+        """Draw what the new layout shows."""
+        self._stale = True
+
+    def _draw_if_stale(self) -> None:
+        if self._stale:
+            self.draw()
+
+    def _draw_pane(self, name: str) -> None:
+        timeline = self._run.timeline
+        now = self._playhead.now(timeline.end)
+        match self._widget(name):
+            case CodeView() | LogView() as view:
+                view.show(timeline, now)
+            case ArenaMap() as robot:
+                robot.now, robot.timeline = now, timeline
+
+    def _offer_keys(self) -> None:
+        """Tell the line of keys when others have a meaning."""
+        offered = (self._run.state, self._playhead, self._run.speed)
+        if offered != self._offered:
+            self._offered = offered
+            self.query_one(KeyBar).changed()
+
+    # runs
+
+    def _begin(self, speed: float | None) -> None:
+        """Set up another run; what the engine of the one before still sends no longer counts."""
+        self._runs += 1
+        number = self._runs
+        self._run = LiveRun(
+            setup_for(self._lesson, threads=self._threads, speed=speed),
+            self._open_session,
+            lambda events: self._hand_over(self.Delivered(number, events)),
+            lambda loss: self._hand_over(self.Over(number, loss)),
+        )
+        self._concurrency = Concurrency(self._run.timeline)
+        self._playhead = self._playhead.live()
+        self._stale = True
+
+    async def _run_again(self) -> None:
+        before = self._run
+        self._begin(before.speed)
+        await asyncio.to_thread(before.stop)
+        self._run.start()
+
+    # panes
+
+    def _widget(self, pane: str) -> Widget:
+        return self.query_one(f"#{pane}")
+
+    def _show(self, pane: str) -> None:
+        """Make a pane the current one."""
+        self._pane = pane
+        for name in PANES:
+            self._widget(name).set_class(name == pane, "-current")
+        self.query_one(Tabs).current = pane
+        if not self._widget(pane).has_focus:
+            self._widget(pane).focus()
+        self._stale = True
+
+    @on(Tabs.Picked)
+    def _pick(self, message: Tabs.Picked) -> None:
+        self._show(message.pane)
+
+    def on_descendant_focus(self, event: DescendantFocus) -> None:
+        """Make the pane current that the person clicked on."""
+        if event.widget.id in PANES and event.widget.id != self._pane:
+            self._show(event.widget.id)
+
+    # actions
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Offer what has a meaning now."""
+        run, playhead = self._run, self._playhead
+        paced = run.alive and run.virtual
+        meaningless = {
+            "call_service": not run.alive,
+            "call_service_off": not run.alive,
+            "pause": not run.alive,
+            "slower": not paced or run.speed == SPEEDS[0],
+            "faster": not paced or run.speed == SPEEDS[-1],
+            "live": playhead.at is None,
+            "later": playhead.at is None,
+            "zoom_in": playhead.span == SPANS[0],
+            "zoom_out": playhead.span == SPANS[-1],
+            "next_lesson": self._lesson == self._lessons[-1],
+        }
+        return not meaningless.get(action, False)
+
+    def action_call_service(self) -> None:
+        """Call the lesson's service with true."""
+        self._run.call(True)
+
+    def action_call_service_off(self) -> None:
+        """Call the lesson's service with false."""
+        self._run.call(False)
+
+    def action_pause(self) -> None:
+        """Stop time, or let it go on."""
+        self._run.toggle_pause()
+        self._stale = True
+
+    async def action_restart(self) -> None:
+        """Put the robot back; run again if there is no engine any more."""
+        if self._run.alive:
+            self._run.reset_world()
+        else:
+            await self._run_again()
+
+    def action_threads(self) -> None:
+        """Ask for a number of threads."""
+        self.app.push_screen(
+            ThreadsScreen(self._lesson.executor, self._threads, self._charset), self._run_with_threads
+        )
+
+    async def _run_with_threads(self, threads: int | None) -> None:
+        if threads is not None:
+            self._threads = threads or None
+            await self._run_again()
+
+    def action_slower(self) -> None:
+        """Let virtual time pass more slowly."""
+        self._run.change_speed(-1)
+        self._stale = True
+
+    def action_faster(self) -> None:
+        """Let virtual time pass faster."""
+        self._run.change_speed(1)
+        self._stale = True
+
+    def action_earlier(self) -> None:
+        """Look further back."""
+        self._move(self._playhead.moved(-1, self._run.timeline.end))
+
+    def action_later(self) -> None:
+        """Look less far back."""
+        self._move(self._playhead.moved(1, self._run.timeline.end))
+
+    def action_live(self) -> None:
+        """Go back to the present."""
+        self._move(self._playhead.live())
+
+    def action_zoom_in(self) -> None:
+        """Show a shorter stretch of time."""
+        self._move(self._playhead.zoomed(-1))
+
+    def action_zoom_out(self) -> None:
+        """Show a longer stretch of time."""
+        self._move(self._playhead.zoomed(1))
+
+    def _move(self, playhead: Playhead) -> None:
+        self._playhead = playhead
+        self._stale = True
+
+    def action_show_pane(self, pane: str) -> None:
+        """Go to a pane."""
+        self._show(pane)
+
+    def action_next_pane(self) -> None:
+        """Go to the next pane."""
+        self._show(PANES[(PANES.index(self._pane) + 1) % len(PANES)])
+
+    def action_maximise(self) -> None:
+        """Let the current pane fill the screen, or give the others their room back."""
+        self.toggle_class("-maximised")
+        self._stale = True
+
+    def action_next_lesson(self) -> None:
+        """Open the next lesson."""
+        place = self._lessons.index(self._lesson)
+        cast("CbtuiApp", self.app).open_lesson(self._lessons[place + 1])
+
+    def action_leave(self) -> None:
+        """Go back to the menu."""
+        self.dismiss()

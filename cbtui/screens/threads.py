@@ -1,0 +1,63 @@
+"""Asks how many threads the executor is to get."""
+
+from typing import ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.containers import Container
+from textual.content import Content
+from textual.widgets import OptionList, Static
+from textual.widgets.option_list import Option
+
+from cbtui.actions import Scope, bindings_of
+from cbtui.screens.sized import SizedModal
+from cbtui.theme import Charset
+from cbtui.widgets.key_bar import KeyBar
+
+MOST = 8
+
+
+class ThreadsScreen(SizedModal[int]):
+    """Gives the number of threads, or 0 for the program's own; None if the person thinks better of it."""
+
+    SCOPE = Scope.THREADS
+    CSS_PATH = "window.tcss"
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.THREADS)]
+
+    def __init__(self, usual: str, chosen: int | None, charset: Charset) -> None:
+        super().__init__()
+        self._charset = charset
+        self._usual = usual
+        self._chosen = chosen or 0
+
+    def compose(self) -> ComposeResult:
+        """Lay out the question."""
+        with Container(classes="window") as window:
+            window.border_title = "Threads"
+            yield Static("How many threads does the executor get?\nThe run starts again with them.")
+            yield OptionList(*self._options())
+            yield KeyBar(Scope.THREADS, self._charset)
+
+    def on_mount(self) -> None:
+        """Highlight what is in force."""
+        self.query_one(OptionList).highlighted = self._chosen
+
+    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
+        """Take the number that was clicked or confirmed."""
+        self.dismiss(event.option_index)
+
+    def action_choose(self, number: int) -> None:
+        """Take a number."""
+        self.dismiss(number)
+
+    def action_close(self) -> None:
+        """Leave everything as it is."""
+        self.dismiss(None)
+
+    def _options(self) -> list[Option]:
+        own = Content.assemble(("o", "bold $text-accent"), f"  the program's own: {self._usual}")
+        numbers = [
+            Content.assemble((str(number), "bold $text-accent"), f"  {number} thread{'s'[: number - 1]}")
+            for number in range(1, MOST + 1)
+        ]
+        return [Option(each) for each in (own, *numbers)]

@@ -1,0 +1,49 @@
+"""The robot's figures in a few lines: where it is, what it was told, what it does, what is ahead."""
+
+import math
+from collections.abc import Sequence
+
+from cbtui.theme import GLYPHS, Charset, Ink, Role
+from cbtui.widgets.cells import Row
+from sim.trace.events import RobotMoved, VelocityCommanded
+
+PLAIN = Ink(Role.TEXT)
+FAINT = Ink(Role.FAINT)
+WARN = Ink(Role.WARN)
+
+_GAP = 3
+_Figure = tuple[str, Ink]
+
+
+def figures(robot: RobotMoved, command: VelocityCommanded | None, width: int, charset: Charset) -> list[Row]:
+    """Return lines with the figures, as many as a width always needs, so that nothing below them jumps."""
+    entries = _entries(robot, command, charset)
+    rows: list[Row] = []
+    at = width
+    for text, ink in entries:
+        if not rows or at + len(text) > width:
+            rows.append(Row(width, charset))
+            at = 0
+        name, _, value = text.partition(" ")
+        rows[-1].write(at, name, FAINT)
+        rows[-1].write(at + len(name) + 1, value, ink)
+        at += len(text) + _GAP
+    return rows
+
+
+def _entries(robot: RobotMoved, command: VelocityCommanded | None, charset: Charset) -> Sequence[_Figure]:
+    degree = GLYPHS[charset].degree
+    told = "nothing yet".ljust(22) if command is None else _velocity(command.linear, command.angular)
+    front = f"{robot.front:5.2f} m" if math.isfinite(robot.front) else "   free"
+    return (
+        (f"pose {robot.x:5.2f} {robot.y:5.2f} m {math.degrees(robot.yaw):4.0f}{degree}", PLAIN),
+        (f"front {front}", PLAIN),
+        (f"told {told}", PLAIN),
+        ("motors on " if robot.motors else "motors OFF", PLAIN if robot.motors else WARN),
+        (f"real {_velocity(robot.linear, robot.angular)}", PLAIN),
+        ("touches SOMETHING" if robot.touching else "touches nothing", WARN if robot.touching else PLAIN),
+    )
+
+
+def _velocity(linear: float, angular: float) -> str:
+    return f"{linear:5.2f} m/s {angular:5.2f} rad/s"

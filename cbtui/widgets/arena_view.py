@@ -1,0 +1,100 @@
+"""Which part of the arena a map shows, and where a place in metres lies on it."""
+
+import math
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, NamedTuple
+
+from cbtui.theme import Charset
+from cbtui.widgets.dots import DOTS_PER_CELL, Floats
+from sim.trace.events import RobotMoved
+
+if TYPE_CHECKING:
+    from cbtui.widgets.arena_painter import Plan
+
+_MARGIN = 0.6
+_GRID = 0.5
+_SPHERE_WITHIN = 3.0
+
+
+class Extent(NamedTuple):
+    """A rectangle of the arena, in metres."""
+
+    left: float
+    bottom: float
+    right: float
+    top: float
+
+
+def whole(plan: "Plan") -> Extent:
+    """Return the extent of all walls and the sphere."""
+    x, y, radius = plan.sphere
+    across = [at for wall in plan.walls for at in (wall[0], wall[2])] + [x - radius, x + radius]
+    along = [at for wall in plan.walls for at in (wall[1], wall[3])] + [y - radius, y + radius]
+    return Extent(min(across), min(along), max(across), max(along))
+
+
+def near(plan: "Plan", robot: RobotMoved) -> Extent:
+    """Return the surroundings of the robot, with the sphere while it is close.
+
+    The borders lie on a coarse grid, so that the map stands still while the robot moves.
+    """
+    x, y, radius = plan.sphere
+    points = [(robot.x, robot.y, plan.robot_radius)]
+    if math.hypot(robot.x - x, robot.y - y) < _SPHERE_WITHIN:
+        points.append((x, y, radius))
+    return Extent(
+        _down(min(x - size for x, _, size in points) - _MARGIN),
+        _down(min(y - size for _, y, size in points) - _MARGIN),
+        -_down(-max(x + size for x, _, size in points) - _MARGIN),
+        -_down(-max(y + size for _, y, size in points) - _MARGIN),
+    )
+
+
+def _down(at: float) -> float:
+    return math.floor(at / _GRID) * _GRID
+
+
+@dataclass(frozen=True, slots=True)
+class View:
+    """A map of ``columns`` x ``lines`` cells; a cell is taken to be twice as high as wide."""
+
+    left: float
+    top: float
+    columns: int
+    lines: int
+    metres_across: float
+    metres_down: float
+    across: int
+    down: int
+
+    @classmethod
+    def of(cls, extent: Extent, columns: int, lines: int, charset: Charset) -> "View":
+        """Fit an extent into cells, in the middle, as large as it goes."""
+        width, height = extent.right - extent.left, extent.top - extent.bottom
+        cell = max(width / (columns - 1), height / (2 * lines - 1), 1e-6)
+        across, down = DOTS_PER_CELL[charset]
+        left = (extent.left + extent.right) / 2 - cell * columns / 2
+        top = (extent.bottom + extent.top) / 2 + cell * lines
+        return cls(left, top, columns, lines, cell / across, 2 * cell / down, across, down)
+
+    @property
+    def metres_per_dot(self) -> float:
+        """How wide a dot is, in metres."""
+        return self.metres_across
+
+    def shows_size(self, radius: float) -> bool:
+        """Tell whether a circle of this radius (metres) can be told from a point."""
+        return radius >= 2 * self.metres_across
+
+    def dot(self, x: float, y: float) -> tuple[float, float]:
+        """Return the dot at a place in metres, counted from the top left."""
+        return (x - self.left) / self.metres_across, (self.top - y) / self.metres_down
+
+    def dots(self, x: Floats, y: Floats) -> tuple[Floats, Floats]:
+        """Return the dots at many places."""
+        return (x - self.left) / self.metres_across, (self.top - y) / self.metres_down
+
+    def cell(self, x: float, y: float) -> tuple[int, int]:
+        """Return the cell (column, line) at a place in metres."""
+        column, line = self.dot(x, y)
+        return math.floor(column / self.across), math.floor(line / self.down)

@@ -1,0 +1,47 @@
+"""The menu's head: the name, and lanes as a picture of what it is about."""
+
+from collections.abc import Sequence
+
+from textual.geometry import Size
+
+from cbtui.theme import Charset, Ink, Role, Run
+from cbtui.widgets.cells import Row
+from cbtui.widgets.painted import Painted
+
+_TITLES = ("cbtui", "Callback groups and executors,", "live. No ROS 2 needed.")
+_TITLE_WIDTH = 34
+_BARS = ((5, 31), (44, 49), (58, 63), (72, 98))
+_STEPS = (6, 6)
+
+
+class Banner(Painted):
+    """Three lanes: one long callback, and two that go on beside it."""
+
+    def rows(self, size: Size) -> Sequence[Sequence[Run]]:
+        """Paint the three rows."""
+        return banner(size.width)
+
+
+def banner(width: int) -> list[list[Run]]:
+    """Return the head, three rows of ``width`` columns."""
+    rows = [Row(width, Charset.BRAILLE) for _ in range(3)]
+    for number, (row, title) in enumerate(zip(rows, _TITLES, strict=True)):
+        row.write(2, title, Ink(Role.FAINT if number else Role.STRONG))
+        row.write(_TITLE_WIDTH, "ABC"[number], Ink(Role.LETTER, number))
+    lanes = range(_TITLE_WIDTH + 2, width - 2)
+    for start, end in _BARS:
+        _bar(rows[0], [column for column in lanes if start <= column - lanes.start < end])
+    for number, row in enumerate(rows[1:], start=1):
+        for column in lanes[number * 2 :: _STEPS[number - 1]]:
+            row.put(column, "▌" if number == 1 else "▐", Ink(Role.BAR, number))
+    return [row.runs() for row in rows]
+
+
+def _bar(row: Row, columns: Sequence[int]) -> None:
+    """Draw a callback of the first group; a long one carries its name."""
+    if not columns:
+        return
+    row.fill(columns[0], columns[-1] + 1, "█", Ink(Role.BAR, 0))
+    name = "timer_callback"
+    if len(columns) > len(name) + 4:
+        row.write(columns[0] + 2, f" {name} ", Ink(Role.LABEL, 0))

@@ -1,0 +1,5 @@
+"""The node's source, with what runs and waits marked in it."""
+
+from cbtui.widgets.code.widget import CodeView
+
+__all__ = ["CodeView"]

@@ -1,0 +1,74 @@
+"""Pictures made of dots smaller than a cell: braille, quarter blocks, or one sign a cell in ASCII."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cbtui.theme import Charset, Ink
+from cbtui.widgets.cells import Row
+
+Floats = NDArray[np.float64]
+
+_BRAILLE = np.array([[0x01, 0x08], [0x02, 0x10], [0x04, 0x20], [0x40, 0x80]], dtype=np.int32)
+_QUARTERS = np.array([[1, 2], [4, 8]], dtype=np.int32)
+_QUARTER_GLYPHS = " ▘▝▀▖▌▞▛▗▚▐▜▄▙▟█"
+
+DOTS_PER_CELL = {Charset.BRAILLE: (2, 4), Charset.BLOCK: (2, 2), Charset.ASCII: (1, 1)}
+"""Dots across and down in one cell."""
+
+
+class Dots:
+    """A grid of dots over cells, each blank or of one layer; the highest layer in a cell gives its ink.
+
+    Coordinates count dots from the top left, as floats; what lies outside the grid is left out.
+    """
+
+    def __init__(self, width: int, height: int, charset: Charset) -> None:
+        self._charset = charset
+        self.across, self.down = DOTS_PER_CELL[charset]
+        self._layers = np.zeros((height * self.down, width * self.across), dtype=np.uint8)
+
+    def plot(self, x: Floats, y: Floats, layer: int) -> None:
+        """Set dots."""
+        rows, columns = self._inside(x, y)
+        self._layers[rows, columns] = np.maximum(self._layers[rows, columns], layer)
+
+    def plot_sparsely(self, x: Floats, y: Floats, layer: int) -> None:
+        """Set every other dot, in a chequer."""
+        rows, columns = self._inside(x, y)
+        even = (rows + columns) % 2 == 0
+        self._layers[rows[even], columns[even]] = np.maximum(self._layers[rows[even], columns[even]], layer)
+
+    def line(self, start: tuple[float, float], end: tuple[float, float], layer: int) -> None:
+        """Set the dots from one point to another."""
+        steps = int(max(abs(end[0] - start[0]), abs(end[1] - start[1]))) + 2
+        steps = min(steps, 4 * sum(self._layers.shape))
+        self.plot(np.linspace(start[0], end[0], steps), np.linspace(start[1], end[1], steps), layer)
+
+    def rows(self, inks: Sequence[Ink], signs: str) -> list[Row]:
+        """Return the picture; ``inks`` and ``signs`` (for ASCII) are those of layers 0, 1, …; 0 is blank."""
+        lines, dots = self._layers.shape
+        cells = self._layers.reshape(lines // self.down, self.down, dots // self.across, self.across)
+        tops = cells.max(axis=(1, 3))
+        rows = []
+        for glyphs, layers in zip(self._glyphs(cells, tops, signs), tops.tolist(), strict=True):
+            row = Row(len(layers), self._charset)
+            row.cells = list(glyphs)
+            row.inks = [inks[layer] for layer in layers]
+            rows.append(row)
+        return rows
+
+    def _glyphs(self, cells: NDArray[np.uint8], tops: NDArray[np.uint8], signs: str) -> list[str]:
+        if self._charset is Charset.ASCII:
+            return ["".join(signs[layer] for layer in row) for row in tops.tolist()]
+        weights = _BRAILLE if self._charset is Charset.BRAILLE else _QUARTERS
+        codes = ((cells > 0) * weights[:, None, :]).sum(axis=(1, 3)).tolist()
+        if self._charset is Charset.BLOCK:
+            return ["".join(_QUARTER_GLYPHS[code] for code in row) for row in codes]
+        return ["".join(chr(0x2800 + code) if code else " " for code in row) for row in codes]
+
+    def _inside(self, x: Floats, y: Floats) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        lines, dots = self._layers.shape
+        inside = (x >= 0) & (x < dots) & (y >= 0) & (y < lines)
+        return y[inside].astype(np.int64), x[inside].astype(np.int64)

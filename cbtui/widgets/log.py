@@ -1,0 +1,128 @@
+"""What the program wrote, as ROS prints it; draws only the lines in view, however long the log is."""
+
+from typing import ClassVar
+
+from rich.cells import cell_len
+from rich.segment import Segment
+from rich.style import Style
+from textual.geometry import Size
+from textual.scroll_view import ScrollView
+from textual.strip import Strip
+
+from cbtui.theme import Charset, Ink, Role, style_of
+from cbtui.widgets.cells import fit, visible
+from cbtui.widgets.lanes.bars import short_thread
+from sim.trace.events import Logged, Printed, Severity
+from sim.trace.model import Nanoseconds
+from sim.trace.timeline import Timeline
+
+COLUMNS_FROM = 70
+"""The narrowest log that shows thread and group of each line."""
+
+_THREAD = 12
+_GROUP = 3
+_COLUMNS = _THREAD + _GROUP + 1
+
+_STYLES = {
+    Severity.DEBUG: "log--debug",
+    Severity.INFO: "log--info",
+    Severity.WARN: "log--warn",
+    Severity.ERROR: "log--error",
+    Severity.FATAL: "log--error",
+}
+
+
+class LogView(ScrollView):
+    """The log up to a moment. It stays at the end unless the person scrolls away from there."""
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = {*_STYLES.values()}
+
+    ALLOW_SELECT = False
+
+    def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
+        super().__init__(id=id)
+        self._timeline = Timeline()
+        self._count = 0
+        self._widest = 0
+        self._measured = 0
+        self._follows = True
+
+    def show(self, timeline: Timeline, now: Nanoseconds) -> None:
+        """Show the log of a timeline up to a moment."""
+        if timeline is not self._timeline:
+            self._timeline = timeline
+            self._measured = self._widest = 0
+        count = timeline.logs_until(now)
+        if count == self._count and self._measured == len(timeline.logs):
+            return
+        self._count = count
+        self._measure()
+        self._fit_size()
+        self.refresh()
+
+    def on_resize(self) -> None:
+        """Stay at the end."""
+        self._fit_size()
+
+    def watch_scroll_y(self, old_value: float, new_value: float) -> None:
+        """Follow the log's end if that is where the person has scrolled to."""
+        super().watch_scroll_y(old_value, new_value)
+        self._follows = new_value >= self.max_scroll_y
+
+    def render_line(self, y: int) -> Strip:
+        """Return one line of the view."""
+        place = self.scroll_offset.y + y
+        width = self.size.width
+        if place >= self._count:
+            return Strip.blank(width, self.rich_style)
+        event = self._timeline.logs[place]
+        columns = self._columns(event) if width >= COLUMNS_FROM else []
+        room = width - sum(segment.cell_length for segment in columns)
+        text = Strip([Segment(line_of(event), self._text_style(event))])
+        left = self.scroll_offset.x
+        shown = text.crop(left, left + room).adjust_cell_length(room, self.rich_style)
+        return Strip([*shown, *columns], width)
+
+    def _measure(self) -> None:
+        """Find the widest line; each is measured once."""
+        new = self._timeline.logs[self._measured :]
+        self._widest = max([self._widest, *(cell_len(line_of(event)) for event in new)])
+        self._measured += len(new)
+
+    def _fit_size(self) -> None:
+        columns = _COLUMNS if self.size.width >= COLUMNS_FROM else 0
+        follows = self._follows
+        self.virtual_size = Size(self._widest + columns, self._count)
+        if follows:
+            self.scroll_to(y=self.max_scroll_y, animate=False, immediate=True)
+            self._follows = True
+
+    def _columns(self, event: Logged | Printed) -> list[Segment]:
+        if isinstance(event, Printed):
+            return [Segment(" " * _COLUMNS, self.rich_style)]
+        thread = self._timeline.threads.get(event.thread)
+        entity = self._timeline.entities.get(event.entity)
+        name = short_thread(thread.name) if thread else ""
+        group = self._timeline.groups.get(entity.group) if entity else None
+        number = list(self._timeline.groups).index(group.id) if group else -1
+        letter = group.letter if group else ""
+        return [
+            Segment(f" {fit(name, _THREAD, Charset.BRAILLE)}", self._style(Ink(Role.FAINT))),
+            Segment(fit(letter, _GROUP, Charset.BRAILLE), self._style(Ink(Role.LETTER, number))),
+        ]
+
+    def _text_style(self, event: Logged | Printed) -> Style:
+        if isinstance(event, Printed):
+            return self.get_component_rich_style("log--error" if event.error else "log--info")
+        return self.get_component_rich_style(_STYLES[event.severity])
+
+    def _style(self, ink: Ink) -> Style:
+        return style_of(ink, self.app.current_theme.dark, self.background_colors[1].hex6.lower())
+
+
+def line_of(event: Logged | Printed) -> str:
+    """Return a line as ROS prints it, with seconds of run time as its stamp; safe to send to a terminal."""
+    if isinstance(event, Printed):
+        return visible(event.text, Charset.BRAILLE)
+    head = f"[{event.severity}] [{event.t / 1e9:.3f}] [{event.logger}]: "
+    return visible(head + event.text, Charset.BRAILLE)

@@ -1,0 +1,116 @@
+"""The command line: what it lists, runs and refuses, each refusal in one sentence."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cbtui import cli
+
+
+def _cbtui(*arguments: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "cbtui", *arguments]
+    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+
+
+def test_list_names_every_lesson_in_order(capsys: pytest.CaptureFixture[str]) -> None:
+    assert cli.main(["list"]) == 0
+    ids = [line.split()[1] for line in capsys.readouterr().out.splitlines()]
+    assert ids == [
+        "single-thread",
+        "shared-group",
+        "split-groups",
+        "exclusive-2-threads",
+        "reentrant-2-threads",
+        "reentrant-1-thread",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["run", "split-group"], "the nearest is 'split-groups'"),
+        (["open", "nonsense"], "the nearest is"),
+        (["run", "single-thread", "--threads", "0"], "an executor cannot have 0 threads here; give 1 to 64"),
+        (["run", "single-thread", "--threads", "two"], "'two' is not a whole number; give 1 to 64"),
+        (["run", "single-thread", "--for", "-1"], "a run cannot last -1 seconds; give more than 0"),
+        (["run", "single-thread", "--for", "nan"], "'nan' is not a finite number"),
+        (["run", "single-thread", "--call", "-2"], "-2 s is before the run begins"),
+        (
+            ["run", "single-thread", "--for", "5", "--call", "5"],
+            "a call at 5 s comes when the run of 5 s is over",
+        ),
+        (["run", "single-thread", "--speed", "0"], "time cannot pass 0 times as fast"),
+        (["run", "single-thread", "--clock", "real", "--speed", "2"], "--speed needs the virtual clock"),
+        (["run", "single-thread", "--call-data", "perhaps"], "invalid choice: 'perhaps'"),
+        (["run", "single-thread", "--events", "/no/such/folder/x.jsonl"], "cannot write events"),
+        (["run"], "LESSON"),
+        (["fly"], "invalid choice: 'fly'"),
+        (["open", "single-thread"], "the console needs a terminal"),
+        ([], "the console needs a terminal"),
+    ],
+)
+def test_a_wrong_command_is_refused_in_one_line(arguments: list[str], sentence: str) -> None:
+    done = _cbtui(*arguments)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert len(done.stderr.splitlines()) == 1
+    assert sentence in done.stderr
+
+
+def test_run_puts_the_log_on_stderr_as_ros_prints_it_and_a_summary_on_stdout() -> None:
+    done = _cbtui("run", "exclusive-2-threads", "--for", "10", "--call", "2.55", "--call-data", "false")
+    assert done.returncode == 0
+    log = done.stderr.splitlines()
+    assert log[0] == "[WARN] [1700000000.000000000] [service_start_turn]: Setting exclusive Groups"
+    assert "[INFO] [1700000003.000000000] [service_start_turn]: TICK" in log
+    assert "timer_callback" in done.stdout
+    assert "1 call" in done.stdout
+
+
+def test_events_are_one_json_object_a_line_and_the_same_each_time(tmp_path: Path) -> None:
+    files = [tmp_path / "once.jsonl", tmp_path / "again.jsonl"]
+    for file in files:
+        arguments = ("run", "reentrant-1-thread", "--for", "9", "--call", "2.55", "--events", str(file))
+        assert _cbtui(*arguments).returncode == 0
+    assert files[0].read_bytes() == files[1].read_bytes()
+    lines = [json.loads(line) for line in files[0].read_text().splitlines()]
+    kinds = {line["event"] for line in lines}
+    assert {"callback_start", "callback_end", "wait_start", "wait_end", "publish"} <= kinds
+    assert {"service_call", "service_reply", "log", "robot"} <= kinds
+    wait = next(line for line in lines if line["event"] == "wait_start")
+    assert (wait["t"], wait["callback"], wait["held_by"]) == (3.0, "timer_callback", "SetBool_callback")
+    reply = next(line for line in lines if line["event"] == "service_reply")
+    assert "TURNING" in reply["response"]
+    robot = next(line for line in lines if line["event"] == "robot")
+    assert {"x", "y", "yaw", "front"} <= robot.keys()
+
+
+def test_a_program_that_fails_gives_exit_code_1_and_one_sentence_after_its_traceback(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Without PyBullet there is no robot, and the sentence says what to do.
+    (tmp_path / "pybullet.py").write_text("raise ImportError('no wheel for this Python')")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    done = _cbtui("run", "single-thread", "--for", "1")
+    assert done.returncode == 1
+    [sentence] = done.stderr.splitlines()
+    assert "PyBullet" in sentence
+    assert "Traceback" not in done.stderr + done.stdout
+
+
+def test_help_imports_nothing_heavy() -> None:
+    heavy = "{'textual', 'rich', 'numpy', 'pybullet', 'rosbags', 'attrs'}"
+    script = f"""
+import sys
+from cbtui.cli import main
+try:
+    main(["--help"])
+except SystemExit:
+    pass
+print("heavy:", sorted({heavy} & set(sys.modules)))
+"""
+    done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "heavy: []"

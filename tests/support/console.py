@@ -1,0 +1,38 @@
+"""A console on recorded events, for pilot tests and snapshots."""
+
+from collections.abc import Sequence
+
+from textual.pilot import Pilot
+
+from cbtui.app import CbtuiApp
+from cbtui.screens.lesson import LessonScreen
+from sim.trace.events import AnyEvent
+from tests.support.builder import ns
+from tests.support.fake_session import FakeEngines
+
+NARROW = (80, 24)
+WIDE = (140, 40)
+
+
+class RecordedConsole(CbtuiApp):
+    """The console with a lesson open whose engine has played ``events`` up to ``seconds``."""
+
+    def __init__(
+        self, lesson: str, events: Sequence[AnyEvent], seconds: float, charset: str = "braille"
+    ) -> None:
+        self.engines = FakeEngines(events, ns(seconds))
+        super().__init__(charset=charset, start_lesson=lesson, open_session=self.engines)
+
+    @property
+    def lesson_screen(self) -> LessonScreen:
+        """The lesson on screen; nothing else may lie over it."""
+        assert isinstance(self.screen, LessonScreen)
+        return self.screen
+
+
+async def settle(pilot: Pilot[None]) -> None:
+    """Let everything that was delivered or pressed reach the screen."""
+    await pilot.pause()
+    if isinstance(pilot.app.screen, LessonScreen):
+        pilot.app.screen.draw()
+    await pilot.pause()

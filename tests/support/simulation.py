@@ -1,0 +1,253 @@
+"""Runs a program on virtual time inside a test: a host of its own, a trace in a list, no thread left behind."""
+
+import sys
+import threading
+import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import Any, NamedTuple, TypeVar
+
+import sim.ros
+from sim.clock import Clock, VirtualClock
+from sim.ros import host as hosts
+from sim.ros import logging as ros_logging
+from sim.ros import utilities
+from sim.ros.context import Context
+from sim.ros.executors import SingleThreadedExecutor
+from sim.ros.host import Host
+from sim.ros.node import Node
+from sim.ros.probe import Probe, PublishingProbe
+from sim.trace.events import (
+    AnyEvent,
+    CallbackEnded,
+    CallbackStarted,
+    EntityAppeared,
+    EntityId,
+    Logged,
+    MessageDropped,
+    ThreadAppeared,
+)
+from sim.trace.timeline import Timeline
+from tests.support.builder import ns
+
+EventT = TypeVar("EventT", bound=AnyEvent)
+
+_PATIENCE = 30.0
+"""Real seconds after which a simulation counts as stuck: a hundred times what the longest one takes."""
+
+
+class Call(NamedTuple):
+    """One call of a callback: when it began (seconds), which callback, and on which thread."""
+
+    at: float
+    name: str
+    thread: str
+
+
+class Trace:
+    """The events of a finished simulation, and the questions that tests ask of them."""
+
+    def __init__(self, events: list[AnyEvent]) -> None:
+        self.events = events
+
+    def of(self, kind: type[EventT]) -> list[EventT]:
+        """The events of one kind, in order."""
+        return [each for each in self.events if isinstance(each, kind)]
+
+    @property
+    def names(self) -> dict[EntityId, str]:
+        """What each entity is called here: its callback's name, for a client its service's."""
+        return {each.entity: each.callback or each.name for each in self.of(EntityAppeared)}
+
+    @property
+    def threads(self) -> dict[int, str]:
+        """The name of each thread."""
+        return {each.thread: each.name for each in self.of(ThreadAppeared)}
+
+    def entity(self, name: str) -> EntityId:
+        """The one entity of that name."""
+        (found,) = (entity for entity, each in self.names.items() if each == name)
+        return found
+
+    def calls(self, name: str | None = None) -> list[Call]:
+        """Every call of every callback, or of the one of that name, in order."""
+        names, threads = self.names, self.threads
+        every = (
+            Call(each.t / 1e9, names[each.entity], threads[each.thread]) for each in self.of(CallbackStarted)
+        )
+        return [each for each in every if name in {None, each.name}]
+
+    def times(self, name: str) -> list[float]:
+        """When a callback's calls began, in seconds."""
+        return [each.at for each in self.calls(name)]
+
+    def ends(self, name: str) -> list[float]:
+        """When a callback's calls ended, in seconds."""
+        entity = self.entity(name)
+        return [each.t / 1e9 for each in self.of(CallbackEnded) if each.entity == entity]
+
+    def order(self) -> list[str]:
+        """The names of the callbacks in the order of their calls."""
+        return [each.name for each in self.calls()]
+
+    def drops(self, name: str) -> int:
+        """How many messages the callback's queue lost."""
+        entity = self.entity(name)
+        return sum(each.entity == entity for each in self.of(MessageDropped))
+
+    def said(self) -> list[str]:
+        """The texts of the log."""
+        return [each.text for each in self.of(Logged)]
+
+    def timeline(self) -> Timeline:
+        """A timeline of the whole."""
+        timeline = Timeline()
+        timeline.extend(self.events)
+        return timeline
+
+
+class Simulation:
+    """What a simulated program has at hand. Its context is the default one, and has begun."""
+
+    def __init__(self, clock: Clock) -> None:
+        self.events: list[AnyEvent] = []
+        self.clock = clock
+        self.host = Host(clock, Probe(clock, self.events.append))
+
+    @property
+    def now(self) -> float:
+        """Seconds since the simulation began."""
+        return self.clock.now() / 1e9
+
+    def sleep(self, seconds: float) -> None:
+        """Let seconds pass on the calling thread, as ``time.sleep`` does in a program."""
+        self.clock.sleep(ns(seconds))
+
+    def sleep_until(self, seconds: float) -> None:
+        """Sleep until that time of the simulation."""
+        self.clock.sleep(ns(seconds) - self.clock.now())
+
+    def at(self, seconds: float, action: Callable[[], object]) -> None:
+        """Have ``action``, which must not wait, done at that time."""
+        self.clock.call_at(ns(seconds), lambda: _forget(action()))
+
+    def start(self, target: Callable[[], object], name: str = "helper") -> None:
+        """Run ``target`` on one more thread."""
+        self.clock.start_thread(lambda: _forget(target()), name)
+
+    def outside_node(self, name: str = "outside") -> Node:
+        """A node of another process: its own context, and only what it sends is on the trace."""
+        context = Context(host=self.host, probe=PublishingProbe(self.clock, self.host.probe))
+        context.init([])
+        return Node(name, context=context)
+
+    def spin_outside(self, node: Node) -> None:
+        """Spin an outside node on a thread of its own."""
+        executor = SingleThreadedExecutor(context=node.context)
+        executor.add_node(node)
+        self.start(executor.spin, node.get_name())
+
+    def publisher_at_rate(self, topic: str, period: float, offset: float = 0.0, until: float = 1e9) -> None:
+        """Have an outside node publish an Int32 that counts up from 0, each ``period`` from ``offset`` on."""
+        integer = sim.ros.interfaces.message("std_msgs", "Int32")
+        node = self.outside_node(f"{topic}_publisher")
+        publisher = node.create_publisher(integer, topic, 10)
+
+        def run() -> None:
+            self.sleep(offset)
+            count = 0
+            while self.now < until:
+                publisher.publish(integer(data=count))
+                count += 1
+                self.sleep_until(offset + count * period)
+
+        self.start(run, node.get_name())
+
+
+Program = Callable[[Simulation], Any]
+
+
+def simulate(program: Program, until: float = 60.0) -> Trace:
+    """Run ``program`` on virtual time until it returns, at most until ``until`` seconds.
+
+    Raises what the program raises; AssertionError when the simulation is stuck or leaves a thread.
+    """
+    trouble: list[BaseException] = []
+    events: list[AnyEvent] = []
+
+    def run() -> None:
+        clock = VirtualClock()
+        simulation = Simulation(clock)
+        clock.before_jump = simulation.host.explain_waits
+        clock.call_at(ns(until), clock.stop)
+        with _installed(simulation.host):
+            try:
+                program(simulation)
+            except KeyboardInterrupt:
+                pass  # its time was up
+            except BaseException as error:  # noqa: BLE001 -- it belongs to the test's own thread
+                trouble.append(error)
+            events.extend(simulation.events)
+            wind_up(clock)
+
+    with no_thread_left():
+        main = threading.Thread(target=run, name="MainThread", daemon=True)
+        main.start()
+        main.join(_PATIENCE)
+        assert not main.is_alive(), f"the simulation is stuck:\n{_where_threads_stand()}"
+    if trouble:
+        raise trouble[0]
+    return Trace(events)
+
+
+@contextmanager
+def no_thread_left() -> Iterator[None]:
+    """Check that every thread started inside has ended."""
+    before = set(threading.enumerate())
+    yield
+    for thread in set(threading.enumerate()) - before:
+        thread.join(_PATIENCE)
+        assert not thread.is_alive(), f"{thread.name} was left behind:\n{_where_threads_stand()}"
+
+
+def wind_up(clock: VirtualClock) -> None:
+    """Stop a clock from its main thread and let all others that live on it end."""
+    clock.stop()
+    while len(clock._threads) > 1:
+        try:
+            clock.sleep(0)
+        except KeyboardInterrupt:
+            continue
+
+
+@contextmanager
+def _installed(host: Host) -> Iterator[None]:
+    """Have the process run on ``host``, with nothing in it of what ran before, and put all back after."""
+    before = hosts._host
+    _forget_last_program()
+    hosts.install(host)
+    sim.ros.init(args=[])
+    try:
+        yield
+    finally:
+        hosts._host = before
+        _forget_last_program()
+
+
+def _forget_last_program() -> None:
+    utilities._default.clear()
+    sim.ros._global_executors.clear()
+    ros_logging._levels.clear()
+    ros_logging._loggers.clear()
+
+
+def _forget(_result: object) -> None:
+    """Take the result of something whose result nobody wants."""
+
+
+def _where_threads_stand() -> str:
+    names = {each.ident: each.name for each in threading.enumerate()}
+    return "\n".join(
+        f"{names.get(ident)}:\n{''.join(traceback.format_stack(frame)[-8:])}"
+        for ident, frame in sys._current_frames().items()
+    )

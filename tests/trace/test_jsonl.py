@@ -1,0 +1,115 @@
+"""Lines of JSON: what they carry, and that their documentation is right."""
+
+import json
+import re
+from importlib.resources import files
+from math import inf, nan
+from typing import Any, get_args
+
+import pytest
+
+from sim.trace import events as ev
+from sim.trace.events import AnyEvent
+from sim.trace.jsonl import JsonLines
+from tests.support.runs import dummy_server_run
+from tests.trace.samples import BARE, CAST, FULL
+
+GUIDE = (files("sim.trace") / "EVENTS.md").read_text()
+EVENTS, FIELDS = GUIDE.split("| field |")
+DOCUMENTED = {name: fields.split() for name, fields in re.findall(r"^\| (\w+) \| (.+) \|$", EVENTS, re.M)}
+
+
+def objects(events: list[AnyEvent]) -> list[dict[str, Any]]:
+    return [json.loads(line) for line in JsonLines().lines(events)]
+
+
+def test_the_guide_lists_every_event() -> None:
+    tags = {kind.__struct_config__.tag for kind in get_args(AnyEvent)}
+    assert set(DOCUMENTED) - {"event"} == tags
+
+
+@pytest.mark.parametrize("line", objects(FULL), ids=lambda line: line["event"])
+def test_an_event_with_all_it_can_carry_has_the_fields_of_the_guide(line: dict[str, Any]) -> None:
+    fields = [name.rstrip("?") for name in DOCUMENTED[line["event"]]]
+    assert list(line) == ["t", "event", *fields]
+
+
+@pytest.mark.parametrize("line", objects(BARE)[len(CAST) :], ids=lambda line: line["event"])
+def test_an_event_leaves_out_what_does_not_apply(line: dict[str, Any]) -> None:
+    fields = [name for name in DOCUMENTED[line["event"]] if not name.endswith("?")]
+    assert list(line) == ["t", "event", *fields]
+
+
+def test_every_field_is_explained() -> None:
+    explained = set()
+    for names in re.findall(r"^\| ([\w, ]+) \| .+ \|$", FIELDS, re.M):
+        explained |= set(names.split(", "))
+    assert {name.rstrip("?") for fields in DOCUMENTED.values() for name in fields} - {"fields"} == explained
+
+
+def test_golden_lines() -> None:
+    about = '"node":"/sub_node","callback":"odom_callback","kind":"subscription","entity":"/odom","group":"A"'
+    about += ',"group_type":"exclusive"'
+    assert b"".join(JsonLines().lines(FULL)).decode().splitlines()[len(CAST) :] == [
+        '{"t":1.5,"event":"publish","node":"robot","callback":"timer_callback","entity":"/odom","message_id":7}',
+        f'{{"t":1.502,"event":"ready",{about},"depth":1,"message_id":7}}',
+        f'{{"t":1.502,"event":"wait_start",{about},"reason":"group held","held_by":"timer_callback",'
+        '"since":1.502,"workers_busy":true}',
+        f'{{"t":1.502,"event":"message_drop",{about},"depth":10,"message_id":6}}',
+        f'{{"t":2.0,"event":"wait_end",{about}}}',
+        f'{{"t":2.0,"event":"callback_start",{about},"thread":"MainThread","depth":0,"age":0.5,"message_id":7}}',
+        '{"t":2.0,"event":"log","node":"sub_node","callback":"odom_callback","thread":"MainThread",'
+        '"message":"Odom CallBack","severity":"INFO"}',
+        f'{{"t":2.0,"event":"callback_suspend",{about},"thread":"MainThread"}}',
+        f'{{"t":2.1,"event":"callback_resume",{about},"thread":"MainThread"}}',
+        '{"t":2.1,"event":"service_call","callback":"odom_callback","entity":"/motor_power","call":1,'
+        '"request":"SetBool_Request(data=True)"}',
+        '{"t":2.1,"event":"blocked","callback":"odom_callback","entity":"/motor_power","thread":"MainThread",'
+        '"call":1}',
+        '{"t":2.2,"event":"service_reply","entity":"/motor_power","call":1,'
+        '"response":"SetBool_Response(success=True, message=\'\')"}',
+        '{"t":2.2,"event":"unblocked","thread":"MainThread","call":1}',
+        f'{{"t":2.25,"event":"callback_error",{about},"thread":"MainThread",'
+        '"message":"IndexError: no beam 720","file":"node.py","line":60}',
+        f'{{"t":2.25,"event":"callback_end",{about},"thread":"MainThread"}}',
+        '{"t":2.3,"event":"print","message":"hello","error":true}',
+        '{"t":2.35,"event":"robot","x":0.5,"y":0.0,"yaw":-0.1,"front":null,"linear":0.08,"angular":0.0,'
+        '"motors":true,"touching":false,"turned":-0.1,"travelled":0.5}',
+        '{"t":2.35,"event":"scan","beams":4,"front":0.5,"message_id":8}',
+        '{"t":2.4,"event":"cmd_vel","linear":0.08,"angular":-0.2}',
+        '{"t":2.5,"event":"command","message":"/motor_power SetBool data=True"}',
+        '{"t":2.6,"event":"notice","message":"The robot touches the wall.","severity":"WARN"}',
+        '{"t":2.7,"event":"lost","count":12}',
+        f'{{"t":2.8,"event":"entity_gone",{about}}}',
+        '{"t":3.0,"event":"run_end","reason":"its time was up","failed":false}',
+    ]
+
+
+def test_numbers_that_json_cannot_write_become_null() -> None:
+    event = ev.RobotMoved(0, nan, inf, -inf, inf, 0.0, 0.0, True, False, 0.0, 0.0)
+    (line,) = objects([event])
+    assert [line[name] for name in ("x", "y", "yaw", "front")] == [None] * 4
+
+
+def test_a_timer_is_called_by_its_callback_where_a_topic_would_stand() -> None:
+    ticks = [line for line in objects(dummy_server_run().events) if line["event"] == "callback_start"]
+    assert {(line["entity"], line["kind"]) for line in ticks} == {
+        ("timer_callback", "timer"),
+        ("/dummy_server_srv", "service"),
+    }
+    assert {(line["group"], line["group_type"]) for line in ticks} == {("A", "reentrant")}
+
+
+def test_lines_do_not_depend_on_the_batches() -> None:
+    events = dummy_server_run().events
+    one_by_one = JsonLines()
+    pieces = [line for event in events for line in one_by_one.lines([event])]
+    assert pieces == list(JsonLines().lines(events))
+
+
+def test_ids_that_were_never_introduced_still_make_a_line() -> None:
+    lines = objects([ev.CallbackStarted(0, 9, 9, 1, 0, 0), ev.Published(0, 1, "/t", 9, 9)])
+    assert lines[0] == {"t": 0.0, "event": "callback_start", "thread": "thread 9", "depth": 0, "age": 0.0} | {
+        "message_id": 1
+    }
+    assert lines[1]["node"] == "node 9"

@@ -1,0 +1,207 @@
+"""The summary of a run: its figures, and how they read."""
+
+import pytest
+
+from sim.trace.events import Reason
+from sim.trace.summary import Summary, summarise
+from sim.trace.summary_text import duration, plain_text
+from sim.trace.timeline import Timeline
+from tests.support.runs import Run, dummy_server_one_thread_run, ns, shared_group_run, split_groups_run
+
+SHARED_GROUP = """\
+shared-group, 30.0 s of virtual time: its time was up
+
+callback        group  calls  running  late by  drops  errors
+odom_callback   A        209     0.3%   498 ms    390       0
+scan_callback   A        209     0.3%   495 ms    390       0
+timer_callback  A         21    66.7%    9.5 s      -       0
+late by: the oldest message it took, or how late its timer was at worst
+
+longest waits
+  odom_callback   20.0 s: group A held by timer_callback
+  scan_callback   20.0 s: group A held by timer_callback
+  timer_callback  9.5 s: group A held by timer_callback
+
+threads  1 ran callbacks, at most 1 at once
+robot    1 turn (4.0 rad), 0.76 m travelled, at x -0.03 y 0.36 heading 131°
+"""
+
+ONE_THREAD = """\
+reentrant-1-thread, 10.0 s of virtual time: its time was up
+
+callback          group  calls  running  late by  drops  errors
+service_callback  A          1    50.0%      0 s      0       0
+timer_callback    A          6     0.1%    4.5 s      -       0
+late by: the oldest message it took, or how late its timer was at worst
+
+longest waits
+  timer_callback  4.5 s: no free worker
+
+threads  1 ran callbacks, at most 1 at once
+calls    /dummy_server_srv  1 call, answered after 5.0 s
+robot    1 turn (1.0 rad), 0.00 m travelled, at x 0.00 y 0.00 heading 57°
+"""
+
+
+def summary_of(run: Run) -> Summary:
+    timeline = Timeline()
+    timeline.extend(run.events)
+    return summarise(timeline)
+
+
+def small_run() -> tuple[Run, int, int, int]:
+    """A run of a thread, a timer and a subscription, with their ids."""
+    run = Run("small")
+    thread = run.thread("MainThread")
+    group = run.exclusive(run.node("/node"))
+    timer = run.timer(group, "timer_callback", 1.0)
+    return run, thread, timer, run.subscription(group, "/odom", "odom_callback")
+
+
+@pytest.mark.parametrize(
+    ("run", "text"), [(shared_group_run(), SHARED_GROUP), (dummy_server_one_thread_run(), ONE_THREAD)]
+)
+def test_golden_summaries(run: Run, text: str) -> None:
+    assert plain_text(summary_of(run)) == text
+
+
+@pytest.mark.parametrize("run", [shared_group_run(), split_groups_run(), dummy_server_one_thread_run()])
+def test_a_summary_fits_the_smallest_terminal(run: Run) -> None:
+    assert max(map(len, plain_text(summary_of(run)).splitlines())) <= 79
+
+
+def test_a_run_without_robot_and_calls_does_not_speak_of_them() -> None:
+    run, thread, timer, _ = small_run()
+    run.callback(timer, thread, 1.0, 0.5)
+    text = plain_text(summary_of(run))
+    assert "robot" not in text
+    assert "calls  " not in text.split("longest waits")[1]
+
+
+def test_an_empty_timeline_has_a_summary() -> None:
+    assert plain_text(summarise(Timeline())) == "run, 0 s\n\nthreads  0 ran callbacks, at most 0 at once\n"
+
+
+def test_where_nobody_waited_the_summary_says_so() -> None:
+    run, thread, timer, _ = small_run()
+    run.callback(timer, thread, 1.0, 0.5)
+    assert "longest waits: none, every callback ran as soon as it was ready\n" in plain_text(summary_of(run))
+
+
+def test_waits_of_one_series_count_as_one_with_the_reason_of_most_of_it() -> None:
+    run, _, timer, odom = small_run()
+    run.wait_changes(odom, 1.0, 1.0, Reason.NO_FREE_WORKER)
+    run.wait_changes(odom, 2.0, 1.0, Reason.GROUP_HELD, holder=timer)
+    run.wait_changes(odom, 5.0, 1.0, Reason.NO_FREE_WORKER)
+    run.robot(6.5)
+    wait = summary_of(run).callbacks[1].longest_wait
+    assert wait is not None
+    assert (wait.length, wait.why) == (ns(5.5), "group A held by timer_callback")
+
+
+def test_the_longest_of_several_waits_is_told() -> None:
+    run, _, timer, odom = small_run()
+    run.wait(odom, 1.0, 2.0, Reason.NOBODY_SPINS)
+    run.wait(odom, 3.0, 7.0, Reason.GROUP_HELD, holder=timer)
+    run.wait(odom, 8.0, 9.0, Reason.NO_FREE_WORKER)
+    wait = summary_of(run).callbacks[1].longest_wait
+    assert wait is not None
+    assert wait.length == ns(4.0)
+
+
+def test_calls_after_calls_that_take_no_time_are_not_at_once() -> None:
+    run, thread, timer, odom = small_run()
+    other = run.thread("other")
+    run.callback(timer, thread, 1.0, 0.0)
+    run.callback(odom, other, 1.0, 0.0)
+    summary = summary_of(run)
+    assert (summary.threads_used, summary.threads_at_once) == (2, 1)
+
+
+def test_nested_calls_of_one_thread_are_one_thread_at_once() -> None:
+    run, thread, timer, odom = small_run()
+    run.callback(timer, thread, 1.0, 2.0)
+    run.callback(odom, thread, 1.5, 0.5)
+    assert summary_of(run).threads_at_once == 1
+
+
+def test_a_call_that_was_suspended_is_one_call_with_one_error() -> None:
+    run, thread, _, odom = small_run()
+    run.start(odom, thread, 1.0)
+    run.suspend(odom, thread, 2.0)
+    run.resume(odom, thread, 4.0)
+    run.fail(odom, thread, 5.0, "IndexError: no beam")
+    figures = summary_of(run).callbacks[1]
+    assert (figures.calls, figures.errors, figures.running) == (1, 1, 2.0 / 5.0)
+
+
+def test_callbacks_of_one_name_are_told_apart_by_their_topics() -> None:
+    run, _, _, _ = small_run()
+    run.subscription(1, "/scan", "odom_callback")
+    names = [figures.name for figures in summary_of(run).callbacks]
+    assert names == ["timer_callback", "odom_callback (/odom)", "odom_callback (/scan)"]
+
+
+def test_service_calls_tell_how_many_were_answered_and_how_soon() -> None:
+    run, _, _, _ = small_run()
+    run.call("/a", 1.0, replied=1.5)
+    run.call("/a", 2.0, replied=4.0)
+    run.call("/a", 3.0)
+    run.call("/b", 3.0)
+    text = plain_text(summary_of(run))
+    assert "calls    /a  3 calls, 2 answered after 500 ms to 2.0 s\n" in text
+    assert "         /b  1 call, no reply\n" in text
+
+
+@pytest.mark.parametrize(
+    ("rates", "turns", "turned"),
+    [
+        ((0.2,) * 10, 1, 2.0),
+        ((0.2,) * 5 + (0.0,) + (0.2,) * 5, 2, 2.0),
+        ((0.2,) * 5 + (-0.2,) * 5, 2, 2.0),
+        ((0.2,) * 2, 0, 0.0),
+        ((0.01,) * 100, 0, 0.0),
+    ],
+    ids=["one", "two with a rest", "there and back", "too little", "drift"],
+)
+def test_a_turn_is_a_stretch_of_turning_in_one_direction(
+    rates: tuple[float, ...], turns: int, turned: float
+) -> None:
+    run, _, _, _ = small_run()
+    for second in range(len(rates) + 1):
+        run.robot(float(second), turned=sum(rates[:second]))
+        run.robot(float(second), turned=sum(rates[:second]))
+    robot = summary_of(run).robot
+    assert robot is not None
+    assert (robot.turns, round(robot.turned, 9)) == (turns, turned)
+
+
+def test_a_pose_is_never_minus_zero() -> None:
+    run, _, _, _ = small_run()
+    run.robot(1.0, x=-0.001, y=-0.0, yaw=-0.001)
+    assert plain_text(summary_of(run)).endswith("at x 0.00 y 0.00 heading 0°\n")
+
+
+def test_lost_events_are_admitted() -> None:
+    run, _, _, _ = small_run()
+    run.lost(12, 1.0)
+    assert "The trace lost 12 events, so some figures below are too small.\n" in plain_text(summary_of(run))
+
+
+@pytest.mark.parametrize(
+    ("length", "words"),
+    [
+        (0, "0 s"),
+        (12_400, "12 µs"),
+        (99_600, "0.1 ms"),
+        (800_000, "0.8 ms"),
+        (9_940_000, "9.9 ms"),
+        (9_960_000, "10 ms"),
+        (498_000_000, "498 ms"),
+        (999_400_000, "999 ms"),
+        (999_600_000, "1.0 s"),
+        (9_900_000_000, "9.9 s"),
+    ],
+)
+def test_durations_have_the_unit_that_suits_them(length: int, words: str) -> None:
+    assert duration(length) == words

@@ -1,0 +1,123 @@
+"""Summing up intervals column by column: nothing long is lost, and what is kept stays true."""
+
+from dataclasses import dataclass
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from cbtui.widgets.lanes.columns import MOST_A_COLUMN, Columns, stretches
+from cbtui.widgets.lanes.scale import Scale
+from sim.trace.model import Window
+
+S = 1_000_000_000
+
+
+@dataclass
+class Stay:
+    start: int
+    end: int | None
+    entity: int = 1
+
+
+class Store:
+    """Intervals that answer as a timeline does."""
+
+    def __init__(self, *stays: Stay) -> None:
+        self.stays = list(stays)
+
+    def query(self, window: Window) -> list[Stay]:
+        found = [
+            one
+            for one in self.stays
+            if one.start < window.end
+            and (one.start >= window.start or one.end is None or one.end > window.start)
+        ]
+        return sorted(found, key=lambda one: one.start)
+
+
+intervals = st.lists(
+    st.builds(
+        lambda start, length: Stay(start, start + length), st.integers(0, 20 * S), st.integers(0, 5 * S)
+    ),
+    max_size=12,
+)
+
+
+@given(intervals, st.integers(-5, 30))
+def test_a_column_is_lit_exactly_where_something_ran(stays: list[Stay], first: int) -> None:
+    store = Store(*stays)
+    scale = Scale(first, S, 10)
+    for place, column in enumerate(Columns(store.query).over(scale, 40 * S)):
+        assert (column is not None) == bool(
+            store.query(Window(scale.time_at(place), scale.time_at(place + 1)))
+        )
+
+
+def test_more_of_a_column_taken_means_more_eighths() -> None:
+    store = Store(Stay(0, S // 4), Stay(S, 2 * S), Stay(2 * S, 2 * S))
+    assert [column and column.eighths for column in Columns(store.query).over(Scale(0, S, 4), 9 * S)] == [
+        2,
+        8,
+        1,
+        None,
+    ]
+
+
+def test_a_long_call_is_found_among_very_many_short_ones() -> None:
+    short = [Stay(place * 1000, place * 1000 + 10) for place in range(20 * MOST_A_COLUMN)]
+    long = Stay(7003, 3 * S)
+    columns = Columns(Store(*short, long).query).over(Scale(0, S, 4), 9 * S)
+    assert [column.top is long if column else None for column in columns] == [False, True, True, None]
+
+
+def test_many_short_calls_take_as_much_of_a_column_as_all_of_them_do() -> None:
+    half = [Stay(place * S // 200, place * S // 200 + S // 400) for place in range(200)]
+    (column,) = Columns(Store(*half).query).over(Scale(0, S, 1), 9 * S)
+    assert column is not None
+    assert 3 <= column.eighths <= 5
+
+
+def test_what_still_lasts_reaches_to_the_edge() -> None:
+    columns = Columns(Store(Stay(S, None)).query)
+    assert [column and column.eighths for column in columns.over(Scale(0, S, 5), 3 * S + S // 2)] == [
+        None,
+        8,
+        8,
+        4,
+        None,
+    ]
+    assert [column and column.eighths for column in columns.over(Scale(0, S, 5), 4 * S)] == [None, 8, 8, 8, 1]
+
+
+def test_several_at_once_are_counted() -> None:
+    store = Store(Stay(0, 3 * S), Stay(S, 2 * S, 2), Stay(2 * S, 2 * S, 3))
+    assert [column and column.at_once for column in Columns(store.query).over(Scale(0, S, 4), 9 * S)] == [
+        1,
+        2,
+        2,
+        None,
+    ]
+
+
+def test_a_wait_told_late_is_shown_from_its_beginning() -> None:
+    store = Store()
+    columns = Columns(store.query)
+    assert not any(columns.over(Scale(0, S, 10), 8 * S))
+    store.stays.append(Stay(2 * S, None))
+    lit = [place for place, column in enumerate(columns.over(Scale(0, S, 10), 9 * S)) if column]
+    assert lit == list(range(2, 10))
+
+
+@given(intervals, st.lists(st.integers(1, 25), min_size=1, max_size=8))
+def test_a_picture_is_the_same_whatever_was_painted_before(stays: list[Stay], edges: list[int]) -> None:
+    store = Store(*stays)
+    kept = Columns(store.query)
+    for edge in sorted(edges):
+        scale = Scale(edge - 10, S, 12)
+        assert kept.over(scale, 30 * S) == Columns(store.query).over(scale, 30 * S)
+
+
+def test_neighbouring_columns_of_one_interval_are_one_stretch() -> None:
+    store = Store(Stay(S, 4 * S), Stay(4 * S, 6 * S, 2), Stay(8 * S, 8 * S))
+    found = stretches(Columns(store.query).over(Scale(0, S, 10), 20 * S))
+    assert [(one.first, one.after) for one in found] == [(1, 4), (4, 6), (8, 9)]

@@ -1,0 +1,239 @@
+"""Lanes as text: what runs, what waits and why can be read without a colour."""
+
+# ruff: noqa: RUF001  the pictures hold the glyphs that are drawn
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from rich.cells import cell_len
+
+from cbtui.theme import Charset, Role
+from cbtui.widgets.lanes import Painter, wanted_rows
+from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLane, ThreadLane
+from sim.trace.events import Reason
+from sim.trace.model import Window
+from sim.trace.timeline import Timeline
+from tests.support.runs import (
+    Run,
+    dummy_server_one_thread_run,
+    dummy_server_run,
+    ns,
+    shared_group_run,
+    split_groups_run,
+)
+from tests.widgets.pictures import drawn, last, told
+
+RUNS = [told(shared_group_run()), told(split_groups_run()), told(dummy_server_run()), Timeline()]
+
+
+def small_run() -> tuple[Run, int, int, int]:
+    """One thread, an exclusive group with a subscription ``a`` and a timer; return run, thread, a, timer."""
+    run = Run()
+    thread = run.thread("MainThread")
+    group = run.exclusive(run.node("/n"))
+    return run, thread, run.subscription(group, "/a", "a_callback"), run.timer(group, "tick_callback", 1.0)
+
+
+def test_one_shared_group_shows_everybody_waiting_for_the_timer() -> None:
+    timeline = told(shared_group_run(), until=12.9)
+    assert Painter().text(timeline, *last(10, 12.9), 80, 8) == drawn(
+        """
+        |MainThread  │▎▎▎▎▎A timer_callback ███████████████████████████▌│  90% busy      |
+        |A exclusive │·····── held by timer_callback on MainThread ─────│ held, 3 wait   |
+        |  odom      │▎▎▎▎▎╱╱ waits 8.9 s: A held by timer_callback ╱╱╱╱│ 10/10! lost 168|
+        |  scan      │▎▎▎▎▎╱╱ waits 8.9 s: A held by timer_callback ╱╱╱╱│ 10/10! lost 168|
+        |  timer     │▎ ▎  ── runs 8.9 s on MainThread ─────────────────│ late 8.4 s     |
+        |seconds     │     4         6         8         10         now▲│ 200 ms/col     |
+        """
+    )
+
+
+def test_the_same_in_ascii_has_no_other_glyph() -> None:
+    timeline = told(shared_group_run(), until=12.9)
+    assert Painter(Charset.ASCII).text(timeline, *last(10, 12.9), 80, 8) == drawn(
+        """
+        |MainThread  ||||||A timer_callback ###########################||  90% busy      |
+        |A exclusive |.....-- held by timer_callback on MainThread -----| held, 3 wait   |
+        |  odom      ||||||// waits 8.9 s: A held by timer_callback ////| 10/10! lost 168|
+        |  scan      ||||||// waits 8.9 s: A held by timer_callback ////| 10/10! lost 168|
+        |  timer     || |  -- runs 8.9 s on MainThread -----------------| late 8.4 s     |
+        |seconds     |     4         6         8         10         now^| 200 ms/col     |
+        """
+    )
+
+
+def test_split_groups_fit_nine_rows_of_a_small_terminal() -> None:
+    timeline = told(split_groups_run(), until=9.412)
+    assert Painter(service="/motor_power").text(timeline, *last(10, 9.412), 80, 9) == drawn(
+        """
+        |Pool-0_0    │    ▎  ▎ ▎  ▎ ▎  ▎ ▎  A timer_callback ██████████▎│  55% busy      |
+        |Pool-0_1    │  ▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎│   1% busy      |
+        |Pool-0_2    │  ▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎│   1% busy      |
+        |Pool-0_3    │                                                  │   0% unused    |
+        |A excl timer│    ▎  ▎ ▎  ▎ ▎  ▎ ▎  ── runs 5.4 s on Pool-0_0 ──│ late 4.9 s     |
+        |B excl odom │  ▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎│ queue 0/10     |
+        |C excl scan │  ▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎│ queue 0/10     |
+        |/motor_power│                                     ▲s◂          │ 1 call, 0.8 ms |
+        |seconds     │  0         2         4         6         8   now▲│ 200 ms/col     |
+        """
+    )
+
+
+def test_a_reentrant_group_shows_how_many_run_at_once() -> None:
+    timeline = told(dummy_server_run(), until=8.2)
+    assert Painter().text(timeline, *last(10, 8.2), 80, 8) == drawn(
+        """
+        |Pool-0_0    │              ▎    ▎ ▕A service_callback █████▊  ▎│  50% busy      |
+        |Pool-0_1    │                        ▎    ▎    ▎    ▎    ▎     │   0% busy      |
+        |A reentrant │              ·    · ── 2 at once ═────═────═──  ·│ open           |
+        |  dummy_ser…│                     ▲s runs 5.0 s ───────────◂   │ 1 call, 5.0 s  |
+        |  timer     │              ▎    ▎    ▎    ▎    ▎    ▎    ▎    ▎│ on time        |
+        |seconds     │         0         2         4         6      now▲│ 200 ms/col     |
+        """
+    )
+
+
+def test_a_timer_that_found_no_worker_is_marked_late() -> None:
+    timeline = told(dummy_server_one_thread_run(), until=8.2)
+    assert Painter().text(timeline, *last(10, 8.2), 80, 8).splitlines()[3] == drawn(
+        "|  timer     │              ▎    ▎    ╲╲ no free worker ╲╲╲╲▎! ▎│ on time        |"
+    )
+
+
+def test_a_wide_picture_names_threads_as_rclpy_does_and_tells_more() -> None:
+    picture = Painter().text(told(split_groups_run(), until=9.412), *last(10, 9.412), 138, 9)
+    assert "ThreadPoolExecutor-0_0 │" in picture
+    assert "  0%  never needed" in picture
+    assert "A timer 5.4 s" in picture
+    assert "queue 0/10 · age 1.0 ms" in picture
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.sampled_from(RUNS),
+    st.integers(-ns(5), ns(40)),
+    st.integers(1, ns(60)),
+    st.integers(0, ns(40)),
+    st.integers(1, 160),
+    st.integers(0, 14),
+    st.sampled_from(Charset),
+)
+def test_every_picture_has_the_size_that_was_asked_for(
+    timeline: Timeline, start: int, length: int, now: int, width: int, height: int, charset: Charset
+) -> None:
+    picture = Painter(charset).paint(timeline, Window(start, start + length), now, width, height)
+    assert len(picture.rows) <= height
+    assert all(cell_len("".join(run.text for run in row)) == width for row in picture.rows)
+    assert charset is not Charset.ASCII or picture.text.isascii()
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.lists(st.integers(0, ns(30)), min_size=1, max_size=6), st.sampled_from([ns(0.5), ns(10), ns(60)]))
+def test_a_painter_paints_the_same_whatever_it_painted_before(moments: list[int], length: int) -> None:
+    timeline = RUNS[0]
+    used = Painter()
+    for now in moments:
+        window = Window(now - length, now)
+        assert used.paint(timeline, window, now, 100, 8) == Painter().paint(timeline, window, now, 100, 8)
+
+
+def test_lanes_that_grow_look_as_if_painted_at_once() -> None:
+    events = shared_group_run().events
+    growing, painter = Timeline(), Painter()
+    done = 0
+    for now in (2.0, 4.6, 5.0, 13.9, 14.3, 24.1, 26.0):
+        upto = next((place for place, event in enumerate(events) if event.t > ns(now)), len(events))
+        growing.extend(events[done:upto])
+        done = upto
+        assert painter.text(growing, *last(10, now), 100, 8) == Painter().text(
+            growing, *last(10, now), 100, 8
+        )
+
+
+def test_a_callbacks_name_never_reaches_the_terminal_as_a_control() -> None:
+    run = Run()
+    thread = run.thread("Main\x1b[31mThread")
+    timer = run.timer(run.exclusive(run.node("/n")), "evil\x1b]0;title\x07" * 9, 1.0)
+    run.callback(timer, thread, 1.0, 8.0)
+    run.stop(10.0)
+    picture = Painter().text(told(run), *last(10, 10.0), 80, 6)
+    assert "\x1b" not in picture
+    assert "\x07" not in picture
+    assert "Main␛[31mTh…" in picture
+
+
+def test_a_failed_call_is_crossed() -> None:
+    run, thread, a, _ = small_run()
+    run.start(a, thread, 1.0)
+    run.fail(a, thread, 3.0, "IndexError: 720")
+    run.end(a, thread, 3.0)
+    run.stop(10.0)
+    assert "✗" in Painter().text(told(run), *last(10, 10.0), 80, 6).splitlines()[0]
+
+
+@pytest.mark.parametrize(
+    ("reason", "words"),
+    [
+        (Reason.GROUP_HELD, "╱╱ waits 5.0 s: group A held by tick_callback ╱"),
+        (Reason.NO_FREE_WORKER, "╲╲ waits 5.0 s: no free worker ╲"),
+        (Reason.NOBODY_SPINS, "╳╳ waits 5.0 s: nobody spins ╳"),
+    ],
+)
+def test_each_reason_has_its_texture_and_its_words(reason: Reason, words: str) -> None:
+    run, _, a, tick = small_run()
+    run.wait(a, 1.0, 20.0, reason, tick if reason is Reason.GROUP_HELD else 0)
+    run.stop(20.0)
+    assert words in Painter().text(told(run), Window(0, ns(6)), ns(6), 140, 6)
+
+
+def test_a_wait_is_told_as_of_the_cursor() -> None:
+    timeline = told(shared_group_run())
+    before = Painter().text(timeline, Window(0, ns(30)), ns(10), 140, 7)
+    after = Painter().text(timeline, Window(0, ns(30)), ns(26), 140, 7)
+    assert "waits 6.0 s: group A held by timer_callback" in before
+    assert "waited 20.0 s: group A held by timer_callback" in after
+
+
+def test_what_lies_after_the_cursor_is_drawn_later_in_ink() -> None:
+    picture = Painter().paint(told(shared_group_run()), Window(0, ns(30)), ns(10), 140, 7)
+    bars = [run for run in picture.rows[0] if run.ink.role is Role.BAR]
+    assert [run.ink.later for run in bars] == sorted(run.ink.later for run in bars)
+    assert {run.ink.later for run in bars} == {False, True}
+
+
+def test_a_short_window_still_shows_the_last_call_that_reaches_into_it() -> None:
+    picture = Painter().text(told(shared_group_run()), Window(ns(9), ns(9.001)), ns(9.001), 80, 7)
+    assert "A timer_callback ███" in picture
+    assert "waits 5.0 s" in picture
+
+
+def test_a_group_of_one_shares_its_lane_with_its_callback() -> None:
+    lanes = Painter().paint(RUNS[1], *last(10, 10), 80, 20).lanes
+    assert [type(lane) for lane in lanes] == [ThreadLane] * 4 + [SoleLane] * 3 + [ServiceLane]
+
+
+def test_the_services_that_every_node_brings_along_have_no_lanes() -> None:
+    run, _, _, _ = small_run()
+    run.service(run.exclusive(run.node("/m")), "/m/get_parameters", "")
+    assert "get_parameters" not in Painter().text(told(run), *last(10, 10), 80, 20)
+
+
+def test_a_main_thread_that_only_hands_out_work_has_no_lane() -> None:
+    run = Run()
+    run.thread("MainThread")
+    worker = run.thread("ThreadPoolExecutor-0_0")
+    run.callback(run.timer(run.exclusive(run.node("/n")), "tick_callback", 1.0), worker, 1.0, 1.0)
+    assert "MainThread" not in Painter().text(told(run), *last(10, 10), 80, 20)
+
+
+def test_where_room_is_short_those_who_wait_and_run_stay() -> None:
+    timeline = told(shared_group_run(), until=12.9)
+    picture = Painter().paint(timeline, *last(10, 12.9), 80, 4)
+    assert [type(lane) for lane in picture.lanes] == [ThreadLane, GroupLane, MemberLane]
+    assert picture.text.splitlines()[-1].startswith("+2 lanes")
+
+
+def test_the_rows_wanted_are_the_rows_painted() -> None:
+    for timeline in RUNS:
+        wanted = wanted_rows(timeline, "/motor_power")
+        assert len(Painter(service="/motor_power").paint(timeline, *last(10, 10), 80, 50).rows) == wanted
