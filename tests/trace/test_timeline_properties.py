@@ -12,8 +12,18 @@ from sim.trace.timeline import Timeline
 from tests.trace.naive import Naive
 from tests.trace.systems import GROUP_KINDS, GROUP_OF, THREADS, jumbled_runs, legal_runs
 
-moments = st.integers(-2, 250)
-windows = st.tuples(moments, moments).map(lambda pair: Window(*pair))
+places = st.tuples(st.integers(0, 10_000), st.integers(-1, 1))
+several = st.lists(places, min_size=6, max_size=6)
+
+
+def times(events: list[AnyEvent], at: list[tuple[int, int]]) -> list[int]:
+    """Times at which something happens, or just before or after."""
+    return [events[place % len(events)].t + beside for place, beside in at]
+
+
+def windows(events: list[AnyEvent], at: list[tuple[int, int]]) -> list[Window]:
+    """Windows between such times, some of them empty or the wrong way round."""
+    return [Window(start, end) for start, end in pairwise(times(events, at))]
 
 
 def timeline_of(*batches: Iterable[AnyEvent]) -> Timeline:
@@ -45,31 +55,31 @@ def assert_same_window(timeline: Timeline, naive: Naive, window: Window) -> None
         assert timeline.spans_in(group, window) == naive.spans_in(group, window)
 
 
-@given(legal_runs(), moments)
-def test_a_moment_is_what_the_events_up_to_it_make(events: list[AnyEvent], at: int) -> None:
-    assert_same_moment(timeline_of(events), Naive(events), at)
+@given(legal_runs(), several)
+def test_a_moment_is_what_the_events_up_to_it_make(events: list[AnyEvent], at: list[tuple[int, int]]) -> None:
+    timeline, naive = timeline_of(events), Naive(events)
+    for time in times(events, at):
+        assert_same_moment(timeline, naive, time)
+        assert timeline.dropped(time) == naive.drops(Window(-1, time + 1))
+        assert timeline.scan_seen(time) == naive.scan_seen(time)
 
 
-@given(legal_runs(), windows)
-def test_a_window_holds_the_intervals_that_share_time_with_it(events: list[AnyEvent], window: Window) -> None:
-    assert_same_window(timeline_of(events), Naive(events), window)
-
-
-@given(legal_runs(), moments)
-def test_drops_count_from_the_beginning_of_the_run(events: list[AnyEvent], at: int) -> None:
-    assert timeline_of(events).dropped(at) == Naive(events).drops(Window(-1, at + 1))
-
-
-@given(legal_runs(), moments, st.sampled_from([None, *GROUP_OF]), st.sampled_from([1, -1]))
-def test_a_neighbour_is_the_nearest_event_on_its_side(
-    events: list[AnyEvent], at: int, entity: int | None, step: int
+@given(legal_runs(), several)
+def test_a_window_holds_the_intervals_that_share_time_with_it(
+    events: list[AnyEvent], at: list[tuple[int, int]]
 ) -> None:
-    assert timeline_of(events).neighbour(at, entity, step) == Naive(events).neighbour(at, entity, step)
+    timeline, naive = timeline_of(events), Naive(events)
+    for window in windows(events, at):
+        assert_same_window(timeline, naive, window)
 
 
-@given(legal_runs(), moments)
-def test_the_scan_seen_is_the_one_last_taken(events: list[AnyEvent], at: int) -> None:
-    assert timeline_of(events).scan_seen(at) == Naive(events).scan_seen(at)
+@given(legal_runs(), several, st.sampled_from([None, *GROUP_OF]), st.sampled_from([1, -1]))
+def test_a_neighbour_is_the_nearest_event_on_its_side(
+    events: list[AnyEvent], at: list[tuple[int, int]], entity: int | None, step: int
+) -> None:
+    timeline, naive = timeline_of(events), Naive(events)
+    for time in times(events, at):
+        assert timeline.neighbour(time, entity, step) == naive.neighbour(time, entity, step)
 
 
 @given(legal_runs())
@@ -82,27 +92,33 @@ def test_the_outer_spans_of_a_thread_never_overlap(events: list[AnyEvent]) -> No
             assert ended <= inner.start or inner.end_at(timeline.end) <= ended
 
 
-@given(legal_runs(), st.lists(st.integers(0, 200)), moments, windows)
+@given(legal_runs(), st.lists(st.integers(0, 200)), several)
 def test_pieces_make_the_same_timeline_as_the_whole(
-    events: list[AnyEvent], cuts: list[int], at: int, window: Window
+    events: list[AnyEvent], cuts: list[int], at: list[tuple[int, int]]
 ) -> None:
-    places = sorted({0, *(min(cut, len(events)) for cut in cuts), len(events)})
-    pieces = timeline_of(*(events[start:end] for start, end in pairwise(places)))
-    whole = timeline_of(events)
-    for answer in everything(at, window):
-        assert answer(pieces) == answer(whole)
+    edges = sorted({0, *(min(cut, len(events)) for cut in cuts), len(events)})
+    pieces = timeline_of(*(events[start:end] for start, end in pairwise(edges)))
+    assert_same_answers(pieces, timeline_of(events), events, at)
 
 
-@given(jumbled_runs(), moments, windows)
+@given(jumbled_runs(), several)
 def test_threads_may_record_a_little_out_of_order(
-    runs: tuple[list[AnyEvent], list[AnyEvent]], at: int, window: Window
+    runs: tuple[list[AnyEvent], list[AnyEvent]], at: list[tuple[int, int]]
 ) -> None:
     events, jumbled = runs
     timeline, naive = timeline_of(jumbled), Naive(events)
-    assert_same_moment(timeline, naive, at)
-    assert_same_window(timeline, naive, window)
-    for answer in everything(at, window):
-        assert answer(timeline) == answer(timeline_of(events))
+    for time, window in zip(times(events, at), windows(events, at), strict=False):
+        assert_same_moment(timeline, naive, time)
+        assert_same_window(timeline, naive, window)
+    assert_same_answers(timeline, timeline_of(events), events, at)
+
+
+def assert_same_answers(
+    one: Timeline, other: Timeline, events: list[AnyEvent], at: list[tuple[int, int]]
+) -> None:
+    for time, window in zip(times(events, at), windows(events, at), strict=False):
+        for answer in everything(time, window):
+            assert answer(one) == answer(other)
 
 
 def everything(at: int, window: Window) -> tuple[Callable[[Timeline], object], ...]:
