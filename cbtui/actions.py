@@ -29,7 +29,8 @@ class Scope(StrEnum):
 class Action(NamedTuple):
     """Something a person can do. ``key`` is Textual's name of a key, ``help`` one sentence.
 
-    Neighbours with the same ``label`` share a place in the footer.
+    Neighbours with the same ``label`` share a place in the footer; those with the same ``series`` share a
+    line of the help, which says that instead.
     """
 
     id: str
@@ -37,7 +38,15 @@ class Action(NamedTuple):
     label: str
     help: str
     scope: Scope
+    series: str = ""
 
+    @property
+    def line(self) -> str:
+        """What the help says."""
+        return self.series or self.help
+
+
+_WINDOWS = (Scope.THREADS, Scope.HELP)
 
 PANES = ("guide", "code", "robot", "log")
 """The panes of a lesson, in the order of their keys."""
@@ -45,7 +54,14 @@ PANES = ("guide", "code", "robot", "log")
 ACTIONS = (
     Action("open", "enter", "open", "Open the highlighted lesson", Scope.MENU),
     *(
-        Action(f"open_number({number})", str(number), "open", "Open the lesson with this number", Scope.MENU)
+        Action(
+            f"open_number({number})",
+            str(number),
+            "open",
+            f"Open lesson {number}",
+            Scope.MENU,
+            "Open the lesson with this number",
+        )
         for number in range(1, 10)
     ),
     Action("previous", "up", "choose", "Highlight the lesson above", Scope.MENU),
@@ -61,22 +77,29 @@ ACTIONS = (
     ),
     Action("live", "0", "live", "Go back to the present", Scope.LESSON),
     *(
-        Action(f"show_pane('{name}')", str(number), "pane", "Go to a pane", Scope.LESSON)
+        Action(
+            f"show_pane('{name}')",
+            str(number),
+            "pane",
+            f"Go to the {name}",
+            Scope.LESSON,
+            f"Go to a pane: {', '.join(PANES)}",
+        )
         for number, name in enumerate(PANES, start=1)
     ),
     Action("earlier", "left", "look back", "Look at an earlier stretch of the run", Scope.LESSON),
     Action("later", "right", "look back", "Look at a later stretch of the run", Scope.LESSON),
     Action("slower", "minus", "speed", "Let virtual time pass more slowly", Scope.LESSON),
     Action("faster", "plus", "speed", "Let virtual time pass faster", Scope.LESSON),
-    Action("zoom_out", "less_than_sign", "time", "Show a longer stretch of time", Scope.LESSON),
-    Action("zoom_in", "greater_than_sign", "time", "Show a shorter stretch of time", Scope.LESSON),
+    Action("zoom_out", "less_than_sign", "zoom", "Show a longer stretch of time", Scope.LESSON),
+    Action("zoom_in", "greater_than_sign", "zoom", "Show a shorter stretch of time", Scope.LESSON),
     Action("next_pane", "tab", "next pane", "Go to the next pane", Scope.LESSON),
-    Action("maximise", "z", "zoom", "Let one pane fill the screen; press again to go back", Scope.LESSON),
+    Action("maximise", "z", "enlarge", "Let one pane fill the screen; press again to go back", Scope.LESSON),
     Action("next_lesson", "n", "next", "Open the next lesson", Scope.LESSON),
     Action("leave", "q", "menu", "End the run and go back to the menu", Scope.LESSON),
     Action("leave", "q", "quit", "Leave the console", Scope.MENU),
     *(
-        Action(f"choose({number})", str(number), "threads", "Run with so many threads", Scope.THREADS)
+        Action(f"choose({number})", str(number), "threads", f"Run with {number} threads", Scope.THREADS)
         for number in range(1, 9)
     ),
     Action("choose(0)", "o", "the program's own", "Run with the program's own number", Scope.THREADS),
@@ -88,8 +111,9 @@ ACTIONS = (
 
 
 def actions_of(scope: Scope) -> tuple[Action, ...]:
-    """Return the actions that work on a screen, those of everywhere last."""
-    return tuple(action for action in ACTIONS if action.scope in (scope, Scope.EVERYWHERE))
+    """Return the actions that work on a screen, those of everywhere last; a window has only its own."""
+    scopes = (scope,) if scope in _WINDOWS else (scope, Scope.EVERYWHERE)
+    return tuple(action for action in ACTIONS if action.scope in scopes)
 
 
 def bindings_of(*scopes: Scope) -> list[Binding]:

@@ -2,8 +2,10 @@
 
 import multiprocessing
 import os
+import sys
 import threading
 from collections.abc import Callable
+from contextlib import redirect_stderr
 from multiprocessing.process import BaseProcess
 
 import msgspec
@@ -45,7 +47,8 @@ class Session:
 
     def start(self) -> None:
         """Start the engine and the reader."""
-        with _fixed_hashes():
+        # Starting a process hands on standard error, and Textual's stand-in for it has no descriptor.
+        with _fixed_hashes(), redirect_stderr(sys.__stderr__):
             self._process.start()
         self._far_end.close()
         self._reader.start()

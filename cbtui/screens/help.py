@@ -44,10 +44,10 @@ class HelpScreen(SizedModal[None]):
 def _sections(charset: Charset) -> Iterator[Content]:
     for scope in _SHOWN:
         actions = [action for action in ACTIONS if action.scope is scope]
-        rows = [_row(group, charset) for group in together(actions, "help")]
+        rows = [_row(group, charset) for group in together(actions, "line")]
         yield Content("\n").join([Content.styled(scope.value, "bold $text-primary"), *rows, Content("")])
 
 
 def _row(actions: Sequence[Action], charset: Charset) -> Content:
     keys = signs_of(actions, charset)
-    return Content.assemble((f"{keys:>7}", "bold $text-accent"), f"  {actions[0].help}")
+    return Content.assemble((f"{keys:>7}", "bold $text-accent"), f"  {actions[0].line}")

@@ -111,6 +111,7 @@ class LessonScreen(SizedScreen[None]):
         robot.can_focus = True
         for name in PANES:
             self._widget(name).border_title = title_of(name)
+            self._widget(name).add_class("pane")
         self._show(self._pane)
         self._run.start()
         self.set_interval(1 / FRAMES_A_SECOND, self._draw_if_stale)

@@ -6,14 +6,15 @@ from typing import TYPE_CHECKING, ClassVar, cast
 
 from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.containers import Container, VerticalScroll
+from textual.containers import Container
 from textual.content import Content
-from textual.widgets import OptionList, Static
+from textual.widgets import OptionList
 from textual.widgets.option_list import Option
 
 from cbtui.actions import Scope, bindings_of
 from cbtui.screens.sized import SizedScreen
 from cbtui.theme import Charset
+from cbtui.widgets.about import About
 from cbtui.widgets.banner import Banner
 from cbtui.widgets.cells import fit
 from cbtui.widgets.key_bar import KeyBar
@@ -43,8 +44,7 @@ class MenuScreen(SizedScreen[None]):
         yield Banner()
         with Container(id="choice"):
             yield LessonList(*self._options(), id="lessons")
-            with VerticalScroll(id="about", can_focus=False):
-                yield Static(id="about-text")
+            yield About()
         yield KeyBar(Scope.MENU, self._charset)
 
     def on_mount(self) -> None:
@@ -53,7 +53,7 @@ class MenuScreen(SizedScreen[None]):
 
     def on_option_list_option_highlighted(self, event: OptionList.OptionHighlighted) -> None:
         """Tell what the highlighted lesson teaches."""
-        self.query_one("#about-text", Static).update(about(self._lesson(event.option.id)))
+        self.query_one(About).lesson = self._lesson(event.option.id)
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
         """Open the lesson that was clicked or confirmed."""
@@ -115,14 +115,3 @@ def row(lesson: Lesson) -> Content:
         fit(lesson.executor, 26, Charset.BRAILLE),
         (lesson.groups, "$text-muted"),
     )
-
-
-def about(lesson: Lesson) -> Content:
-    """Return what a lesson teaches and what there is to try."""
-    parts: list[Content | str | tuple[str, str]] = [
-        (f"{lesson.title}\n", "bold $text-primary"),
-        f"{lesson.teaches}\n\n",
-    ]
-    for attempt in lesson.tries:
-        parts += [(f"{attempt.key:>5}", "bold $text-accent"), f"  {attempt.text}\n"]
-    return Content.assemble(*parts).rstrip()

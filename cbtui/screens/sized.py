@@ -15,17 +15,6 @@ Result = TypeVar("Result")
 class SizedScreen(Screen[Result]):
     """Carries its layout as a style class; too small a terminal gets a sentence instead of the screen."""
 
-    DEFAULT_CSS = """
-    SizedScreen {
-        .too-small { display: none; }
-        &.-small {
-            align: center middle;
-            & > * { display: none; }
-            & > .too-small { display: block; width: auto; max-width: 100%; padding: 0 2; }
-        }
-    }
-    """
-
     layout_now = Layout.TABBED
 
     def on_mount(self) -> None:

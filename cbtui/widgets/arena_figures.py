@@ -41,7 +41,7 @@ def _entries(robot: RobotMoved, command: VelocityCommanded | None, charset: Char
         (f"told {told}", PLAIN),
         ("motors on " if robot.motors else "motors OFF", PLAIN if robot.motors else WARN),
         (f"real {_velocity(robot.linear, robot.angular)}", PLAIN),
-        ("touches SOMETHING" if robot.touching else "touches nothing", WARN if robot.touching else PLAIN),
+        ("touching YES" if robot.touching else "touching no ", WARN if robot.touching else PLAIN),
     )
 
 

@@ -106,7 +106,7 @@ class ArenaPainter:
         pieces = [
             (f"{view.metres_per_dot * 100:.0f} cm/dot  ", FAINT),
             (true, Ink(Role.TRUE_SCAN)),
-            (" true scan  ", PLAIN),
+            (" true scan  " if width >= _BOTH_FROM else " true  ", PLAIN),
             (seen, Ink(Role.SEEN_SCAN)),
             (f" {words}", WARN if stale else PLAIN),
         ]

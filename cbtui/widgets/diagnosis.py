@@ -64,9 +64,13 @@ def diagnose(timeline: Timeline, at: Nanoseconds, concurrency: Concurrency) -> D
         return Diagnosis("no callback yet: the node is starting", Weight.FINE)
     moment = timeline.moment(at)
     waits = [wait for wait in moment.waiting.values() if at - wait.since >= WORTH_TELLING]
-    if waits:
-        return _of_waits(sorted(waits, key=lambda wait: wait.since), moment, timeline)
-    return Diagnosis(f"nothing waits; {_threads_needed(timeline, concurrency.peak(at))}", Weight.FINE)
+    for_others = sorted((wait for wait in waits if wait.holder != wait.entity), key=_since)
+    if for_others:
+        return _of_waits(for_others, moment, timeline)
+    for_itself = min(waits, key=_since, default=None)
+    overdue = "" if for_itself is None else f"; {_overdue(for_itself, at, timeline)}"
+    threads = _threads_needed(timeline, concurrency.peak(at))
+    return Diagnosis(f"nothing waits; {threads}{overdue}", Weight.FINE)
 
 
 def call_note(timeline: Timeline, at: Nanoseconds) -> str:
@@ -83,8 +87,8 @@ def call_note(timeline: Timeline, at: Nanoseconds) -> str:
 
 
 def _response(call: Call) -> str:
-    """The fields of a response, without the name of its class."""
-    inside = call.response.partition("(")[2].removesuffix(")")
+    """The fields of a response, without the name of its class and an empty message."""
+    inside = call.response.partition("(")[2].removesuffix(")").removesuffix(", message=''")
     return inside or call.response
 
 
@@ -95,6 +99,15 @@ def _latest_notice(timeline: Timeline, at: Nanoseconds) -> Notice | None:
             serious = notice.severity in (Severity.WARN, Severity.ERROR, Severity.FATAL)
             return notice if serious and at - notice.t <= _NOTICE_STAYS else None
     return None
+
+
+def _since(wait: Wait) -> Nanoseconds:
+    return wait.since
+
+
+def _overdue(wait: Wait, at: Nanoseconds, timeline: Timeline) -> str:
+    """Say that a callback only has to finish its own call before the next: nobody else is in its way."""
+    return f"{name_of(wait.entity, timeline)}, due again {duration(at - wait.since)} ago, still runs"
 
 
 def _of_waits(waits: list[Wait], moment: Moment, timeline: Timeline) -> Diagnosis:
@@ -109,8 +122,6 @@ def _of_waits(waits: list[Wait], moment: Moment, timeline: Timeline) -> Diagnosi
 
 def _why(wait: Wait, moment: Moment, timeline: Timeline) -> str:
     match wait.reason:
-        case Reason.GROUP_HELD if wait.holder == wait.entity:
-            return f"{_group_of(wait, timeline)} is held by its own earlier call"
         case Reason.GROUP_HELD:
             return f"{_group_of(wait, timeline)} is held by {name_of(wait.holder, timeline)}"
         case Reason.NO_FREE_WORKER:

@@ -108,8 +108,13 @@ def test_motors_off_and_touching_are_said_in_words() -> None:
     timeline.extend([RobotMoved(0, 0.0, 0.0, 0.0, math.inf, 0.0, 0.0, False, True, 0.0, 0.0)])
     text = ArenaPainter(PLAN).text(timeline, 0, 80, 14)
     assert "motors OFF" in text
-    assert "touches SOMETHING" in text
+    assert "touching YES" in text
     assert "front    free" in text
+
+
+@pytest.mark.parametrize("width", [34, 40, 44, 80])
+def test_the_age_of_the_nodes_scan_is_told_at_every_width(width: int) -> None:
+    assert "node saw 10.2 s ago" in ArenaPainter(PLAN).text(SHARED, ns(14.2), width, 16)
 
 
 def test_a_run_without_a_robot_says_so() -> None:

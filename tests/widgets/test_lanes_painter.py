@@ -212,6 +212,11 @@ def test_a_group_of_one_shares_its_lane_with_its_callback() -> None:
     assert [type(lane) for lane in lanes] == [ThreadLane] * 4 + [SoleLane] * 3 + [ServiceLane]
 
 
+def test_a_call_without_a_reply_says_since_when() -> None:
+    timeline = told(dummy_server_run(), until=5.05)
+    assert "no reply 2.5 s" in Painter().text(timeline, *last(10, 5.05), 80, 8)
+
+
 def test_the_services_that_every_node_brings_along_have_no_lanes() -> None:
     run, _, _, _ = small_run()
     run.service(run.exclusive(run.node("/m")), "/m/get_parameters", "")

@@ -31,14 +31,14 @@ class Calls:
         return self._by_service.get(service, ())
 
     def summary(self, service: str, now: Nanoseconds) -> str:
-        """Say how many calls were sent by ``now`` and how long the last one took or has taken."""
+        """Say how many calls were sent by ``now`` and how long the last took or has taken."""
         sent = [call for call in self.of(service) if call.sent <= now]
         if not sent:
             return "not called"
         count = "1 call" if len(sent) == 1 else f"{len(sent)} calls"
         last = sent[0]
         if last.replied is None or last.replied > now:
-            return f"{count}, {duration(now - last.sent)}…"
+            return f"no reply {duration(now - last.sent)}"
         return f"{count}, {duration(last.replied - last.sent)}"
 
 
