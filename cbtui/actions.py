@@ -75,6 +75,7 @@ ACTIONS = (
     Action(
         "restart", "r", "reset", "Put the robot back to its start; after a run's end, run again", Scope.LESSON
     ),
+    Action("next_lesson", "n", "next", "Open the next lesson", Scope.LESSON),
     Action("live", "0", "live", "Go back to the present", Scope.LESSON),
     *(
         Action(
@@ -95,7 +96,6 @@ ACTIONS = (
     Action("zoom_in", "greater_than_sign", "zoom", "Show a shorter stretch of time", Scope.LESSON),
     Action("next_pane", "tab", "next pane", "Go to the next pane", Scope.LESSON),
     Action("maximise", "z", "enlarge", "Let one pane fill the screen; press again to go back", Scope.LESSON),
-    Action("next_lesson", "n", "next", "Open the next lesson", Scope.LESSON),
     Action("leave", "q", "menu", "End the run and go back to the menu", Scope.LESSON),
     Action("leave", "q", "quit", "Leave the console", Scope.MENU),
     *(
@@ -167,12 +167,12 @@ _PLAIN_SIGNS = _SIGNS | {
 
 def signs_of(actions: Iterable[Action], charset: Charset) -> str:
     """Return the keys of some actions as people write them."""
-    keys = [action.key for action in actions]
-    if len(keys) > 2 and all(key.isdigit() for key in keys):
-        return f"{keys[0]}-{keys[-1]}"
     signs = _PLAIN_SIGNS if charset is Charset.ASCII else _SIGNS
-    first = [key.partition(",")[0] for key in keys]
-    return " ".join(signs.get(key, key) for key in first)
+    keys = [action.key.partition(",")[0] for action in actions]
+    digits = [key for key in keys if key.isdigit()]
+    if len(digits) > 2:
+        keys = [key for key in keys if key not in digits] + [f"{digits[0]}-{digits[-1]}"]
+    return " ".join(signs.get(key, key) for key in keys)
 
 
 def method_of(action: Action) -> tuple[str, tuple[object, ...]]:

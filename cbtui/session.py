@@ -4,8 +4,8 @@ import multiprocessing
 import os
 import sys
 import threading
-from collections.abc import Callable
-from contextlib import redirect_stderr
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, redirect_stderr
 from multiprocessing.process import BaseProcess
 
 import msgspec
@@ -48,7 +48,7 @@ class Session:
     def start(self) -> None:
         """Start the engine and the reader."""
         # Starting a process hands on standard error, and Textual's stand-in for it has no descriptor.
-        with _fixed_hashes(), redirect_stderr(sys.__stderr__):
+        with _engine_environment(), redirect_stderr(sys.__stderr__):
             self._process.start()
         self._far_end.close()
         self._reader.start()
@@ -105,15 +105,22 @@ def _engine(packed_setup: bytes, pipe: "multiprocessing.connection.Connection") 
     run(packed_setup, pipe)
 
 
-class _fixed_hashes:  # noqa: N801 -- a context manager reads like a function
-    """Let a child process order its sets of strings the same way each time."""
+_ENVIRONMENT = {
+    "PYTHONHASHSEED": "0",  # sets of strings have the same order each time
+    "OPENBLAS_NUM_THREADS": "1",  # numpy starts in half the time, and nobody here multiplies matrices
+}
 
-    def __enter__(self) -> None:
-        self._before = os.environ.get("PYTHONHASHSEED")
-        os.environ["PYTHONHASHSEED"] = "0"
 
-    def __exit__(self, *_: object) -> None:
-        if self._before is None:
-            del os.environ["PYTHONHASHSEED"]
-        else:
-            os.environ["PYTHONHASHSEED"] = self._before
+@contextmanager
+def _engine_environment() -> Iterator[None]:
+    """Let processes started meanwhile have the engine's environment."""
+    before = {name: os.environ.get(name) for name in _ENVIRONMENT}
+    os.environ.update(_ENVIRONMENT)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value

@@ -13,7 +13,7 @@ from collections import deque
 from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, Self, TypeAlias
 
 from sim.clock import Stopped
 from sim.ros.context import Context
@@ -257,22 +257,21 @@ class Executor:
 
     def _begin(self, entity: Entity) -> Taken | None:
         """Enter the group and take what is there; None: refused, or nothing there. With the lock held."""
-        if self._is_shutdown or not entity.callback_group.beginning_execution(entity):
-            entity.handed_out = False
-            self._look_again()
+        entity.handed_out = False
+        if self._is_shutdown or entity.destroyed or not entity.callback_group.beginning_execution(entity):
+            self.wake()
             return None
         taken = entity.take(self._clock.now())
-        entity.handed_out = False
         if taken is None:
             entity.callback_group.ending_execution(entity)
-            self._look_again()
+            self.wake()
             return None
         self._running.append(entity)
         self._at_work += 1
         if entity.wait_shown is not None:
             self._probe.wait_ended(entity)
-        if entity.pending:
-            self._look_again()
+        if entity.pending and entity.callback_group.can_execute(entity):
+            self.wake()
         return taken
 
     def _run(self, entity: Entity, taken: Taken) -> None:
@@ -426,11 +425,11 @@ class SingleThreadedExecutor(Executor):
     An exception in a callback leaves ``spin`` at once; spinning again goes on.
     """
 
-    def __new__(cls, *, context: Context | None = None) -> Any:
+    def __new__(cls, *, context: Context | None = None) -> Self:
         """Make it; where the run was set up with a number of threads, the kind with that many."""
         chosen = get_default_context() if context is None else context
         if cls is SingleThreadedExecutor and (chosen.host.threads or 1) > 1 and chosen.probe.visible:
-            return MultiThreadedExecutor(context=chosen)
+            return MultiThreadedExecutor(context=chosen)  # type: ignore[return-value]
         return super().__new__(cls)
 
     def _spin_once_impl(

@@ -6,6 +6,7 @@ benchmark is the yardstick, one turn of a queue and a call of an empty function.
 
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 import pytest
@@ -14,7 +15,12 @@ from pytest_benchmark.fixture import BenchmarkFixture
 from sim.clock import RealClock
 from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
 from sim.ros.context import Context
-from sim.ros.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
+from sim.ros.executors import (
+    Executor,
+    ExternalShutdownException,
+    MultiThreadedExecutor,
+    SingleThreadedExecutor,
+)
 from sim.ros.host import Host
 from sim.ros.interfaces import message, service
 from sim.ros.node import Node
@@ -43,10 +49,8 @@ class _Bench:
             self.context.shutdown()
 
     def spin(self) -> None:
-        try:
+        with suppress(ExternalShutdownException):
             self.executor.spin()
-        except Exception as ended:  # noqa: BLE001 -- the single-threaded one tells of the shutdown so
-            assert type(ended).__name__ == "ExternalShutdownException"
         self.executor.shutdown()
 
 

@@ -1,4 +1,4 @@
-"""What a whole virtual minute of a lesson costs, engine process and all, and what starting the command does."""
+"""What a virtual minute of a lesson costs, engine process and all, and what starting the command does."""
 
 import subprocess
 import sys
