@@ -68,13 +68,13 @@ ACTIONS = (
     Action("next", "down", "choose", "Highlight the lesson below", Scope.MENU),
     Action("call_service", "s", "service", "Call the lesson's SetBool service with true", Scope.LESSON),
     Action("call_service_off", "S", "false", "Call the lesson's SetBool service with false", Scope.LESSON),
-    Action("pause", "space", "pause", "Stop time for every thread; press again to go on", Scope.LESSON),
+    Action("pause", "space", "pause", "Stop time for every thread", Scope.LESSON),
+    Action("resume", "space", "go on", "Let time go on", Scope.LESSON),
     Action(
         "threads", "t", "threads", "Choose how many threads the executor gets, and run again", Scope.LESSON
     ),
-    Action(
-        "restart", "r", "reset", "Put the robot back to its start; after a run's end, run again", Scope.LESSON
-    ),
+    Action("reset_world", "r", "reset", "Put the robot back to its start", Scope.LESSON),
+    Action("run_again", "r", "run again", "Run again, when the run is over", Scope.LESSON),
     Action("next_lesson", "n", "next", "Open the next lesson", Scope.LESSON),
     Action("live", "0", "live", "Go back to the present", Scope.LESSON),
     *(

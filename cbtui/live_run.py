@@ -50,8 +50,9 @@ class LiveRun:
         self.timeline = Timeline()
         self.speed = setup.speed
         self.loss: str | None = None
-        self._paused = False
+        self.paused = False
         self._over = False
+        self._started = False
         self._session = open_session(setup, deliver, ended)
 
     @property
@@ -63,7 +64,7 @@ class LiveRun:
             return State.ENDED
         if self.timeline.started is None:
             return State.STARTING
-        return State.PAUSED if self._paused else State.LIVE
+        return State.PAUSED if self.paused else State.LIVE
 
     @property
     def alive(self) -> bool:
@@ -79,6 +80,7 @@ class LiveRun:
         """Start the engine; one that cannot be started counts as lost."""
         try:
             self._session.start()
+            self._started = True
         except OSError as error:
             self.loss = f"it could not be started: {error.strerror or error}"
 
@@ -93,17 +95,23 @@ class LiveRun:
 
     def stop(self) -> None:
         """End the engine. Blocks for up to a second; may be called from any thread."""
-        self._session.stop()
+        if self._started:
+            self._session.stop()
 
     def call(self, data: bool) -> None:
         """Call the SetBool service that the run was set up with."""
         if self.setup.service is not None:
             self._session.send(CallService(self.setup.service.name, data))
 
-    def toggle_pause(self) -> None:
-        """Stop time, or let it go on."""
-        self._paused = not self._paused
-        self._session.send(Pause() if self._paused else Resume())
+    def pause(self) -> None:
+        """Stop time."""
+        self.paused = True
+        self._session.send(Pause())
+
+    def resume(self) -> None:
+        """Let time go on."""
+        self.paused = False
+        self._session.send(Resume())
 
     def reset_world(self) -> None:
         """Put the robot back to its start."""

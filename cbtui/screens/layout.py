@@ -31,6 +31,6 @@ def layout_for(size: Size) -> Layout:
 def too_small(size: Size) -> str:
     """Return the sentence for a terminal that is too small."""
     return (
-        f"cbtui needs {LEAST.width} columns and {LEAST.height} rows; "
-        f"this terminal has {size.width} and {size.height}. Please enlarge it."
+        f"cbtui needs a terminal of {LEAST.width} columns and {LEAST.height} rows; "
+        f"this one has {size.width} columns and {size.height} rows."
     )

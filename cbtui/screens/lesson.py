@@ -13,7 +13,6 @@ from textual.message import Message
 from textual.widget import Widget
 
 from cbtui.actions import PANES, Scope, bindings_of
-from cbtui.arena_plan import arena_plan
 from cbtui.concurrency import Concurrency
 from cbtui.lesson_setup import setup_for
 from cbtui.live_run import SPEEDS, LiveRun, OpenSession
@@ -86,6 +85,11 @@ class LessonScreen(SizedScreen[None]):
         self._begin(speed=1.0)
 
     @property
+    def lesson(self) -> Lesson:
+        """The lesson that is run."""
+        return self._lesson
+
+    @property
     def live_run(self) -> LiveRun:
         """The run on screen."""
         return self._run
@@ -98,7 +102,7 @@ class LessonScreen(SizedScreen[None]):
         with Container(id="panes"):
             yield Guide(self._lesson.guide, id="guide")
             yield CodeView(self._lesson.node_path, id="code")
-            yield ArenaMap(arena_plan(), id="robot")
+            yield ArenaMap(id="robot")
             yield LogView(id="log")
         yield DiagnosisLine()
         yield KeyBar(Scope.LESSON, self._charset)
@@ -238,7 +242,10 @@ class LessonScreen(SizedScreen[None]):
         meaningless = {
             "call_service": not run.alive,
             "call_service_off": not run.alive,
-            "pause": not run.alive,
+            "pause": not run.alive or run.paused,
+            "resume": not run.alive or not run.paused,
+            "reset_world": not run.alive,
+            "run_again": run.alive,
             "slower": not paced or run.speed == SPEEDS[0],
             "faster": not paced or run.speed == SPEEDS[-1],
             "live": playhead.at is None,
@@ -258,16 +265,22 @@ class LessonScreen(SizedScreen[None]):
         self._run.call(False)
 
     def action_pause(self) -> None:
-        """Stop time, or let it go on."""
-        self._run.toggle_pause()
+        """Stop time."""
+        self._run.pause()
         self._stale = True
 
-    async def action_restart(self) -> None:
-        """Put the robot back; run again if there is no engine any more."""
-        if self._run.alive:
-            self._run.reset_world()
-        else:
-            await self._run_again()
+    def action_resume(self) -> None:
+        """Let time go on."""
+        self._run.resume()
+        self._stale = True
+
+    def action_reset_world(self) -> None:
+        """Put the robot back to its start."""
+        self._run.reset_world()
+
+    async def action_run_again(self) -> None:
+        """Run again with the same threads and speed."""
+        await self._run_again()
 
     def action_threads(self) -> None:
         """Ask for a number of threads."""

@@ -25,7 +25,7 @@ class About(Painted):
 
     def rows(self, size: Size) -> Sequence[Sequence[Run]]:
         """Paint the description; a low widget leaves out what the list says already."""
-        if self.lesson is None:
+        if self.lesson is None or not size.width:
             return []
         facts = _facts(self.lesson) if size.height >= _FACTS + 2 else ()
         return list(described(self.lesson, facts, size.width))[: size.height]

@@ -6,12 +6,12 @@ from textual.geometry import Size
 from textual.reactive import reactive
 
 from cbtui.theme import Charset, Run
-from cbtui.widgets.arena_painter import ArenaPainter, Plan
+from cbtui.widgets.arena_painter import ArenaPainter
 from cbtui.widgets.painted import Painted
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 
-__all__ = ["ArenaMap", "ArenaPainter", "Plan"]
+__all__ = ["ArenaMap", "ArenaPainter"]
 
 
 class ArenaMap(Painted):
@@ -24,13 +24,9 @@ class ArenaMap(Painted):
     now: reactive[Nanoseconds] = reactive(0)
     charset: reactive[Charset] = reactive(Charset.BRAILLE)
 
-    def __init__(self, plan: Plan, *, id: str | None = None, classes: str | None = None) -> None:  # noqa: A002
-        super().__init__(id=id, classes=classes)
-        self._plan = plan
-
     def rows(self, size: Size) -> Sequence[Sequence[Run]]:
         """Paint the map."""
-        painter = ArenaPainter(self._plan, self.charset)
+        painter = ArenaPainter(self.charset)
         return painter.paint(self.timeline, self.now, size.width, size.height)
 
     def watch_timeline(self) -> None:

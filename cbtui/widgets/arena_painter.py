@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from cbtui.widgets.arena_view import View, near, whole
 from cbtui.widgets.cells import Row
 from cbtui.widgets.dots import Dots, Floats
 from cbtui.widgets.durations import duration
-from sim.trace.events import RobotMoved, Scanned
+from sim.trace.events import ArenaShown, RobotMoved, Scanned
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -41,15 +40,6 @@ PLAIN = Ink(Role.TEXT)
 WARN = Ink(Role.WARN)
 
 
-@dataclass(frozen=True, slots=True)
-class Plan:
-    """What stands where, in metres: walls as (x0, y0, x1, y1), the sphere's section, the robot's radius."""
-
-    walls: tuple[tuple[float, float, float, float], ...]
-    sphere: tuple[float, float, float]
-    robot_radius: float
-
-
 class ArenaPainter:
     """Paints the arena at a moment: walls, sphere, robot, its trail, the true scan and the one the node saw.
 
@@ -57,8 +47,7 @@ class ArenaPainter:
     is fresh it lies under the true one; the older it is, the further the two come apart.
     """
 
-    def __init__(self, plan: Plan, charset: Charset = Charset.BRAILLE) -> None:
-        self.plan = plan
+    def __init__(self, charset: Charset = Charset.BRAILLE) -> None:
         self.charset = charset
 
     def text(self, timeline: Timeline, now: Nanoseconds, width: int, height: int) -> str:
@@ -68,16 +57,16 @@ class ArenaPainter:
 
     def paint(self, timeline: Timeline, now: Nanoseconds, width: int, height: int) -> list[list[Run]]:
         """Paint ``height`` rows of ``width`` columns: legend, map, figures."""
-        robot = timeline.robot(now)
-        if robot is None:
+        robot, plan = timeline.robot(now), timeline.arena
+        if robot is None or plan is None:
             return self._nothing(width, height)
         below = figures(robot, timeline.command(now), width, self.charset)
         room = height - len(below) - 1
         if room < 3 or width < 12:
             return [row.runs() for row in below[:height]]
-        scene = _Scene(self.plan, timeline, now, robot)
+        scene = _Scene(plan, timeline, now, robot)
         narrow = width < _BOTH_FROM
-        views = (near(self.plan, robot),) if narrow else (near(self.plan, robot), whole(self.plan))
+        views = (near(plan, robot),) if narrow else (near(plan, robot), whole(plan))
         widths = (width,) if narrow else (width // 2, width - width // 2 - 1)
         scales = [
             View.of(extent, cells, room, self.charset) for extent, cells in zip(views, widths, strict=True)
@@ -122,7 +111,7 @@ class ArenaPainter:
 class _Scene:
     """All that is to be seen at one moment."""
 
-    def __init__(self, plan: Plan, timeline: Timeline, now: Nanoseconds, robot: RobotMoved) -> None:
+    def __init__(self, plan: ArenaShown, timeline: Timeline, now: Nanoseconds, robot: RobotMoved) -> None:
         self._plan = plan
         self._robot = robot
         self._true = timeline.scan(now)

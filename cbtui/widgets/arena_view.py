@@ -2,14 +2,11 @@
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 from cbtui.theme import Charset
 from cbtui.widgets.dots import DOTS_PER_CELL, Floats
-from sim.trace.events import RobotMoved
-
-if TYPE_CHECKING:
-    from cbtui.widgets.arena_painter import Plan
+from sim.trace.events import ArenaShown, RobotMoved
 
 _MARGIN = 0.6
 _GRID = 0.5
@@ -25,7 +22,7 @@ class Extent(NamedTuple):
     top: float
 
 
-def whole(plan: "Plan") -> Extent:
+def whole(plan: ArenaShown) -> Extent:
     """Return the extent of all walls and the sphere."""
     x, y, radius = plan.sphere
     across = [at for wall in plan.walls for at in (wall[0], wall[2])] + [x - radius, x + radius]
@@ -33,7 +30,7 @@ def whole(plan: "Plan") -> Extent:
     return Extent(min(across), min(along), max(across), max(along))
 
 
-def near(plan: "Plan", robot: RobotMoved) -> Extent:
+def near(plan: ArenaShown, robot: RobotMoved) -> Extent:
     """Return the surroundings of the robot, with the sphere while it is close.
 
     The borders lie on a coarse grid, so that the map stands still while the robot moves.

@@ -150,7 +150,8 @@ def _threads_needed(timeline: Timeline, peak: int) -> str:
     count = thread_count(timeline)
     if count <= 1:
         return "one thread does all the work"
-    return f"{peak} of {count} threads were ever needed at once"
+    were = "was" if peak == 1 else "were"
+    return f"{peak} of {count} threads {were} ever needed at once"
 
 
 def thread_count(timeline: Timeline) -> int:

@@ -72,7 +72,7 @@ class LogView(ScrollView):
     def render_line(self, y: int) -> Strip:
         """Return one line of the view."""
         place = self.scroll_offset.y + y
-        width = self.size.width
+        width = self.scrollable_content_region.width
         if place >= self._count:
             return Strip.blank(width, self.rich_style)
         event = self._timeline.logs[place]
@@ -90,11 +90,11 @@ class LogView(ScrollView):
         self._measured += len(new)
 
     def _fit_size(self) -> None:
-        columns = _COLUMNS if self.size.width >= COLUMNS_FROM else 0
+        columns = _COLUMNS if self.scrollable_content_region.width >= COLUMNS_FROM else 0
         follows = self._follows
         self.virtual_size = Size(self._widest + columns, self._count)
         if follows:
-            self.scroll_to(y=self.max_scroll_y, animate=False, immediate=True)
+            self.scroll_to(y=self.max_scroll_y, animate=False, immediate=True, force=True)
             self._follows = True
 
     def _columns(self, event: Logged | Printed) -> list[Segment]:

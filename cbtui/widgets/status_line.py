@@ -55,7 +55,7 @@ def status_of(title: str, run: LiveRun, playhead: Playhead, usual_executor: str)
 def _pace(run: LiveRun) -> str:
     if not run.virtual:
         return "real"
-    return "virtual max" if run.speed is None else f"virtual ×{run.speed:.1f}"  # noqa: RUF001
+    return "virtual max" if run.speed is None else f"virtual ×{run.speed:.1f}"
 
 
 class StatusLine(Painted):
@@ -95,7 +95,8 @@ def _state(status: Status) -> Run:
     if status.state is State.LOST:
         return Run("✗ LOST", _WARN)
     if status.back:
-        return Run(f"◂ BACK {duration(status.back)}", _WARN)
+        paused = ", paused" if status.state is State.PAUSED else ""
+        return Run(f"◂ BACK {duration(status.back)}{paused}", _WARN)
     match status.state:
         case State.STARTING:
             return Run("○ STARTING", _FAINT)

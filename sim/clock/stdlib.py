@@ -53,6 +53,9 @@ class VirtualLock:
     def _wait_in_line(self, deadline: int | None) -> bool:
         me = self._clock.current
         self._waiters.append(me)
+        if self._real.acquire(blocking=False):  # a thread outside let go of it before it could see us
+            self._waiters.remove(me)
+            return True
         try:
             self._clock.park(deadline)
         finally:
@@ -68,11 +71,22 @@ class VirtualLock:
         """Let go of the lock, or hand it to the thread that has waited longest."""
         if not self._real.locked():
             raise RuntimeError("release unlocked lock")
-        if self._waiters and self._granted is None and self._clock.owns_current_thread():
-            self._granted = self._waiters.popleft()
-            self._clock.unpark(self._granted)
+        if not self._clock.owns_current_thread():
+            self._real.release()
+            if self._waiters:
+                self._clock.inject(self._serve_waiters)
+        elif self._waiters and self._granted is None:
+            self._grant()
         else:
             self._real.release()
+
+    def _serve_waiters(self) -> None:
+        if self._waiters and self._granted is None and self._real.acquire(blocking=False):
+            self._grant()
+
+    def _grant(self) -> None:
+        self._granted = self._waiters.popleft()
+        self._clock.unpark(self._granted)
 
     def locked(self) -> bool:
         """Whether somebody holds it."""

@@ -192,17 +192,16 @@ class VirtualClock:
 
     def set_speed(self, speed: float | None) -> None:
         """Pass ``speed`` virtual seconds per real second, None: all it can. Call it through ``inject``."""
-        self._anchor_at(self._paced_now())
+        self._anchor_at(self._now)
         self._speed = speed
 
     def pause(self) -> None:
         """Stop time at the moment the run has reached; call through ``inject``."""
-        self._anchor_at(self._paced_now())
         self._paused = True
 
     def resume(self) -> None:
         """Let time go on after ``pause``; call through ``inject``."""
-        self._anchor_at(self._anchor_virtual)
+        self._anchor_at(self._now)
         self._paused = False
 
     def stop(self) -> None:
@@ -278,7 +277,7 @@ class VirtualClock:
             self.rests = True
             self._bell.acquire(timeout=-1 if delay is None else delay / 1e9)
             self.rests = False
-        self._now = max(self._now, self._paced_now(target))
+        self._now = self._paced_now(target)
         actions = [self._inbox.popleft() for _ in range(len(self._inbox))]
         for action in actions:
             action()
@@ -295,24 +294,12 @@ class VirtualClock:
             self._anchor_at(target)
         return delay
 
-    def _paced_now(self, limit: int | None = None) -> int:
+    def _paced_now(self, limit: int | None) -> int:
         """Where the pace has brought the run between two jumps, at most to ``limit``."""
-        if self._speed is None:
+        if self._speed is None or self._paused:
             return self._now
-        if self._paused:
-            return max(self._now, self._anchor_virtual)
         paced = self._anchor_virtual + int((_monotonic_ns() - self._anchor_real) * self._speed)
-        if limit is None:
-            limit = self._earliest_known()
-        if limit is not None:
-            paced = min(paced, limit)
-        return max(self._now, paced)
-
-    def _earliest_known(self) -> int | None:
-        try:
-            return self._deadlines[0][0]
-        except IndexError:
-            return None
+        return max(self._now, paced if limit is None else min(paced, limit))
 
     def _anchor_at(self, moment: int) -> None:
         self._anchor_virtual = moment

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.robot.arena import ARENA, ROBOT_RADIUS
 from sim.robot.world import World
 from sim.ros.context import Context
 from sim.ros.executors import SingleThreadedExecutor
@@ -20,7 +21,7 @@ from sim.ros.interfaces import message, service
 from sim.ros.node import Node
 from sim.ros.probe import PublishingProbe
 from sim.ros.qos import QoSProfile, ReliabilityPolicy
-from sim.trace.events import AnyEvent, RobotMoved, Scanned, VelocityCommanded
+from sim.trace.events import AnyEvent, ArenaShown, RobotMoved, Scanned, VelocityCommanded
 
 TICK = 0.05
 """Seconds between two measurements: 20 Hz."""
@@ -54,6 +55,14 @@ class Driver:
     def start(self) -> None:
         """Begin to drive, on a thread of the host's clock."""
         self._offer()
+        self._record(
+            ArenaShown(
+                self._host.clock.now(),
+                tuple((wall.x0, wall.y0, wall.x1, wall.y1) for wall in ARENA.walls),
+                (ARENA.sphere.x, ARENA.sphere.y, ARENA.sphere.radius),
+                ROBOT_RADIUS,
+            )
+        )
         self._host.clock.start_thread(self._drive, "robot_driver")
 
     def _offer(self) -> None:

@@ -8,6 +8,13 @@ class NotInitializedException(Exception):
         super().__init__("rclpy.init() has not been called", *args)
 
 
+class ROSInterruptException(Exception):
+    """``rclpy.shutdown()`` ended what was waited for."""
+
+    def __init__(self, *args: object) -> None:
+        super().__init__("rclpy.shutdown() has been called", *args)
+
+
 class InvalidHandle(Exception):
     """An entity was used after it had been destroyed."""
 

@@ -65,6 +65,8 @@ class Executor:
         self._nodes: list[Node] = []
         self._wait_set = WaitSet()
         self._tasks: deque[Task[Any]] = deque()
+        self._due_tasks: deque[Task[Any]] = deque()
+        self._looked = True
         self._foreign_awaits: list[Task[Any]] = []
         self._coroutines: dict[Task[Any], Entity] = {}
         self._signal = self._clock.signal()
@@ -157,10 +159,10 @@ class Executor:
             nanoseconds = timeout_sec_to_nsec(timeout_sec)
             end = None if nanoseconds < 0 else self._clock.now() + nanoseconds
             while self._context.ok() and not future.done() and not self._is_shutdown:
-                left = None if end is None else (end - self._clock.now()) / 1e9
-                if left is not None and left < 0:
-                    return
+                left = None if end is None else max(end - self._clock.now(), 0) / 1e9
                 self._spin_once_impl(left, future.done)
+                if end is not None and self._clock.now() >= end:
+                    return
 
     def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
         """Run one callback, unless the future is done first."""
@@ -217,16 +219,27 @@ class Executor:
             self._signal.wait(until)
 
     def _next_work(self, now: int) -> Work | None:
-        entity = self._wait_set.next(now)
-        if entity is not None:
-            return entity
-        for node in self._nodes:
-            if node._warnings:
-                node._speak_warnings()
-        if self._tasks:
-            return self._tasks.popleft()
-        self._wait_set.look(self._nodes, now)
+        """Yield the next of this cycle, of a new one once it is served to its end. With the lock held."""
+        work = self._next_of_cycle(now)
+        if work is None and self._may_begin_cycle():
+            self._due_tasks, self._tasks = self._tasks, self._due_tasks
+            self._looked = False
+            work = self._next_of_cycle(now)
+        return work
+
+    def _next_of_cycle(self, now: int) -> Work | None:
+        if self._due_tasks:
+            return self._due_tasks.popleft()
+        if not self._looked:
+            self._looked = True
+            for node in self._nodes:
+                if node._warnings:
+                    node._speak_warnings()
+            self._wait_set.look(self._nodes, now)
         return self._wait_set.next(now)
+
+    def _may_begin_cycle(self) -> bool:
+        return True
 
     # Being told; with the host's lock held
 
@@ -290,7 +303,7 @@ class Executor:
             self._end(entity, outer)
 
     def _run_task(self, task: Task[Any]) -> None:
-        """Run a task as far as it gets; what a plain task raises stays in it."""
+        """Run a task as far as it gets; what it raises is raised."""
         entity = self._coroutines.get(task)
         if entity is None:
             with self._lock:
@@ -299,6 +312,9 @@ class Executor:
                 task()
             finally:
                 self._leave()
+            error = task.exception() if task.done() else None
+            if error is not None:
+                raise error
         else:
             with self._lock:
                 self._running.append(entity)
@@ -455,8 +471,8 @@ class MultiThreadedExecutor(Executor):
     def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
         chosen = get_default_context() if context is None else context
         override = chosen.host.threads if chosen.probe.visible else None
-        self.threads = override or num_threads or get_available_threads()
-        if self.threads < 0:
+        self.threads = override or (get_available_threads() if num_threads is None else num_threads)
+        if self.threads < 1:
             raise ValueError("max_workers must be greater than 0")
         if self.threads == 1:
             warnings.warn(
@@ -498,6 +514,9 @@ class MultiThreadedExecutor(Executor):
         with self._lock:
             self._pool.submit(work)
         self._pool.raise_surfacing()
+
+    def _may_begin_cycle(self) -> bool:
+        return self._pool.all_begun()
 
     def _look_again(self) -> None:
         """Workers look for themselves while ``spin`` runs."""

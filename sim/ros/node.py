@@ -223,7 +223,7 @@ class Node(WaitsExplained):
         """
         if frequency <= 0:
             raise ValueError("frequency must be > 0")
-        rate = Rate(self._host)
+        rate = Rate(self._context)
         rate.timer = self.create_timer(1.0 / frequency, rate.tick, self._rate_group, clock)
         return rate
 

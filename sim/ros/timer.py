@@ -11,11 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 from sim.ros.clock import Clock
 from sim.ros.entity import Entity, Taken
+from sim.ros.exceptions import ROSInterruptException
 from sim.trace.events import EntityKind
 
 if TYPE_CHECKING:
+    from sim.clock import Signal
     from sim.ros.callback_groups import CallbackGroup
-    from sim.ros.host import Host
+    from sim.ros.context import Context
     from sim.ros.node import Node
 
 
@@ -137,31 +139,54 @@ class Timer(Entity):
 
 
 class Rate:
-    """Sleeps in step with a timer; needs somebody else to spin the node.
+    """Sleeps in step with a timer; needs somebody else to spin the node. Thread-safe.
 
     A tick that nobody slept for ends the next sleep at once.
     """
 
-    def __init__(self, host: Host) -> None:
-        self._signal = host.clock.signal()
+    def __init__(self, context: Context) -> None:
+        self._context = context
+        self._host = context.host
+        self._sleepers: list[Signal] = []
+        self._ticked = False
         self._destroyed = False
         self.timer: Timer | None = None
+        context.on_shutdown(self._let_all_go)
 
     def tick(self) -> None:
-        """The timer's callback: let the sleeper go on."""
-        self._signal.set()
+        """The timer's callback: let the sleepers go on."""
+        with self._host.lock:
+            self._ticked = not self._sleepers
+            self._let_all_go()
 
     def sleep(self) -> None:
         """Sleep until the timer's next tick.
 
         Raises:
             RuntimeError: the rate was destroyed.
+            ROSInterruptException: the context ended.
         """
-        if self._destroyed:
-            raise RuntimeError("Rate cannot sleep because it has been destroyed")
-        self._signal.wait(None)
+        with self._host.lock:
+            if not self._context.ok():
+                raise ROSInterruptException
+            if self._destroyed:
+                raise RuntimeError("Rate cannot sleep because it has been destroyed")
+            if self._ticked:
+                self._ticked = False
+                return
+            tick = self._host.clock.signal()
+            self._sleepers.append(tick)
+        tick.wait(None)
+        if not self._context.ok():
+            raise ROSInterruptException
 
     def destroy(self) -> None:
-        """Let a sleeper go, and sleep no more."""
+        """Let the sleepers go, and sleep no more."""
         self._destroyed = True
-        self._signal.set()
+        self._let_all_go()
+
+    def _let_all_go(self) -> None:
+        with self._host.lock:
+            sleepers, self._sleepers = self._sleepers, []
+            for each in sleepers:
+                each.set()

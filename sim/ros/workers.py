@@ -48,12 +48,18 @@ class WorkerPool:
         self._idle: deque[Worker] = deque()
         self._queue: deque[Work] = deque()
         self._given = 0
+        self._look_owed = False
         self._errors: list[BaseException] = []
         self._dismissed = False
 
     def all_busy(self) -> bool:
         """Whether no worker is free and none can be started."""
         return not self._idle and len(self._workers) >= self._executor.threads
+
+    def all_begun(self) -> bool:
+        """Whether all that workers were given has begun; if not, the executor is woken when it has."""
+        self._look_owed = self._given > 0
+        return not self._look_owed
 
     def submit(self, work: Work) -> None:
         """Give yielded work to a free worker, or have it wait for one. With the lock held."""
@@ -105,6 +111,8 @@ class WorkerPool:
         if work is None:
             return None
         self._given -= 1
+        if self._look_owed and self._given == 0:
+            self._executor.wake()
         return self._begin(work)
 
     def _begin_queued(self) -> Begun | None:
@@ -129,7 +137,7 @@ class WorkerPool:
         if not self.dispatches_itself:
             return False
         executor = self._executor
-        if self._given or self.error_surfaces or executor._is_shutdown or not executor._context.ok():
+        if self.error_surfaces or executor._is_shutdown or not executor._context.ok():
             executor.wake()
             return False
         return True

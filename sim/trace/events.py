@@ -279,6 +279,14 @@ class Printed(Event, frozen=True, tag="print"):
     error: bool
 
 
+class ArenaShown(Event, frozen=True, tag="arena"):
+    """What stands around the robot, in metres: walls as (x0, y0, x1, y1), the sphere as (x, y, radius)."""
+
+    walls: tuple[tuple[float, float, float, float], ...]
+    sphere: tuple[float, float, float]
+    robot_radius: float
+
+
 class RobotMoved(Event, frozen=True, tag="robot"):
     """Where the robot is: metres, radians; ``front`` is the true range straight ahead (inf: nothing).
 
@@ -317,7 +325,7 @@ class VelocityCommanded(Event, frozen=True, tag="cmd_vel"):
 
 
 class CommandGiven(Event, frozen=True, tag="command"):
-    """The person at the keyboard (or the command line) did something to the run, such as calling a service."""
+    """The person at the keyboard or the command line did something to the run, such as calling a service."""
 
     text: str
 
@@ -360,6 +368,7 @@ AnyEvent: TypeAlias = (
     | CallUnblocked
     | Logged
     | Printed
+    | ArenaShown
     | RobotMoved
     | Scanned
     | VelocityCommanded

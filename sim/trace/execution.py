@@ -3,7 +3,7 @@
 from array import array
 from bisect import bisect_left, bisect_right, insort
 from collections import defaultdict, deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from sim.trace.events import (
     CallbackEnded,
@@ -16,7 +16,7 @@ from sim.trace.events import (
     MessageId,
     ThreadId,
 )
-from sim.trace.intervals import Intervals, Lane, Row
+from sim.trace.intervals import Answer, Intervals, Lane, Row
 from sim.trace.model import Nanoseconds, Span, Window
 
 
@@ -161,15 +161,15 @@ class Execution:
 
     # answers
 
-    def on(self, thread: ThreadId, window: Window) -> list[Span]:
+    def on(self, thread: ThreadId, window: Window) -> Sequence[Span]:
         """Spans of a thread."""
         return self._made(self._threads[thread], window)
 
-    def of(self, entity: EntityId, window: Window) -> list[Span]:
+    def of(self, entity: EntityId, window: Window) -> Sequence[Span]:
         """Spans of an entity."""
         return self._made(self._entities[entity], window)
 
-    def inside(self, group: GroupId, window: Window) -> list[Span]:
+    def inside(self, group: GroupId, window: Window) -> Sequence[Span]:
         """Spans of a group."""
         return self._made(self._groups[group], window)
 
@@ -225,5 +225,5 @@ class Execution:
                 return stack.pop(place)
         return None
 
-    def _made(self, lane: Lane, window: Window) -> list[Span]:
-        return [self._spans.span(row) for row in lane.overlapping(window)]
+    def _made(self, lane: Lane, window: Window) -> Sequence[Span]:
+        return Answer(lane.overlapping(window), self._spans.span)

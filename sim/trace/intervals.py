@@ -2,15 +2,54 @@
 
 from array import array
 from bisect import bisect_left, bisect_right
-from collections.abc import Iterator, Sequence
-from typing import TypeAlias
+from collections.abc import Callable, Iterator, Sequence
+from typing import TypeAlias, TypeVar, overload
 
 from sim.trace.model import Nanoseconds, Window
 
 Row: TypeAlias = int
+T = TypeVar("T")
 
 OPEN: Nanoseconds = 2**63 - 1
 """The end of an interval that still lasts: later than any other."""
+
+
+class Answer(Sequence[T]):
+    """The intervals of an answer, each made into a value when it is looked at.
+
+    A picture of an hour asks for a hundred thousand calls and looks at a few hundred.
+    """
+
+    __slots__ = ("_make", "_rows")
+
+    def __init__(self, rows: Sequence[Row], make: Callable[[Row], T]) -> None:
+        self._rows = rows
+        self._make = make
+
+    def __len__(self) -> int:
+        return len(self._rows)
+
+    @overload
+    def __getitem__(self, place: int) -> T: ...
+    @overload
+    def __getitem__(self, place: slice) -> Sequence[T]: ...
+    def __getitem__(self, place: int | slice) -> T | Sequence[T]:
+        if isinstance(place, slice):
+            return Answer(self._rows[place], self._make)
+        return self._make(self._rows[place])
+
+    def __iter__(self) -> Iterator[T]:
+        return map(self._make, self._rows)
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, Sequence):
+            return len(self) == len(other) and all(mine == its for mine, its in zip(self, other, strict=True))
+        return NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]  # like a list
+
+    def __repr__(self) -> str:
+        return repr(list(self))
 
 
 class Intervals:

@@ -66,6 +66,7 @@ class JsonLines:
             ev.Logged: self._logged,
             ev.Printed: _printed,
             ev.RobotMoved: _robot_moved,
+            ev.ArenaShown: _arena_shown,
             ev.Scanned: _scanned,
             ev.VelocityCommanded: _velocity_commanded,
             ev.CommandGiven: _command_given,
@@ -245,6 +246,10 @@ def _robot_moved(event: ev.RobotMoved) -> Line:
         "turned": event.turned,
         "travelled": event.travelled,
     }
+
+
+def _arena_shown(event: ev.ArenaShown) -> Line:
+    return {"walls": event.walls, "sphere": event.sphere, "robot_radius": event.robot_radius}
 
 
 def _scanned(event: ev.Scanned) -> Line:

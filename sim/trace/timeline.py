@@ -47,6 +47,7 @@ class Timeline:
     def __init__(self) -> None:
         self.started: ev.RunStarted | None = None
         self.ended: ev.RunEnded | None = None
+        self.arena: ev.ArenaShown | None = None
         self.lost = 0
         self._end = 0
         self._cast = Cast()
@@ -260,6 +261,7 @@ class Timeline:
             ev.CallUnblocked: _pass_over,
             ev.Logged: self._logged,
             ev.Printed: self._logs.add,
+            ev.ArenaShown: self._arena_shown,
             ev.RobotMoved: self._robot.add,
             ev.Scanned: self._scanned,
             ev.VelocityCommanded: self._velocities.add,
@@ -273,6 +275,9 @@ class Timeline:
 
     def _run_ended(self, event: ev.RunEnded) -> None:
         self.ended = event
+
+    def _arena_shown(self, event: ev.ArenaShown) -> None:
+        self.arena = event
 
     def _entity_appeared(self, event: ev.EntityAppeared) -> None:
         self._cast.add_entity(event)

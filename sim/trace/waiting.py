@@ -2,10 +2,10 @@
 
 from array import array
 from collections import defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from sim.trace.events import EntityId, Reason, WaitStarted
-from sim.trace.intervals import OPEN, Intervals, Lane, Row
+from sim.trace.intervals import OPEN, Answer, Intervals, Lane, Row
 from sim.trace.model import Nanoseconds, Wait, Window
 
 
@@ -44,9 +44,9 @@ class Waiting(Intervals):
         if latest is not None and self.ends[latest] == OPEN:
             self.close(latest, at)
 
-    def of(self, entity: EntityId, window: Window) -> list[Wait]:
+    def of(self, entity: EntityId, window: Window) -> Sequence[Wait]:
         """Waits of an entity."""
-        return [self._wait(row) for row in self._lanes[entity].overlapping(window)]
+        return Answer(self._lanes[entity].overlapping(window), self._wait)
 
     def at(self, entity: EntityId, at: Nanoseconds) -> Wait | None:
         """The wait of an entity that is in progress at ``at``."""

@@ -5,7 +5,7 @@ from itertools import count
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from cbtui.widgets.arena_map import ArenaPainter, Plan
+from cbtui.widgets.arena_map import ArenaPainter
 from cbtui.widgets.lanes import Painter
 from sim.trace import events as ev
 from sim.trace.model import Window
@@ -77,5 +77,5 @@ def test_the_first_frame_after_zooming(benchmark: BenchmarkFixture, hour: Timeli
 @pytest.mark.parametrize("width", [44, 80])
 def test_a_frame_of_the_map(benchmark: BenchmarkFixture, width: int) -> None:
     timeline = told(shared_group_run())
-    painter = ArenaPainter(Plan(((-6.5, -6.5, 6.5, 6.5),), (0.95, 0.0, 0.2), 0.105))
+    painter = ArenaPainter()
     benchmark(lambda: painter.paint(timeline, ns(9.25), width, 20))

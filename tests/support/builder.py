@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 
 from sim.trace.events import (
     AnyEvent,
+    ArenaShown,
     CallbackEnded,
     CallbackFailed,
     CallbackResumed,
@@ -329,6 +330,12 @@ class Run:
         self.add(
             RobotMoved(ns(at), x, y, yaw, front, linear, angular, motors, touching, turned, travelled),
         )
+
+    def arena(self, wall: float, sphere: tuple[float, float, float]) -> None:
+        """Put walls ``wall`` metres off on every side, and a sphere."""
+        corners = ((-wall, -wall), (wall, -wall), (wall, wall), (-wall, wall))
+        walls = tuple((*corners[place - 1], *corner) for place, corner in enumerate(corners))
+        self.add(ArenaShown(0, walls, sphere, 0.105))
 
     def scan(self, message: MessageId, at: float, ranges: bytes) -> None:
         """Measure a turn of the laser, carried by ``message``."""

@@ -1,4 +1,10 @@
-"""A console on recorded events, for pilot tests and snapshots."""
+"""A console on recorded events, for pilot tests and snapshots.
+
+A snapshot of a lesson at a moment is::
+
+    app = RecordedConsole("split-groups", events, seconds=9.4)
+    assert snap_compare(app, terminal_size=WIDE, run_before=settle)
+"""
 
 from collections.abc import Sequence
 
@@ -22,6 +28,7 @@ class RecordedConsole(CbtuiApp):
     ) -> None:
         self.engines = FakeEngines(events, ns(seconds))
         super().__init__(charset=charset, start_lesson=lesson, open_session=self.engines)
+        self.animation_level = "none"
 
     @property
     def lesson_screen(self) -> LessonScreen:
@@ -31,7 +38,7 @@ class RecordedConsole(CbtuiApp):
 
 
 async def settle(pilot: Pilot[None]) -> None:
-    """Let everything that was delivered or pressed reach the screen."""
+    """Let everything that was delivered or pressed reach the screen; to be ``run_before`` of a snapshot."""
     await pilot.pause()
     if isinstance(pilot.app.screen, LessonScreen):
         pilot.app.screen.draw()

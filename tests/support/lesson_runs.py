@@ -148,6 +148,7 @@ def scan_from(x: float, y: float, yaw: float) -> bytes:
 
 def _drive(run: Run, seats: _Seats, seconds: float, legs: tuple[_Leg, ...]) -> None:
     """Move the robot along the legs at 20 Hz, and let its messages arrive."""
+    run.arena(WALL, (*SPHERE, SPHERE_RADIUS))
     for leg in legs:
         run.velocity(leg.start, leg.linear, leg.angular)
     x = y = yaw = turned = travelled = 0.0

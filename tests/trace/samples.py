@@ -4,6 +4,7 @@ from math import inf
 
 from sim.trace.events import (
     AnyEvent,
+    ArenaShown,
     CallbackEnded,
     CallbackFailed,
     CallbackResumed,
@@ -68,6 +69,7 @@ FULL: list[AnyEvent] = [
     CallbackFailed(2_250_000_000, 1, 1, "IndexError: no beam 720", "node.py", 60),
     CallbackEnded(2_250_000_000, 1, 1),
     Printed(2_300_000_000, "hello", True),
+    ArenaShown(2_350_000_000, ((0.0, 0.0, 1.0, 0.0),), (0.9, 0.0, 0.2), 0.1),
     RobotMoved(2_350_000_000, 0.5, 0.0, -0.1, inf, 0.08, 0.0, True, False, -0.1, 0.5),
     Scanned(2_350_000_000, 8, bytes([1, 0, 2, 0, 244, 1, 4, 0])),
     VelocityCommanded(2_400_000_000, 0.08, -0.2),

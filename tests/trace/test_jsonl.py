@@ -73,6 +73,7 @@ def test_golden_lines() -> None:
         '"message":"IndexError: no beam 720","file":"node.py","line":60}',
         f'{{"t":2.25,"event":"callback_end",{about},"thread":"MainThread"}}',
         '{"t":2.3,"event":"print","message":"hello","error":true}',
+        '{"t":2.35,"event":"arena","walls":[[0.0,0.0,1.0,0.0]],"sphere":[0.9,0.0,0.2],"robot_radius":0.1}',
         '{"t":2.35,"event":"robot","x":0.5,"y":0.0,"yaw":-0.1,"front":null,"linear":0.08,"angular":0.0,'
         '"motors":true,"touching":false,"turned":-0.1,"travelled":0.5}',
         '{"t":2.35,"event":"scan","beams":4,"front":0.5,"message_id":8}',

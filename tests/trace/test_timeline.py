@@ -259,6 +259,22 @@ def test_a_queue_of_which_arrivals_were_lost_still_tells_its_depth() -> None:
     assert timeline.queue(1, 5) == Queue(4, 0, 5)
 
 
+def test_drops_that_are_recorded_late_count_from_their_own_time() -> None:
+    timeline = Timeline()
+    timeline.extend(
+        [ev.MessageDropped(t, entity, 2, 1) for t, entity in ((20, 1), (40, 1), (30, 1), (10, 2))]
+    )
+    assert [timeline.dropped(t) for t in (9, 10, 20, 30, 40)] == [0, 1, 2, 3, 4]
+    assert [timeline.queue(1, t).dropped for t in (19, 20, 30, 40)] == [0, 1, 2, 3]
+    assert timeline.drops_of(1, Window(25, 35)) == 1
+
+
+def test_messages_may_be_recorded_in_another_order_than_they_were_numbered() -> None:
+    timeline = Timeline()
+    timeline.extend([ev.Published(t, message, "/odom", 0, 0) for t, message in ((10, 5), (9, 3), (11, 4))])
+    assert [timeline.published_at(message) for message in range(2, 7)] == [None, 9, 11, 10, None]
+
+
 def test_a_scan_recorded_after_a_callback_took_its_message_counts_as_seen() -> None:
     run, thread, entity = small_run()
     message = run.message(entity, 1.0)

@@ -9,14 +9,15 @@ from rich.cells import cell_len
 from textual.app import App, ComposeResult
 
 from cbtui.theme import Charset, Role
-from cbtui.widgets.arena_map import ArenaMap, ArenaPainter, Plan
+from cbtui.widgets.arena_map import ArenaMap, ArenaPainter
 from cbtui.widgets.arena_view import Extent, View, near, whole
-from sim.trace.events import RobotMoved, Scanned
+from sim.trace.events import ArenaShown, RobotMoved, Scanned
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, ns, scan_from, shared_group_run, split_groups_run
 from tests.widgets.pictures import told
 
-PLAN = Plan(
+PLAN = ArenaShown(
+    0,
     walls=((-6.5, -6.5, 6.5, -6.5), (6.5, -6.5, 6.5, 6.5), (6.5, 6.5, -6.5, 6.5), (-6.5, 6.5, -6.5, -6.5)),
     sphere=(0.95, 0.0, 0.2),
     robot_radius=0.105,
@@ -30,13 +31,14 @@ def robot_at(x: float, y: float, yaw: float) -> RobotMoved:
 
 def standing(yaw: float, scan: bytes = b"") -> Timeline:
     timeline = Timeline()
-    timeline.extend([robot_at(0.0, 0.0, yaw)] + ([Scanned(0, 1, scan)] if scan else []))
+    timeline.extend([PLAN, robot_at(0.0, 0.0, yaw)])
+    timeline.extend([Scanned(0, 1, scan)] if scan else [])
     return timeline
 
 
 def map_of(timeline: Timeline, now: float, charset: Charset = Charset.ASCII) -> str:
     """Return the map alone, 30 columns wide, so that only the surroundings are shown."""
-    return "\n".join(ArenaPainter(PLAN, charset).text(timeline, ns(now), 30, 20).splitlines()[1:-6])
+    return "\n".join(ArenaPainter(charset).text(timeline, ns(now), 30, 20).splitlines()[1:-6])
 
 
 def test_the_sphere_lies_ahead_and_right_on_the_map() -> None:
@@ -50,19 +52,19 @@ def test_the_sphere_lies_ahead_and_right_on_the_map() -> None:
     [(0, "▶"), (45, "◥"), (90, "▲"), (135, "◤"), (180, "◀"), (-135, "◣"), (-90, "▼"), (-45, "◢")],
 )
 def test_the_arrow_points_where_the_robot_heads(degrees: int, arrow: str) -> None:
-    picture = ArenaPainter(PLAN).text(standing(math.radians(degrees)), 0, 80, 12)
+    picture = ArenaPainter().text(standing(math.radians(degrees)), 0, 80, 12)
     assert arrow in picture
 
 
 def test_a_fresh_scan_of_the_node_lies_under_the_true_one() -> None:
-    picture = ArenaPainter(PLAN).paint(told(split_groups_run(), until=9.4), ns(9.4), 80, 14)
+    picture = ArenaPainter().paint(told(split_groups_run(), until=9.4), ns(9.4), 80, 14)
     roles = [run.ink.role for row in picture[1:-2] for run in row]
     assert Role.TRUE_SCAN in roles
     assert Role.SEEN_SCAN not in roles
 
 
 def test_a_stale_scan_of_the_node_stands_beside_the_true_one_and_its_age_is_told() -> None:
-    picture = ArenaPainter(PLAN).paint(SHARED, ns(9.25), 80, 14)
+    picture = ArenaPainter().paint(SHARED, ns(9.25), 80, 14)
     assert Role.SEEN_SCAN in [run.ink.role for row in picture[1:-2] for run in row]
     assert "node saw 5.3 s ago" in "".join(run.text for run in picture[0])
     assert Role.WARN in [run.ink.role for run in picture[0]]
@@ -76,14 +78,14 @@ def test_true_and_believed_scan_differ_without_colours_too() -> None:
 
 def room_of(timeline: Timeline) -> list[str]:
     """Return the map of the whole room in ASCII, which stands right of the surroundings."""
-    lines = ArenaPainter(PLAN, Charset.ASCII).text(timeline, 0, 80, 24).splitlines()[1:-2]
+    lines = ArenaPainter(Charset.ASCII).text(timeline, 0, 80, 24).splitlines()[1:-2]
     return [line.split("|", 1)[1] for line in lines]
 
 
 def test_a_true_scan_taken_anywhere_falls_on_walls_and_sphere() -> None:
     bare, scanned = Timeline(), Timeline()
-    bare.extend([robot_at(1.0, -2.0, 0.7)])
-    scanned.extend([robot_at(1.0, -2.0, 0.7), Scanned(0, 1, scan_from(1.0, -2.0, 0.7))])
+    bare.extend([PLAN, robot_at(1.0, -2.0, 0.7)])
+    scanned.extend([PLAN, robot_at(1.0, -2.0, 0.7), Scanned(0, 1, scan_from(1.0, -2.0, 0.7))])
     things = room_of(bare)
     points = [(x, y) for y, line in enumerate(room_of(scanned)) for x, sign in enumerate(line) if sign == "."]
     assert len(points) > 50
@@ -93,7 +95,7 @@ def test_a_true_scan_taken_anywhere_falls_on_walls_and_sphere() -> None:
 
 
 def test_the_figures_tell_pose_command_velocity_range_and_motors() -> None:
-    text = ArenaPainter(PLAN).text(SHARED, ns(9.25), 80, 14)
+    text = ArenaPainter().text(SHARED, ns(9.25), 80, 14)
     for words in (
         "pose  0.28  0.00 m  -60°",
         "told  0.00 m/s -0.20 rad/s",
@@ -105,8 +107,8 @@ def test_the_figures_tell_pose_command_velocity_range_and_motors() -> None:
 
 def test_motors_off_and_touching_are_said_in_words() -> None:
     timeline = Timeline()
-    timeline.extend([RobotMoved(0, 0.0, 0.0, 0.0, math.inf, 0.0, 0.0, False, True, 0.0, 0.0)])
-    text = ArenaPainter(PLAN).text(timeline, 0, 80, 14)
+    timeline.extend([PLAN, RobotMoved(0, 0.0, 0.0, 0.0, math.inf, 0.0, 0.0, False, True, 0.0, 0.0)])
+    text = ArenaPainter().text(timeline, 0, 80, 14)
     assert "motors OFF" in text
     assert "touching YES" in text
     assert "front    free" in text
@@ -114,11 +116,11 @@ def test_motors_off_and_touching_are_said_in_words() -> None:
 
 @pytest.mark.parametrize("width", [34, 40, 44, 80])
 def test_the_age_of_the_nodes_scan_is_told_at_every_width(width: int) -> None:
-    assert "node saw 10.2 s ago" in ArenaPainter(PLAN).text(SHARED, ns(14.2), width, 16)
+    assert "node saw 10.2 s ago" in ArenaPainter().text(SHARED, ns(14.2), width, 16)
 
 
 def test_a_run_without_a_robot_says_so() -> None:
-    assert "no robot in this run" in ArenaPainter(PLAN).text(told(Run()), 0, 44, 10)
+    assert "no robot in this run" in ArenaPainter().text(told(Run()), 0, 44, 10)
 
 
 @settings(max_examples=40, deadline=None)
@@ -134,8 +136,8 @@ def test_the_map_has_the_size_that_was_asked_for_wherever_the_robot_is(
     x: float, y: float, yaw: float, width: int, height: int, charset: Charset
 ) -> None:
     timeline = Timeline()
-    timeline.extend([robot_at(x, y, yaw), Scanned(0, 1, scan_from(0.0, 0.0, yaw))])
-    rows = ArenaPainter(PLAN, charset).paint(timeline, 0, width, height)
+    timeline.extend([PLAN, robot_at(x, y, yaw), Scanned(0, 1, scan_from(0.0, 0.0, yaw))])
+    rows = ArenaPainter(charset).paint(timeline, 0, width, height)
     texts = ["".join(run.text for run in row) for row in rows]
     assert len(texts) <= height
     assert all(cell_len(text) == width for text in texts)
@@ -165,7 +167,7 @@ def test_far_from_the_sphere_the_map_follows_the_robot() -> None:
 async def test_the_map_draws_on_screen_what_its_painter_paints() -> None:
     class OneMap(App[None]):
         def compose(self) -> ComposeResult:
-            yield ArenaMap(PLAN)
+            yield ArenaMap()
 
     app = OneMap()
     async with app.run_test(size=(80, 14)) as pilot:
@@ -173,6 +175,6 @@ async def test_the_map_draws_on_screen_what_its_painter_paints() -> None:
         arena.timeline, arena.now = SHARED, ns(9.25)
         await pilot.pause()
         shown = "\n".join(arena.render_line(y).text for y in range(14))
-        assert shown == ArenaPainter(PLAN).text(SHARED, ns(9.25), 80, 14)
+        assert shown == ArenaPainter().text(SHARED, ns(9.25), 80, 14)
         await pilot.resize_terminal(3, 2)
         await pilot.pause()

@@ -1,7 +1,5 @@
 """Lanes as text: what runs, what waits and why can be read without a colour."""
 
-# ruff: noqa: RUF001  the pictures hold the glyphs that are drawn
-
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st

@@ -18,7 +18,7 @@ from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 
 _GUTTER = 7
-_LEAST_CODE = 24
+_LEAST_CODE = 20
 
 _INKS = {Doing.IDLE: Role.FAINT, Doing.RAN: Role.FAINT, Doing.WAITS: Role.WARN, Doing.RUNS: Role.LABEL}
 _EDGES = {
@@ -56,7 +56,7 @@ class CodeView(ScrollView):
     def render_line(self, y: int) -> Strip:
         """Return one line of the view."""
         number = self.scroll_offset.y + y
-        width = self.size.width
+        width = self.scrollable_content_region.width
         if number >= len(self._lines):
             return Strip.blank(width, self.rich_style)
         marked = self._marked_at(number + 1)
@@ -81,7 +81,7 @@ class CodeView(ScrollView):
     def _bring_into_view(self, line: int) -> None:
         top, height = self.scroll_offset.y, self.size.height
         if not top <= line < top + height - 2:
-            self.scroll_to(y=max(0, line - 1), animate=False)
+            self.scroll_to(y=max(0, line - 1), animate=False, force=True)
 
     def _marked_at(self, line: int) -> Marked | None:
         """Return the innermost callback that a line belongs to."""

@@ -1,0 +1,67 @@
+from collections import Counter
+
+import pytest
+from textual.screen import Screen
+
+from cbtui.actions import ACTIONS, Action, Scope, actions_of, bindings_of, method_of, signs_of, together
+from cbtui.app import CbtuiApp
+from cbtui.screens.help import HelpScreen
+from cbtui.screens.lesson import LessonScreen
+from cbtui.screens.menu import MenuScreen
+from cbtui.screens.threads import ThreadsScreen
+from cbtui.theme import Charset
+
+HOMES: dict[Scope, type[CbtuiApp] | type[Screen[object]]] = {
+    Scope.EVERYWHERE: CbtuiApp,
+    Scope.MENU: MenuScreen,
+    Scope.LESSON: LessonScreen,
+    Scope.THREADS: ThreadsScreen,
+    Scope.HELP: HelpScreen,
+}
+
+
+@pytest.mark.parametrize("action", ACTIONS, ids=lambda action: f"{action.scope}-{action.id}")
+def test_every_action_has_a_method_where_it_works(action: Action) -> None:
+    assert hasattr(HOMES[action.scope], f"action_{method_of(action)[0]}")
+
+
+@pytest.mark.parametrize("action", ACTIONS, ids=lambda action: f"{action.scope}-{action.id}")
+def test_no_key_is_one_that_terminals_keep_for_themselves(action: Action) -> None:
+    for key in action.key.split(","):
+        assert key not in {"ctrl+j", "ctrl+m", "ctrl+h", "ctrl+i", "ctrl+s"}
+        assert "alt" not in key
+
+
+def test_only_actions_that_rule_each_other_out_share_a_key() -> None:
+    used = Counter((action.scope, key) for action in ACTIONS for key in action.key.split(","))
+    shared = {key for (_, key), times in used.items() if times > 1}
+    assert shared == {"space", "r"}
+
+
+def test_ids_are_unique_within_a_scope() -> None:
+    assert max(Counter((action.scope, action.id) for action in ACTIONS).values()) == 1
+
+
+def test_help_is_one_sentence_without_a_full_stop() -> None:
+    assert all(action.line and not action.line.endswith(".") for action in ACTIONS)
+
+
+def test_every_binding_can_be_remapped_by_its_id() -> None:
+    bindings = bindings_of(*Scope)
+    assert len({binding.id for binding in bindings}) == len(ACTIONS)
+
+
+def test_a_window_offers_only_its_own_actions() -> None:
+    assert {action.scope for action in actions_of(Scope.HELP)} == {Scope.HELP}
+    assert {action.scope for action in actions_of(Scope.MENU)} == {Scope.MENU, Scope.EVERYWHERE}
+
+
+def test_neighbouring_keys_are_written_together() -> None:
+    groups = {group[0].label: group for group in together(actions_of(Scope.LESSON), "label")}
+    assert signs_of(groups["pane"], Charset.BRAILLE) == "1-4"
+    assert signs_of(groups["speed"], Charset.BRAILLE) == "- +"
+
+
+@pytest.mark.parametrize("scope", Scope)
+def test_an_ascii_terminal_gets_keys_in_ascii(scope: Scope) -> None:
+    assert signs_of(actions_of(scope), Charset.ASCII).isascii()

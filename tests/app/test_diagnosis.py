@@ -1,0 +1,170 @@
+import pytest
+
+from cbtui.concurrency import Concurrency
+from cbtui.live_run import LiveRun
+from cbtui.playhead import Playhead
+from cbtui.widgets.diagnosis import Diagnosis, Weight, call_note, diagnose, executor_label, verdict
+from cbtui.widgets.diagnosis_line import diagnosis_row
+from sim.engine.setup import RunSetup
+from sim.trace.events import Reason, Severity
+from sim.trace.timeline import Timeline
+from tests.support.builder import Run, ns
+from tests.support.fake_session import FakeEngines
+from tests.support.runs import (
+    dummy_server_one_thread_run,
+    dummy_server_run,
+    shared_group_run,
+    split_groups_run,
+)
+
+
+def timeline_of(run: Run, until: float) -> Timeline:
+    timeline = Timeline()
+    timeline.extend(run.until(until))
+    return timeline
+
+
+def said(run: Run, at: float) -> Diagnosis:
+    timeline = timeline_of(run, at)
+    return diagnose(timeline, ns(at), Concurrency(timeline))
+
+
+def live_run(run: Run, until: float) -> LiveRun:
+    live = LiveRun(
+        RunSetup(title="x", node_path="node.py"), FakeEngines([], 0), lambda _: None, lambda _: None
+    )
+    live.take(run.until(until))
+    return live
+
+
+def verdict_of(live: LiveRun, playhead: Playhead | None = None) -> Diagnosis:
+    return verdict(live, playhead or Playhead(), Concurrency(live.timeline))
+
+
+def test_the_longest_wait_is_named_with_its_reason() -> None:
+    assert said(shared_group_run(), 12.9) == Diagnosis(
+        "odom_callback waits 8.9 s: group A is held by timer_callback; 1 more waits", Weight.TROUBLE
+    )
+
+
+def test_a_wait_of_less_than_a_second_is_no_trouble_yet() -> None:
+    assert said(shared_group_run(), 4.4).weight is Weight.WAITS
+
+
+def test_a_hand_over_is_not_a_wait() -> None:
+    assert said(shared_group_run(), 4.005).weight is Weight.FINE
+
+
+def test_where_nothing_waits_the_threads_that_were_needed_are_told() -> None:
+    assert said(dummy_server_run(), 5.2).text == "nothing waits; 2 of 2 threads were ever needed at once"
+    assert said(split_groups_run(), 3.0).text == "nothing waits; 1 of 4 threads was ever needed at once"
+    assert said(shared_group_run(), 3.0).text == "nothing waits; one thread does all the work"
+
+
+def test_a_timer_that_outlasts_its_period_waits_for_nobody_else() -> None:
+    told = said(split_groups_run(), 9.4)
+    assert told.text.endswith("timer_callback, due again 4.9 s ago, still runs")
+    assert told.weight is Weight.FINE
+
+
+def test_a_wait_for_a_worker_names_what_the_workers_do() -> None:
+    assert said(dummy_server_one_thread_run(), 5.0).text == (
+        "timer_callback waits 2.0 s: the only thread runs service_callback"
+    )
+
+
+def test_a_wait_for_several_workers_names_what_keeps_most_of_them() -> None:
+    run = Run()
+    threads = [run.thread(f"ThreadPoolExecutor-0_{number}") for number in range(3)]
+    run.executor("MultiThreadedExecutor", 3)
+    group = run.reentrant(run.node("/n"))
+    service, timer = run.service(group, "/s", "serve"), run.timer(group, "tick", 1.0)
+    run.callback(timer, threads[0], 1.0)
+    run.callback(service, threads[1], 1.1)
+    run.callback(service, threads[2], 1.2)
+    run.wait(timer, 2.0, None, Reason.NO_FREE_WORKER, workers_busy=True)
+    assert said(run, 5.0).text == "tick waits 3.0 s: all 3 threads are busy with serve and tick"
+
+
+def test_a_node_that_nobody_spins_is_told() -> None:
+    run = Run()
+    run.wait(run.timer(run.exclusive(run.node("/n")), "tick", 1.0), 1.0, None, Reason.NOBODY_SPINS)
+    assert said(run, 3.0).text == "tick waits 2.0 s: nobody spins its node"
+
+
+def test_before_any_callback_the_node_is_starting() -> None:
+    assert said(Run(), 0.0).text == "no callback yet: the node is starting"
+
+
+def test_a_warning_of_the_engine_comes_first_for_a_while() -> None:
+    run = shared_group_run()
+    run.notice("node.py blocks outside the clock", 6.0)
+    assert said(run, 7.0) == Diagnosis("node.py blocks outside the clock", Weight.TROUBLE)
+    assert said(run, 12.0).text.startswith("odom_callback waits")
+
+
+def test_what_the_engine_merely_mentions_does_not_hide_a_wait() -> None:
+    run = shared_group_run()
+    run.notice("the robot was reset", 6.0, Severity.INFO)
+    assert said(run, 7.0).text.startswith("odom_callback waits")
+
+
+def test_a_lost_engine_says_how_to_go_on() -> None:
+    live = live_run(shared_group_run(), 5.0)
+    live.over("the engine was killed by signal 9.")
+    assert verdict_of(live) == Diagnosis(
+        "engine lost: the engine was killed by signal 9; press r to run again", Weight.TROUBLE
+    )
+
+
+@pytest.mark.parametrize(("failed", "weight"), [(False, Weight.FINE), (True, Weight.TROUBLE)])
+def test_a_run_that_is_over_says_why(failed: bool, weight: Weight) -> None:
+    run = shared_group_run()
+    run.over(6.0, "its program returned", failed)
+    assert verdict_of(live_run(run, 6.0)) == Diagnosis(
+        "the run is over: its program returned; press r to run again", weight
+    )
+
+
+def test_looking_back_over_a_run_that_is_over_tells_of_that_moment() -> None:
+    run = shared_group_run()
+    run.over(13.0)
+    told = verdict_of(live_run(run, 13.0), Playhead(at=ns(12.0)))
+    assert told.text.startswith("odom_callback waits 8.0 s")
+
+
+def test_a_call_is_followed_from_request_to_reply() -> None:
+    timeline = timeline_of(dummy_server_run(), 10.0)
+    assert call_note(timeline, ns(2.0)) == ""
+    assert call_note(timeline, ns(5.15)) == "/dummy_server_srv: no reply for 2.6 s"
+    assert call_note(timeline, ns(8.0)) == "/dummy_server_srv replied success=True, message='TURNING'"
+
+
+def test_a_reply_does_not_stay_for_ever() -> None:
+    timeline = timeline_of(split_groups_run(), 20.0)
+    assert call_note(timeline, ns(8.0)) == "/motor_power replied success=True"
+    assert call_note(timeline, ns(13.0)) == ""
+
+
+def test_several_calls_without_reply_are_counted() -> None:
+    run = dummy_server_run()
+    run.call("/dummy_server_srv", 3.0)
+    run.call("/dummy_server_srv", 4.0)
+    assert call_note(timeline_of(run, 5.0), ns(4.55)) == "/dummy_server_srv and 2 more: no reply for 2.0 s"
+
+
+def test_executors_are_written_as_code_would_make_them() -> None:
+    assert executor_label(timeline_of(split_groups_run(), 1.0)) == "MultiThreadedExecutor(4)"
+    assert executor_label(timeline_of(shared_group_run(), 1.0)) == "SingleThreadedExecutor"
+
+
+@pytest.mark.parametrize("width", [80, 100, 140])
+@pytest.mark.parametrize("note", ["", "/motor_power replied success=True"])
+def test_the_line_is_as_wide_as_the_screen(width: int, note: str) -> None:
+    runs = diagnosis_row(said(shared_group_run(), 12.9), note, width)
+    assert sum(len(run.text) for run in runs) == width
+
+
+def test_the_note_gives_way_to_the_diagnosis() -> None:
+    runs = diagnosis_row(Diagnosis("w" * 70, Weight.TROUBLE), "/motor_power replied success=True", 80)
+    assert "motor_power" not in "".join(run.text for run in runs)

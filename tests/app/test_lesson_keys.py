@@ -1,0 +1,302 @@
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+import pytest
+from textual.pilot import Pilot
+
+from cbtui.live_run import State
+from cbtui.screens.help import HelpScreen
+from cbtui.screens.lesson import LessonScreen
+from cbtui.screens.menu import MenuScreen
+from cbtui.screens.threads import ThreadsScreen
+from cbtui.widgets.arena_map import ArenaMap
+from cbtui.widgets.code import CodeView
+from cbtui.widgets.guide import Guide
+from cbtui.widgets.lanes import Lanes
+from cbtui.widgets.log import LogView
+from lessons.catalogue import lessons
+from sim.engine.commands import CallService, Command, Pause, ResetWorld, Resume, SetSpeed
+from tests.app.pictures import lines_of, text_of
+from tests.support.builder import ns
+from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.runs import dummy_server_run, shared_group_run
+
+EVENTS = shared_group_run().events
+PANES = {"1": Guide, "2": CodeView, "3": ArenaMap, "4": LogView}
+
+
+@asynccontextmanager
+async def console(
+    size: tuple[int, int] = NARROW, lesson: str = "shared-group"
+) -> AsyncIterator[tuple[RecordedConsole, Pilot[None]]]:
+    """A console on the lesson, 13.15 s into its run."""
+    app = RecordedConsole(lesson, EVENTS, 13.15)
+    async with app.run_test(size=size) as pilot:
+        await settle(pilot)
+        yield app, pilot
+
+
+async def press(pilot: Pilot[None], *keys: str) -> None:
+    await pilot.press(*keys)
+    await settle(pilot)
+
+
+def status(app: RecordedConsole) -> str:
+    return lines_of(app)[0]
+
+
+def diagnosis(app: RecordedConsole) -> str:
+    return lines_of(app)[-2]
+
+
+@pytest.mark.parametrize(
+    ("key", "commands"),
+    [
+        ("s", [CallService("/motor_power", True)]),
+        ("S", [CallService("/motor_power", False)]),
+        ("space", [Pause()]),
+        ("r", [ResetWorld()]),
+        ("plus", [SetSpeed(2.0)]),
+        ("minus", [SetSpeed(0.5)]),
+    ],
+)
+async def test_a_key_reaches_the_engine_as_a_command(key: str, commands: list[Command]) -> None:
+    async with console() as (app, pilot):
+        await press(pilot, key)
+        assert app.engines.latest.commands == commands
+
+
+async def test_s_calls_the_service_of_the_lesson() -> None:
+    app = RecordedConsole("reentrant-2-threads", dummy_server_run().events, 2.0)
+    async with app.run_test(size=NARROW) as pilot:
+        await press(pilot, "s")
+        assert app.engines.latest.commands == [CallService("/dummy_server_srv", True)]
+
+
+async def test_space_goes_on_after_a_pause() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "space")
+        assert "‖ PAUSED" in status(app)
+        assert "space" in text_of(app) or "␣ go on" in text_of(app)
+        await press(pilot, "space")
+        assert "● LIVE" in status(app)
+        assert app.engines.latest.commands == [Pause(), Resume()]
+
+
+async def test_speed_is_shown_and_ends_where_it_cannot_be_changed_further() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, *["plus"] * 7)
+        assert "virtual max" in status(app)
+        assert len(app.engines.latest.commands) == 5
+
+
+async def test_r_runs_again_after_the_engine_was_lost() -> None:
+    async with console() as (app, pilot):
+        app.engines.latest.end("the engine was killed by signal 9")
+        await settle(pilot)
+        assert "✗ LOST" in status(app)
+        assert "engine lost: the engine was killed by signal 9; press r to run again" in diagnosis(app)
+        await press(pilot, "r")
+        assert len(app.engines.sessions) == 2
+        assert app.engines.sessions[0].stopped
+        assert "● LIVE" in status(app)
+
+
+async def test_r_runs_again_after_the_run_has_ended() -> None:
+    async with console() as (app, pilot):
+        app.engines.latest.play(ns(100))
+        app.engines.latest.end(None)
+        await settle(pilot)
+        assert "■ ENDED" in status(app)
+        await press(pilot, "r")
+        assert "● LIVE" in status(app)
+        assert "t 13.1" in status(app)
+
+
+async def test_what_an_engine_sends_after_its_run_was_replaced_does_not_count() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "t", "2")
+        old, new = app.engines.sessions
+        old.play(ns(100))
+        old.end("the engine was killed by signal 9")
+        await settle(pilot)
+        assert app.lesson_screen.live_run.state is State.LIVE
+        assert app.lesson_screen.live_run.timeline.end == ns(13.15)
+        assert not new.stopped
+
+
+@pytest.mark.parametrize(("key", "threads"), [("1", 1), ("4", 4), ("8", 8), ("o", None)])
+async def test_t_runs_again_with_other_threads(key: str, threads: int | None) -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "t")
+        assert isinstance(app.screen, ThreadsScreen)
+        await press(pilot, key)
+        assert isinstance(app.screen, LessonScreen)
+        assert [session.stopped for session in app.engines.sessions] == [True, False]
+        assert app.engines.latest.started
+        assert app.engines.latest.setup.threads == threads
+
+
+async def test_the_chosen_threads_stay_for_the_next_run() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "t", "3")
+        app.engines.latest.end("gone")
+        await settle(pilot)
+        await press(pilot, "r")
+        assert app.engines.latest.setup.threads == 3
+        await press(pilot, "t", "enter")
+        assert app.engines.latest.setup.threads == 3
+
+
+@pytest.mark.parametrize("key", ["escape", "q"])
+async def test_thinking_better_of_the_threads_leaves_the_run_alone(key: str) -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "t", key)
+        assert isinstance(app.screen, LessonScreen)
+        assert len(app.engines.sessions) == 1
+
+
+async def test_n_opens_the_next_lesson_and_ends_this_run() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "n")
+        assert app.lesson_screen.lesson.id == lessons()[2].id
+        assert app.engines.sessions[0].stopped
+        assert not app.engines.latest.stopped
+
+
+async def test_the_last_lesson_has_no_next_one() -> None:
+    async with console(size=WIDE, lesson=lessons()[-1].id) as (app, pilot):
+        assert "n next" not in lines_of(app)[-1]
+        await press(pilot, "n")
+        assert app.lesson_screen.lesson.id == lessons()[-1].id
+
+
+async def test_q_ends_the_run_and_goes_back_to_the_menu() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "q")
+        assert isinstance(app.screen, MenuScreen)
+        assert app.engines.latest.stopped
+
+
+async def test_leaving_the_console_ends_the_run() -> None:
+    async with console() as (app, pilot):
+        await pilot.press("ctrl+q")
+    assert app.engines.latest.stopped
+
+
+@pytest.mark.parametrize("key", ["question_mark", "escape", "q"])
+async def test_the_help_lists_every_key_and_closes_again(key: str) -> None:
+    async with console(size=(140, 60)) as (app, pilot):
+        await press(pilot, "question_mark")
+        assert isinstance(app.screen, HelpScreen)
+        text = text_of(app)
+        for sentence in (
+            "Call the lesson's SetBool service with true",
+            "Go to a pane: guide, code, robot, log",
+            "Open the lesson with this number",
+            "Show every key and what it does",
+        ):
+            assert sentence in text
+        await press(pilot, key)
+        assert isinstance(app.screen, LessonScreen)
+        assert not app.engines.latest.stopped
+
+
+@pytest.mark.parametrize("key", PANES)
+async def test_a_narrow_screen_shows_the_pane_of_a_number(key: str) -> None:
+    async with console() as (app, pilot):
+        await press(pilot, key)
+        assert [name for name, pane in PANES.items() if app.screen.query_one(pane).display] == [key]
+        assert app.screen.query_one(PANES[key]).has_focus
+
+
+async def test_tab_goes_round_the_panes() -> None:
+    async with console() as (app, pilot):
+        for pane in (CodeView, ArenaMap, LogView, Guide):
+            await press(pilot, "tab")
+            assert app.screen.query_one(pane).has_focus
+
+
+async def test_a_click_on_a_name_shows_its_pane() -> None:
+    async with console() as (app, pilot):
+        line = next(y for y, text in enumerate(lines_of(app)) if "3 Robot" in text)
+        await pilot.click(offset=(lines_of(app)[line].index("3 Robot"), line))
+        await settle(pilot)
+        assert app.screen.query_one(ArenaMap).display
+
+
+async def test_a_wide_screen_shows_every_pane() -> None:
+    async with console(size=WIDE) as (app, _):
+        assert all(app.screen.query_one(pane).display for pane in PANES.values())
+
+
+@pytest.mark.parametrize("size", [NARROW, WIDE])
+async def test_z_gives_the_screen_to_one_pane_and_back(size: tuple[int, int]) -> None:
+    async with console(size) as (app, pilot):
+        await press(pilot, "4", "z")
+        log = app.screen.query_one(LogView)
+        assert log.outer_size == (size[0], size[1] - (3 if size == WIDE else 4))
+        assert not app.screen.query_one(Lanes).display
+        await press(pilot, "z")
+        assert app.screen.query_one(Lanes).display
+
+
+async def test_arrows_look_back_in_time_on_every_pane_at_once() -> None:
+    async with console(WIDE) as (app, pilot):
+        assert "SLEEPING==9" in text_of(app)
+        await press(pilot, *["left"] * 10)
+        assert "◂ BACK 10.0 s" in status(app)
+        assert "t 3.150 s" in status(app)
+        assert "SLEEPING" not in text_of(app)
+        assert "nothing waits" in diagnosis(app)
+        await press(pilot, "right")
+        assert "t 4.150 s" in status(app)
+        await press(pilot, "0")
+        assert "● LIVE" in status(app)
+
+
+async def test_looking_back_stands_still_while_the_run_goes_on() -> None:
+    async with console(WIDE) as (app, pilot):
+        await press(pilot, "left")
+        app.engines.latest.play(ns(20.0))
+        await settle(pilot)
+        assert "t 12.150 s" in status(app)
+        assert "◂ BACK 7.8 s" in status(app)
+
+
+async def test_zooming_changes_the_stretch_of_time() -> None:
+    async with console() as (app, pilot):
+        lanes = app.screen.query_one(Lanes)
+        assert lanes.window.length == ns(10)
+        await press(pilot, "greater_than_sign")
+        assert lanes.window.length == ns(5)
+        await press(pilot, "less_than_sign", "less_than_sign")
+        assert lanes.window.length == ns(20)
+
+
+async def test_keys_that_mean_nothing_now_are_not_offered() -> None:
+    async with console(WIDE) as (app, pilot):
+        assert "0 live" not in lines_of(app)[-1]
+        await press(pilot, "left")
+        assert "0 live" in lines_of(app)[-1]
+        app.engines.latest.end("gone")
+        await settle(pilot)
+        assert "service" not in lines_of(app)[-1]
+        assert "r run again" in lines_of(app)[-1]
+
+
+async def test_nothing_is_drawn_while_nothing_happens(monkeypatch: pytest.MonkeyPatch) -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "space")
+        drawn: list[LessonScreen] = []
+
+        def draw(screen: LessonScreen) -> None:
+            drawn.append(screen)
+
+        monkeypatch.setattr(LessonScreen, "draw", draw)
+        await pilot.pause(0.2)
+        assert drawn == []
+        app.engines.latest.play(ns(14.0))
+        app.engines.latest.play(ns(14.1))
+        await pilot.pause(0.2)
+        assert drawn

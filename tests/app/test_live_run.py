@@ -1,0 +1,99 @@
+import pytest
+
+from cbtui.live_run import LiveRun, State
+from sim.engine.commands import CallService, Pause, ResetWorld, Resume, SetSpeed
+from sim.engine.setup import RunSetup, ServiceChoice
+from sim.trace.events import AnyEvent, RunEnded, RunStarted
+from tests.support.fake_session import FakeEngines, FakeSession
+
+SETUP = RunSetup(
+    title="x", node_path="node.py", service=ServiceChoice("/motor_power", "std_srvs/srv/SetBool")
+)
+
+
+@pytest.fixture
+def engines() -> FakeEngines:
+    return FakeEngines([RunStarted(0, "x", "virtual", 0), RunEnded(5, "its time was up", False)], until=-1)
+
+
+@pytest.fixture
+def run(engines: FakeEngines) -> LiveRun:
+    def deliver(events: list[AnyEvent]) -> None:
+        run.take(events)
+
+    def ended(loss: str | None) -> None:
+        run.over(loss)
+
+    run = LiveRun(SETUP, engines, deliver, ended)
+    run.start()
+    return run
+
+
+@pytest.fixture
+def session(engines: FakeEngines, run: LiveRun) -> FakeSession:
+    return engines.latest
+
+
+def test_a_run_starts_with_its_first_event(run: LiveRun, session: FakeSession) -> None:
+    assert run.state is State.STARTING
+    session.play(0)
+    assert run.state is State.LIVE
+
+
+def test_a_run_ends_with_its_last_event_even_before_its_process(run: LiveRun, session: FakeSession) -> None:
+    session.play(5)
+    assert run.state is State.ENDED
+    assert not run.alive
+
+
+def test_a_run_whose_engine_is_gone_is_lost_whatever_it_told_before(
+    run: LiveRun, session: FakeSession
+) -> None:
+    session.play(0)
+    session.end("the engine was killed by signal 9")
+    assert run.state is State.LOST
+    assert run.loss == "the engine was killed by signal 9"
+
+
+def test_a_run_that_cannot_be_started_is_lost() -> None:
+    class NoProcess(FakeSession):
+        def start(self) -> None:
+            raise OSError(12, "Cannot allocate memory")
+
+    def open_session(*arguments: object) -> FakeSession:
+        return NoProcess(*arguments, [], 0)  # type: ignore[arg-type]
+
+    run = LiveRun(SETUP, open_session, lambda _: None, lambda _: None)
+    run.start()
+    assert run.loss == "it could not be started: Cannot allocate memory"
+    run.stop()
+
+
+def test_pause_and_resume_reach_the_engine(run: LiveRun, session: FakeSession) -> None:
+    session.play(0)
+    run.pause()
+    assert run.state is State.PAUSED
+    run.resume()
+    assert run.state is State.LIVE
+    assert session.commands == [Pause(), Resume()]
+
+
+def test_a_call_goes_to_the_service_of_the_set_up(run: LiveRun, session: FakeSession) -> None:
+    run.call(True)
+    run.reset_world()
+    assert session.commands == [CallService("/motor_power", True), ResetWorld()]
+
+
+def test_speed_ends_at_as_fast_as_it_can(run: LiveRun, session: FakeSession) -> None:
+    for _ in range(10):
+        run.change_speed(1)
+    assert run.speed is None
+    assert session.commands[-1] == SetSpeed(None)
+    run.change_speed(-1)
+    assert session.commands[-1] == SetSpeed(20.0)
+
+
+def test_speed_ends_at_a_tenth(run: LiveRun) -> None:
+    for _ in range(10):
+        run.change_speed(-1)
+    assert run.speed == 0.1

@@ -1,0 +1,126 @@
+import subprocess
+import sys
+
+import pytest
+
+from cbtui.app import CbtuiApp
+from cbtui.screens.help import HelpScreen
+from cbtui.screens.lesson import LessonScreen
+from cbtui.screens.menu import LessonList, MenuScreen
+from cbtui.widgets.key_bar import KeyBar
+from lessons.catalogue import lessons
+from lessons.lesson import Lesson
+from tests.app.pictures import lines_of, text_of
+from tests.support.console import NARROW, WIDE
+from tests.support.fake_session import FakeEngines
+
+HEAVY = {"numpy", "pybullet", "rosbags", "pygments", "markdown_it", "multiprocessing", "cbtui.screens.lesson"}
+
+
+def menu() -> CbtuiApp:
+    return CbtuiApp(open_session=FakeEngines([], 0))
+
+
+def opened(app: CbtuiApp) -> str | None:
+    return app.screen.lesson.id if isinstance(app.screen, LessonScreen) else None
+
+
+@pytest.mark.parametrize("size", [NARROW, WIDE])
+async def test_the_menu_shows_every_lesson_with_what_it_is_made_of(size: tuple[int, int]) -> None:
+    app = menu()
+    async with app.run_test(size=size):
+        lines = lines_of(app)
+        for lesson in lessons():
+            (line,) = (line for line in lines if f" {lesson.number}  {lesson.title} " in line)
+            assert lesson.executor in line
+            assert lesson.groups in line
+            assert any(f"Unit {lesson.unit}" in line for line in lines)
+
+
+@pytest.mark.parametrize("size", [NARROW, WIDE])
+async def test_the_menu_tells_what_the_highlighted_lesson_teaches(size: tuple[int, int]) -> None:
+    app = menu()
+    async with app.run_test(size=size) as pilot:
+        for lesson in lessons():
+            await pilot.pause()
+            text = text_of(app)
+            assert all(word in text for word in lesson.teaches.split())
+            await pilot.press("down")
+
+
+async def test_enter_opens_the_highlighted_lesson() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("down", "down", "up", "enter")
+        assert opened(app) == lessons()[1].id
+
+
+@pytest.mark.parametrize("lesson", lessons(), ids=lambda lesson: lesson.id)
+async def test_a_number_opens_its_lesson(lesson: Lesson) -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press(str(lesson.number))
+        assert opened(app) == lesson.id
+
+
+async def test_the_number_of_no_lesson_does_nothing() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("9")
+        assert isinstance(app.screen, MenuScreen)
+
+
+async def test_a_click_opens_a_lesson() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.click(LessonList, offset=(10, 3))
+        assert opened(app) == lessons()[2].id
+
+
+async def test_a_click_on_a_key_does_what_the_key_does() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        column = lines_of(app)[-1].index("? help")
+        await pilot.click(KeyBar, offset=(column, 0))
+        assert isinstance(app.screen, HelpScreen)
+
+
+async def test_leaving_a_lesson_comes_back_to_where_it_was_opened() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("4", "q")
+        assert isinstance(app.screen, MenuScreen)
+        await pilot.press("enter")
+        assert opened(app) == lessons()[3].id
+
+
+async def test_q_leaves_the_console() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("q")
+        assert not app.is_running
+
+
+async def test_the_palette_finds_a_command_of_the_screen() -> None:
+    app = menu()
+    async with app.run_test(size=WIDE) as pilot:
+        await pilot.press("ctrl+p", *"lesson 5")
+        await app.workers.wait_for_complete()
+        await pilot.pause(0.3)
+        await pilot.press("enter", "enter")
+        await pilot.pause()
+        assert opened(app) == lessons()[4].id
+
+
+def test_nothing_heavy_is_imported_before_the_menu_is_shown() -> None:
+    program = """
+import asyncio, sys
+from cbtui.app import CbtuiApp
+async def main():
+    app = CbtuiApp()
+    async with app.run_test(size=(80, 24)):
+        print(*sys.modules)
+asyncio.run(main())
+"""
+    shown = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert HEAVY & set(shown.stdout.split()) == set()

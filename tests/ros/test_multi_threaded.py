@@ -1,0 +1,280 @@
+"""The pool of a MultiThreadedExecutor: its workers, their names, and when exceptions come out."""
+
+import os
+import warnings
+
+import pytest
+
+import sim.ros as rclpy
+from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from sim.ros.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from sim.ros.interfaces import message
+from sim.ros.node import Node
+from sim.trace.events import CallbackFailed
+from tests.support.simulation import Simulation, simulate
+
+Int32 = message("std_msgs", "Int32")
+
+
+def spin(node: Node, threads: int) -> None:
+    executor = MultiThreadedExecutor(threads)
+    executor.add_node(node)
+    executor.spin()
+
+
+def test_one_thread_brings_rclpys_warning() -> None:
+    def program(simulation: Simulation) -> None:
+        with pytest.warns(UserWarning) as caught:
+            MultiThreadedExecutor(1)
+        (warning,) = caught
+        assert str(warning.message) == (
+            "MultiThreadedExecutor is used with a single thread.\nUse the SingleThreadedExecutor instead."
+        )
+
+    simulate(program)
+
+
+def test_two_threads_bring_no_warning() -> None:
+    def program(simulation: Simulation) -> None:
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            assert MultiThreadedExecutor(2).threads == 2
+
+    simulate(program)
+
+
+@pytest.mark.filterwarnings("ignore:MultiThreadedExecutor is used with a single thread")
+def test_without_a_number_there_are_as_many_threads_as_cpus() -> None:
+    def program(simulation: Simulation) -> None:
+        assert MultiThreadedExecutor().threads == len(os.sched_getaffinity(0))
+
+    simulate(program)
+
+
+@pytest.mark.parametrize("number", [0, -1])
+def test_a_pool_needs_at_least_one_thread(number: int) -> None:
+    def program(simulation: Simulation) -> None:
+        with pytest.raises(ValueError, match="max_workers must be greater than 0"):
+            MultiThreadedExecutor(number)
+
+    simulate(program)
+
+
+def test_workers_are_named_by_pool_and_number_in_the_order_of_their_start() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        for _ in range(3):
+            node.create_timer(1.0, lambda: simulation.sleep(0.5), MutuallyExclusiveCallbackGroup())
+        spin(node, 3)
+
+    names = [each.thread for each in simulate(program, until=1.2).calls()]
+    assert names == [f"ThreadPoolExecutor-0_{number}" for number in range(3)]
+
+
+def test_the_second_executors_pool_has_the_next_number() -> None:
+    def program(simulation: Simulation) -> None:
+        MultiThreadedExecutor(2)
+        node = Node("n")
+        node.create_timer(1.0, lambda: None)
+        spin(node, 2)
+
+    (call,) = simulate(program, until=1.5).calls()
+    assert call.thread == "ThreadPoolExecutor-1_0"
+
+
+def test_an_idle_worker_is_reused_before_a_new_one_is_started() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_timer(1.0, lambda: None, ReentrantCallbackGroup())
+        spin(node, 4)
+
+    assert {each.thread for each in simulate(program, until=5.5).calls()} == {"ThreadPoolExecutor-0_0"}
+
+
+def test_the_worker_that_has_been_idle_longest_is_asked_first() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_timer(1.0, lambda: simulation.sleep(0.5), MutuallyExclusiveCallbackGroup())
+        node.create_timer(1.0, lambda: simulation.sleep(0.2), MutuallyExclusiveCallbackGroup())
+        spin(node, 2)
+
+    workers = [each.thread[-1] for each in simulate(program, until=4.1).calls()]
+    assert workers == ["0", "1", "1", "0", "0", "1", "1", "0"]
+
+
+def test_never_more_workers_than_threads() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        for _ in range(5):
+            node.create_timer(1.0, lambda: simulation.sleep(10.0), MutuallyExclusiveCallbackGroup())
+        spin(node, 3)
+
+    calls = simulate(program, until=10.5).calls()
+    assert [each.at for each in calls] == [1.0] * 3
+
+
+def test_the_thread_that_spins_runs_no_callback() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        for _ in range(4):
+            node.create_timer(0.1, lambda: None)
+        spin(node, 2)
+
+    assert all(each.thread != "MainThread" for each in simulate(program, until=2.0).calls())
+
+
+def fail() -> None:
+    raise ValueError("no scan")
+
+
+def test_in_a_single_threaded_executor_an_exception_leaves_spin_at_once_and_spinning_again_works() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_timer(1.0, fail)
+        node.create_timer(1.5, lambda: None)
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        for at in (1.0, 2.0):
+            with pytest.raises(ValueError, match="no scan"):
+                executor.spin()
+            assert simulation.now == at
+
+    trace = simulate(program)
+    assert trace.times("<lambda>") == [1.5]
+    assert [each.error for each in trace.of(CallbackFailed)] == ["ValueError: no scan"] * 2
+    assert trace.ends("fail") == trace.times("fail")
+
+
+def test_in_a_multi_threaded_executor_an_exception_comes_out_with_a_later_callback() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_timer(1.0, lambda: simulation.sleep(4.0), MutuallyExclusiveCallbackGroup())
+        node.create_timer(1.2, fail, MutuallyExclusiveCallbackGroup())
+        node.create_timer(2.0, lambda: None, MutuallyExclusiveCallbackGroup()).timer_period_ns = 10**12
+        with pytest.raises(ValueError, match="no scan"):
+            spin(node, 3)
+        assert simulation.now == 2.0
+        simulation.sleep(5.0)
+
+    trace = simulate(program)
+    assert [each.at for each in trace.calls()] == [1.0, 1.2, 2.0]
+    assert 5.0 in [end.t / 1e9 for end in trace.events if type(end).__name__ == "CallbackEnded"]
+
+
+def test_until_a_later_callback_comes_a_multi_threaded_spin_goes_on_after_an_exception() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_guard_condition(fail).trigger()
+        spin(node, 2)
+
+    simulate(program, until=10.0)
+
+
+def test_after_an_exception_a_multi_threaded_executor_can_be_spun_again() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_guard_condition(fail).trigger()
+        node.create_timer(1.0, lambda: None)
+        executor = MultiThreadedExecutor(2)
+        executor.add_node(node)
+        with pytest.raises(ValueError, match="no scan"):
+            executor.spin()
+        executor.spin()
+
+    assert simulate(program, until=3.5).times("<lambda>") == [1.0, 2.0, 3.0]
+
+
+def test_after_an_exception_the_group_is_free() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_timer(1.0, fail)
+        guard = node.create_guard_condition(lambda: None)
+        simulation.at(1.5, guard.trigger)
+        with pytest.raises(ValueError, match="no scan"):
+            spin(node, 2)
+
+    assert simulate(program).times("<lambda>") == [1.5]
+
+
+@pytest.mark.parametrize("make", [SingleThreadedExecutor, lambda: MultiThreadedExecutor(2)])
+def test_what_a_task_raises_comes_out_of_spin_as_a_callbacks_exception_does(
+    make: type[SingleThreadedExecutor],
+) -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_timer(1.0, lambda: None)
+        executor = make()
+        executor.add_node(node)
+        executor.create_task(fail)
+        with pytest.raises(ValueError, match="no scan"):
+            executor.spin()
+
+    simulate(program)
+
+
+def test_a_reentrant_subscription_runs_as_often_at_once_as_there_are_workers() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_subscription(
+            Int32, "t", lambda _: simulation.sleep(1.0), 10, callback_group=ReentrantCallbackGroup()
+        )
+        publisher = node.create_publisher(Int32, "t", 10)
+        for _ in range(5):
+            publisher.publish(Int32())
+        spin(node, 2)
+
+    trace = simulate(program, until=10.0)
+    assert trace.times("<lambda>") == [0, 0, 1, 1, 2]
+
+
+def test_ready_callbacks_of_one_exclusive_group_go_round_the_workers_in_the_order_of_the_snapshot() -> None:
+    order: list[str] = []
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        for topic in "ab":
+            node.create_subscription(Int32, topic, lambda _, topic=topic: order.append(topic), 10)
+            publisher = node.create_publisher(Int32, topic, 10)
+            for _ in range(4):
+                publisher.publish(Int32())
+        spin(node, 4)
+
+    trace = simulate(program, until=1.0)
+    assert order == ["a", "b"] * 4
+    assert len({each.thread for each in trace.calls()}) > 1
+
+
+def test_of_two_callbacks_of_one_group_yielded_together_the_second_waits_without_keeping_a_worker() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def slow() -> None:
+            simulation.sleep(5.0)
+
+        def same_group() -> None: ...
+
+        def other_group() -> None: ...
+
+        node.create_timer(1.0, slow).timer_period_ns = 10**12
+        node.create_timer(1.0, same_group).timer_period_ns = 10**12
+        node.create_timer(1.0, other_group, MutuallyExclusiveCallbackGroup()).timer_period_ns = 10**12
+        spin(node, 2)
+
+    trace = simulate(program, until=10.0)
+    assert [(each.name, each.at) for each in trace.calls()] == [
+        ("slow", 1.0),
+        ("other_group", 1.0),
+        ("same_group", 6.0),
+    ]
+
+
+def test_the_number_of_threads_given_to_the_host_replaces_the_programs() -> None:
+    def program(simulation: Simulation) -> None:
+        simulation.host.threads = 3
+        assert MultiThreadedExecutor(8).threads == 3
+        made = SingleThreadedExecutor()
+        assert isinstance(made, MultiThreadedExecutor)
+        assert made.threads == 3
+        assert isinstance(rclpy.get_global_executor(), MultiThreadedExecutor)
+
+    simulate(program)
