@@ -36,7 +36,7 @@ def _entries(robot: RobotMoved, command: VelocityCommanded | None, charset: Char
     told = "nothing yet".ljust(22) if command is None else _velocity(command.linear, command.angular)
     front = f"{robot.front:5.2f} m" if math.isfinite(robot.front) else "   free"
     return (
-        (f"pose {robot.x:5.2f} {robot.y:5.2f} m {math.degrees(robot.yaw):4.0f}{degree}", PLAIN),
+        (f"pose {_two_places(robot.x)} {_two_places(robot.y)} m {math.degrees(robot.yaw):4.0f}{degree}", PLAIN),
         (f"front {front}", PLAIN),
         (f"told {told}", PLAIN),
         ("motors on " if robot.motors else "motors OFF", PLAIN if robot.motors else WARN),
@@ -46,4 +46,9 @@ def _entries(robot: RobotMoved, command: VelocityCommanded | None, charset: Char
 
 
 def _velocity(linear: float, angular: float) -> str:
-    return f"{linear:5.2f} m/s {angular:5.2f} rad/s"
+    return f"{_two_places(linear)} m/s {_two_places(angular)} rad/s"
+
+
+def _two_places(figure: float) -> str:
+    """Return a figure with two places, five wide; what rounds to nothing has no minus."""
+    return f"{round(figure, 2) + 0.0:5.2f}"

@@ -100,8 +100,11 @@ class VirtualClock:
         self._anchor_real = _monotonic_ns()
         self._stopping = False
         self._threads: set[VirtualThread] = set()
-        self.before_jump: Callable[[], None] = _nothing
-        """Called whenever time is about to pass, on whichever thread is at hand; it must not wait."""
+        self.before_jump: Callable[[], int | None] = _nothing
+        """Called whenever time is about to pass, on whichever thread is at hand; it must not wait.
+
+        It may return a moment at which time is to stop over, so that it is called there too.
+        """
         self.steps = 0
         """How often a thread came to a wait; a run that neither takes steps nor rests is stuck."""
         self.rests = False
@@ -247,8 +250,11 @@ class VirtualClock:
     def _jump(self) -> None:
         """Bring time to the next deadline, or to where something from outside makes a thread able to run."""
         target = self._earliest_deadline()
-        if target is None or target > self._now:
-            self.before_jump()
+        stopover = self.before_jump() if target is None or target > self._now else None
+        if stopover is not None and self._now < stopover and (target is None or stopover < target):
+            if self._pass_time(stopover):
+                self._now = stopover
+            return
         if not self._pass_time(target):
             return
         assert target is not None
@@ -333,5 +339,5 @@ def start_outside(thread: threading.Thread) -> None:
     _start_thread(thread)
 
 
-def _nothing() -> None:
+def _nothing() -> int | None:
     """Stand in for a hook that nobody set."""

@@ -15,7 +15,8 @@ if TYPE_CHECKING:
 class CallbackGroup(ABC):
     """Decides when the callbacks of its entities may run; a program may write its own kind.
 
-    Entities are held weakly. The three questions below are asked by executors with the host's lock held.
+    Entities are held weakly, in the order of their joining, so that every run is the same. The three
+    questions below are asked by executors with the host's lock held.
     """
 
     trace_kind: ClassVar[GroupKind] = GroupKind.CUSTOM
@@ -23,11 +24,11 @@ class CallbackGroup(ABC):
 
     def __init__(self) -> None:
         super().__init__()
-        self.entities: set[weakref.ref[Entity]] = set()
+        self.entities: dict[weakref.ref[Entity], None] = {}
 
     def add_entity(self, entity: Entity) -> None:
         """Make an entity a member."""
-        self.entities.add(weakref.ref(entity))
+        self.entities[weakref.ref(entity)] = None
 
     def has_entity(self, entity: Entity) -> bool:
         """Whether an entity is a member."""

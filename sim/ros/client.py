@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -17,8 +18,8 @@ if TYPE_CHECKING:
     from sim.ros.callback_groups import CallbackGroup
     from sim.ros.node import Node
 
-_POLL = 100_000_000
-"""Nanoseconds between two looks of ``wait_for_service``."""
+_POLL = 0.25
+"""Seconds between two looks of ``wait_for_service``, as in rclpy."""
 
 
 class Reply(NamedTuple):
@@ -63,9 +64,8 @@ class Client(Entity):
             TypeError: the request is not of the service's type.
         """
         arrived = self._host.clock.signal()
-        future = self.call_async(request)
+        call, future = self._send(request)
         future.add_done_callback(lambda _: arrived.set())
-        call = next(key for key, value in self._pending_requests.items() if value is future)
         deadline = None if timeout_sec is None else self._host.clock.now() + int(timeout_sec * 1e9)
         self._probe.call_blocked(call, self.name)
         try:
@@ -81,6 +81,9 @@ class Client(Entity):
         Raises:
             TypeError: the request is not of the service's type.
         """
+        return self._send(request)[1]
+
+    def _send(self, request: Any) -> tuple[int, Future[Any]]:
         if not isinstance(request, self.srv_type.Request):
             raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}")
         future: Future[Any] = Future()
@@ -94,7 +97,7 @@ class Client(Entity):
                 copy, call, self._host.clock.now(), lambda response: self._arrive(call, response)
             )
             self._host.network.send_request(self.name, self.srv_type, outgoing)
-        return future
+        return call, future
 
     def remove_pending_request(self, future: Future[Any]) -> None:
         """Forget a request; a reply to it is thrown away."""
@@ -109,13 +112,14 @@ class Client(Entity):
             return self._host.network.has_service(self.name, self.srv_type)
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
-        """Wait until somebody offers the service; False when ``timeout_sec`` seconds were not enough."""
-        clock = self._host.clock
-        deadline = None if timeout_sec is None else clock.now() + int(timeout_sec * 1e9)
-        while self.node.context.ok() and not self.service_is_ready():
-            if deadline is not None and clock.now() >= deadline:
-                return False
-            clock.sleep(_POLL if deadline is None else min(_POLL, deadline - clock.now()))
+        """Wait until somebody offers the service; False when ``timeout_sec`` seconds were not enough.
+
+        It looks four times a second, and so may come back a little after the timeout.
+        """
+        left = math.inf if timeout_sec is None else timeout_sec
+        while self.node.context.ok() and not self.service_is_ready() and left > 0:
+            self._host.clock.sleep(int(_POLL * 1e9))
+            left -= _POLL
         return self.service_is_ready()
 
     def _arrive(self, call: int, response: Any) -> None:

@@ -1,5 +1,13 @@
 """The errors that rclpy raises, under rclpy's names and with its texts."""
 
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from sim.ros.parameter import Parameter
+
 
 class NotInitializedException(Exception):
     """Something needs ``rclpy.init()`` first."""
@@ -58,3 +66,75 @@ class InvalidServiceNameException(NameValidationException):
 
     def __init__(self, name: str, error_msg: str, invalid_index: int) -> None:
         super().__init__("service name", name, error_msg, invalid_index)
+
+
+class RCLError(RuntimeError):
+    """ROS's client library refuses something."""
+
+
+class RCLInvalidROSArgsError(RCLError):
+    """An argument after ``--ros-args`` cannot be read."""
+
+
+class UnknownROSArgsError(RuntimeError):
+    """An argument after ``--ros-args`` is none that ROS knows."""
+
+
+class ParameterException(Exception):
+    """Base of what can go wrong with parameters; names the parameters it is about."""
+
+    def __init__(self, error_msg: str, parameters: Sequence[str] | str, *args: object) -> None:
+        super().__init__(error_msg, parameters, *args)
+
+
+class ParameterNotDeclaredException(ParameterException):
+    """A parameter was used before it was declared."""
+
+    def __init__(self, parameters: Sequence[str] | str, *args: object) -> None:
+        super().__init__("Invalid access to undeclared parameter(s)", parameters, *args)
+
+
+class ParameterAlreadyDeclaredException(ParameterException):
+    """A parameter was declared twice."""
+
+    def __init__(self, parameters: Sequence[str] | str, *args: object) -> None:
+        super().__init__("Parameter(s) already declared", parameters, *args)
+
+
+class InvalidParameterException(ParameterException):
+    """A parameter has no usable name."""
+
+    def __init__(self, parameter: str, *args: object) -> None:
+        super().__init__("Invalid parameter name", parameter, *args)
+
+
+class InvalidParameterTypeException(ParameterException):
+    """The value set for a parameter, or overriding it, is of another type than it was declared with."""
+
+    def __init__(self, desired_parameter: Parameter[Any], expected_type: str) -> None:
+        Exception.__init__(
+            self,
+            f"Trying to set parameter '{desired_parameter.name}' to '{desired_parameter.value}' of type "
+            f"'{desired_parameter.type_.name}', expecting type '{expected_type}'",
+        )
+
+
+class InvalidParameterValueException(ParameterException):
+    """A parameter's descriptor or a callback refused its value."""
+
+    def __init__(self, parameter: str, value: object, reason: str, *args: object) -> None:
+        super().__init__(f"Invalid parameter value ({value}) for parameter. Reason: {reason}", parameter, *args)
+
+
+class ParameterUninitializedException(ParameterException):
+    """A parameter was declared with a type only, and read before it had a value."""
+
+    def __init__(self, parameter_name: str) -> None:
+        Exception.__init__(self, f"The parameter '{parameter_name}' is not initialized")
+
+
+class ParameterImmutableException(ParameterException):
+    """A read-only parameter was to be changed or removed."""
+
+    def __init__(self, parameter_name: str) -> None:
+        Exception.__init__(self, f"Attempted to modify read-only parameter '{parameter_name}'")

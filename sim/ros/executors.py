@@ -382,9 +382,9 @@ class Executor:
     def _explain_wait(self, entity: Entity) -> None:
         """Record why a ready callback of this executor does not run; nothing if it is about to."""
         busy = self._workers_busy()
-        if not self._spinning:
+        if not self._spinning and not entity.handed_out:
             self._probe.waits(entity, Reason.NOBODY_SPINS, None, workers_busy=False)
-        elif not entity.handed_out and not entity.callback_group.can_execute(entity):
+        elif not entity.callback_group.can_execute(entity):
             self._probe.waits(entity, Reason.GROUP_HELD, self._holder_of(entity), workers_busy=busy)
         elif busy:
             culprit = self._running[0] if self._running else None

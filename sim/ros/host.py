@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from itertools import count
-from weakref import WeakSet
+from weakref import ref
 
 from sim.clock import Clock, RealClock
 from sim.ros.network import Network
@@ -33,20 +33,32 @@ class Host:
     lock: AbstractContextManager[bool] = field(default_factory=_RLock)
     network: Network = field(default_factory=Network)
     pool_numbers: Iterator[int] = field(default_factory=count)
-    waiters: "WeakSet[WaitsExplained]" = field(default_factory=WeakSet)
+    _waiters: "list[ref[WaitsExplained]]" = field(default_factory=list)
 
-    def explain_waits(self) -> None:
-        """Put on the trace which callbacks wait now, and why; call it before time passes."""
+    def explain_waits(self) -> int | None:
+        """Put on the trace which callbacks wait now, and why; call it before time passes.
+
+        Returns when the next timer falls due: whether it has to wait shows only then.
+        """
         with self.lock:
-            for each in tuple(self.waiters):
-                each.explain_waits()
+            waiters = [each for reference in self._waiters if (each := reference()) is not None]
+            dues = [waiter.explain_waits() for waiter in waiters]
+        return min((due for due in dues if due is not None), default=None)
+
+    def explain_waits_of(self, waiter: "WaitsExplained") -> None:
+        """Ask ``waiter`` too, after those that came before it, for as long as it lives."""
+        with self.lock:
+            self._waiters.append(ref(waiter, self._waiters.remove))
 
 
 class WaitsExplained:
     """Something that can tell why its callbacks wait."""
 
-    def explain_waits(self) -> None:
-        """Record the waits that began or whose reason changed. Called with the host's lock held."""
+    def explain_waits(self) -> int | None:
+        """Record the waits that began or whose reason changed; returns when the next timer falls due.
+
+        Called with the host's lock held.
+        """
         raise NotImplementedError
 
 

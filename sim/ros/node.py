@@ -67,7 +67,7 @@ class Node(WaitsExplained):
         self.trace_id = self._context.probe.node_made(self.get_fully_qualified_name())
         self._default_callback_group = MutuallyExclusiveCallbackGroup()
         self._rate_group = ReentrantCallbackGroup()
-        self._host.waiters.add(self)
+        self._host.explain_waits_of(self)
 
     # What it is
 
@@ -398,17 +398,18 @@ class Node(WaitsExplained):
         for text in warnings:
             self._logger.warning(text)
 
-    def explain_waits(self) -> None:
-        """Record which of its callbacks wait, and why."""
+    def explain_waits(self) -> int | None:
+        """Record which of its callbacks wait, and why; returns when the next timer falls due."""
         executor = self.executor
         probe = self._context.probe
         if not probe.visible:
-            return
+            return None
         for entity in self._collect_due(self._host.clock.now()):
             if executor is None:
                 probe.waits(entity, Reason.NOBODY_SPINS, None, workers_busy=False)
             else:
                 executor._explain_wait(entity)
+        return self._next_due()
 
     def __enter__(self) -> Node:
         return self

@@ -46,6 +46,7 @@ class Subscription(Entity):
         self.qos_profile = qos_profile
         self.depth = qos_profile.queue_length or 0
         self._probe = node.context.probe
+        self._clock = node.context.host.clock
         self._queue: deque[Delivery] = deque()
 
     @property
@@ -71,7 +72,7 @@ class Subscription(Entity):
             self._probe.dropped(self, len(queue), lost.message)
         queue.append(delivery)
         self._probe.ready(self, len(queue), delivery.message)
-        self.become_ready(delivery.published)
+        self.become_ready(self._clock.now())
 
     def shown_callback(self) -> Callable[..., Any]:
         """The callback."""

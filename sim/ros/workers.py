@@ -91,6 +91,7 @@ class WorkerPool:
     def _next(self, worker: Worker) -> Begun | None:
         """Wait for the worker's next callback and begin it; None once the pool is dismissed."""
         while True:
+            self._let_given_begin(worker)
             with self._lock:
                 begun = self._begin_given(worker) or self._begin_queued() or self._begin_found()
                 if begun is not None:
@@ -99,6 +100,11 @@ class WorkerPool:
                     return None
                 self._idle.append(worker)
             worker.signal.wait(None)
+
+    def _let_given_begin(self, worker: Worker) -> None:
+        """What was given to other workers was yielded before what waits in the queue, so it goes first."""
+        while worker.job is None and self._queue and self._given:
+            self._clock.sleep(0)
 
     def _begin(self, work: Work) -> Begun | None:
         if isinstance(work, Task):

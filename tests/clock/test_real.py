@@ -58,7 +58,12 @@ def test_an_action_runs_once_its_time_has_come() -> None:
 def test_many_threads_setting_one_signal_at_once_do_not_fail() -> None:
     clock = RealClock()
     signal = clock.signal()
-    threads = [threading.Thread(target=lambda: [signal.set() for _ in range(200)]) for _ in range(4)]
+
+    def set_often() -> None:
+        for _ in range(200):
+            signal.set()
+
+    threads = [threading.Thread(target=set_often) for _ in range(4)]
     for thread in threads:
         thread.start()
     for thread in threads:

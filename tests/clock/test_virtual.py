@@ -133,7 +133,10 @@ def test_before_each_jump_of_time_the_hook_is_called_once_at_the_old_time() -> N
     seen: list[int] = []
 
     def program(clock: VirtualClock) -> None:
-        clock.before_jump = lambda: seen.append(clock.now())
+        def look() -> None:
+            seen.append(clock.now())
+
+        clock.before_jump = look
         clock.sleep(SECOND)
         clock.sleep(0)
         clock.sleep(SECOND)
@@ -141,6 +144,23 @@ def test_before_each_jump_of_time_the_hook_is_called_once_at_the_old_time() -> N
     on_virtual_time(program)
     assert seen[:2] == [0, SECOND]
     assert len(seen) == 2
+
+
+def test_time_stops_over_where_the_hook_asks_for_it() -> None:
+    seen: list[int] = []
+
+    def program(clock: VirtualClock) -> None:
+        def look() -> int:
+            seen.append(clock.now())
+            return 3 * SECOND
+
+        clock.before_jump = look
+        clock.sleep(2 * SECOND)
+        clock.sleep(3 * SECOND)
+        assert clock.now() == 5 * SECOND
+
+    on_virtual_time(program)
+    assert seen == [0, 2 * SECOND, 3 * SECOND]
 
 
 def test_stop_raises_keyboard_interrupt_in_the_main_thread_once_and_stopped_in_the_others() -> None:

@@ -1,4 +1,4 @@
-"""The sheet of what real rclpy was measured to do with two 100 Hz topics and a timer that sleeps 10 s once."""
+"""The sheet of what real rclpy was measured to do with two 100 Hz topics and a timer that sleeps once."""
 
 from collections.abc import Callable
 

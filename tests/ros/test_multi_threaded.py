@@ -2,6 +2,7 @@
 
 import os
 import warnings
+from collections.abc import Callable
 
 import pytest
 
@@ -24,7 +25,7 @@ def spin(node: Node, threads: int) -> None:
 
 def test_one_thread_brings_rclpys_warning() -> None:
     def program(simulation: Simulation) -> None:
-        with pytest.warns(UserWarning) as caught:
+        with pytest.warns(UserWarning, match="single thread") as caught:
             MultiThreadedExecutor(1)
         (warning,) = caught
         assert str(warning.message) == (
@@ -192,6 +193,7 @@ def test_after_an_exception_the_group_is_free() -> None:
         simulation.at(1.5, guard.trigger)
         with pytest.raises(ValueError, match="no scan"):
             spin(node, 2)
+        simulation.sleep(0.1)
 
     assert simulate(program).times("<lambda>") == [1.5]
 
@@ -233,7 +235,7 @@ def test_ready_callbacks_of_one_exclusive_group_go_round_the_workers_in_the_orde
     def program(simulation: Simulation) -> None:
         node = Node("n")
         for topic in "ab":
-            node.create_subscription(Int32, topic, lambda _, topic=topic: order.append(topic), 10)
+            node.create_subscription(Int32, topic, _appending(order, topic), 10)
             publisher = node.create_publisher(Int32, topic, 10)
             for _ in range(4):
                 publisher.publish(Int32())
@@ -278,3 +280,7 @@ def test_the_number_of_threads_given_to_the_host_replaces_the_programs() -> None
         assert isinstance(rclpy.get_global_executor(), MultiThreadedExecutor)
 
     simulate(program)
+
+
+def _appending(to: list[str], text: str) -> Callable[[object], None]:
+    return lambda _: to.append(text)

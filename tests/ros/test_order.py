@@ -1,5 +1,8 @@
 """The order in which one snapshot of the wait set is served, and what goes before it."""
 
+from collections.abc import Callable
+from functools import partial
+
 import pytest
 
 import sim.ros as rclpy
@@ -7,6 +10,7 @@ from sim.ros.callback_groups import ReentrantCallbackGroup
 from sim.ros.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from sim.ros.interfaces import message, service
 from sim.ros.node import Node
+from sim.trace.events import CallbackStarted, EntityAppeared
 from tests.support.simulation import Simulation, simulate
 
 Int32 = message("std_msgs", "Int32")
@@ -17,9 +21,8 @@ def make_everything(node: Node, order: list[str], topic: str) -> None:
     """One entity of each kind, made in the reverse of the order of service, each ready after one second."""
     name = node.get_name()
 
-    def said(what: str) -> object:
+    def said(what: str) -> None:
         order.append(f"{name} {what}")
-        return None
 
     def serve(_request: object, response: object) -> object:
         said("service")
@@ -79,16 +82,8 @@ def test_a_client_is_served_after_guards_and_before_services() -> None:
         rclpy.spin(node)
 
     trace = simulate(program, until=2.0)
-    kinds = [str(each.kind) for name in trace.order() for each in _appeared(trace, name)]
-    assert kinds == ["guard", "client", "service"]
-
-
-def _appeared(trace: object, name: str) -> list[object]:
-    from sim.trace.events import EntityAppeared
-    from tests.support.simulation import Trace
-
-    assert isinstance(trace, Trace)
-    return [each for each in trace.of(EntityAppeared) if name == (each.callback or each.name)]
+    kinds = {each.entity: str(each.kind) for each in trace.of(EntityAppeared)}
+    assert [kinds[each.entity] for each in trace.of(CallbackStarted)] == ["guard", "client", "service"]
 
 
 def test_messages_queued_on_two_topics_are_served_by_turns() -> None:
@@ -97,7 +92,7 @@ def test_messages_queued_on_two_topics_are_served_by_turns() -> None:
     def program(simulation: Simulation) -> None:
         node = Node("n")
         for topic in "ab":
-            node.create_subscription(Int32, topic, lambda _, topic=topic: order.append(topic), 10)
+            node.create_subscription(Int32, topic, _appending(order, topic), 10)
             publisher = node.create_publisher(Int32, topic, 10)
             for _ in range(5):
                 publisher.publish(Int32())
@@ -113,7 +108,12 @@ def test_what_becomes_ready_during_a_snapshot_waits_for_the_next() -> None:
     def program(simulation: Simulation) -> None:
         node = Node("n")
         node.create_timer(1.0, lambda: order.append("timer"))
-        first = node.create_guard_condition(lambda: (order.append("first"), simulation.sleep(1.0)))
+
+        def work() -> None:
+            order.append("first")
+            simulation.sleep(1.0)
+
+        first = node.create_guard_condition(work)
         second = node.create_guard_condition(lambda: order.append("second"))
         first.trigger()
         second.trigger()
@@ -130,7 +130,12 @@ def test_a_timer_that_is_no_longer_due_when_its_turn_comes_is_passed_over() -> N
         node = Node("n")
         executor = SingleThreadedExecutor()
         executor.add_node(node)
-        node.create_timer(1.0, lambda: (order.append("first"), second.reset()))
+
+        def put_off() -> None:
+            order.append("first")
+            second.reset()
+
+        node.create_timer(1.0, put_off)
         second = node.create_timer(1.0, lambda: order.append("second"))
         executor.spin()
 
@@ -143,8 +148,13 @@ def test_a_subscription_destroyed_before_its_turn_is_passed_over() -> None:
 
     def program(simulation: Simulation) -> None:
         node = Node("n")
-        node.create_subscription(Int32, "t", lambda _: (order.append("a"), node.destroy_subscription(b)), 10)
-        b = node.create_subscription(Int32, "t", lambda _: order.append("b"), 10)
+
+        def remove_other(_: object) -> None:
+            order.append("a")
+            node.destroy_subscription(other)
+
+        node.create_subscription(Int32, "t", remove_other, 10)
+        other = node.create_subscription(Int32, "t", lambda _: order.append("b"), 10)
         node.create_publisher(Int32, "t", 10).publish(Int32())
         rclpy.spin(node)
 
@@ -203,7 +213,7 @@ def test_a_message_is_taken_when_the_handler_runs_and_not_when_it_was_handed_out
         node.create_subscription(Int32, "t", lambda m: heard.append(m.data), 1, callback_group=group)
         publisher = node.create_publisher(Int32, "t", 10)
         for number, at in enumerate((1.0, 2.0, 3.0)):
-            simulation.at(at, lambda number=number: publisher.publish(Int32(data=number)))
+            simulation.at(at, partial(publisher.publish, Int32(data=number)))
         guard.trigger()
         executor = MultiThreadedExecutor(1)
         executor.add_node(node)
@@ -223,12 +233,10 @@ def test_entities_handed_out_wait_in_the_pool_once_each() -> None:
         group = ReentrantCallbackGroup()
         guards = [node.create_guard_condition(lambda: simulation.sleep(2.0), group) for _ in range(2)]
         for topic in "ab":
-            node.create_subscription(
-                Int32, topic, lambda _, topic=topic: order.append(topic), 10, callback_group=group
-            )
+            node.create_subscription(Int32, topic, _appending(order, topic), 10, callback_group=group)
         publishers = {topic: node.create_publisher(Int32, topic, 10) for topic in "ab"}
         for topic, at in (("a", 0.5), ("a", 0.6), ("a", 0.7), ("b", 1.0)):
-            simulation.at(at, lambda topic=topic: publishers[topic].publish(Int32()))
+            simulation.at(at, partial(publishers[topic].publish, Int32()))
         for guard in guards:
             guard.trigger()
         executor = MultiThreadedExecutor(2)
@@ -238,3 +246,7 @@ def test_entities_handed_out_wait_in_the_pool_once_each() -> None:
     simulate(program, until=3.0)
     assert order[:2] == ["a", "b"]
     assert sorted(order) == ["a", "a", "a", "b"]
+
+
+def _appending(to: list[str], text: str) -> Callable[[object], None]:
+    return lambda _: to.append(text)

@@ -51,7 +51,7 @@ def test_an_executor_that_spins_cannot_be_spun_by_a_second_thread(threads: int |
         executor = executor_for(Node("n"), threads)
         simulation.start(executor.spin)
         simulation.sleep(0.1)
-        with pytest.raises(RuntimeError, match="^Executor is already spinning$"):
+        with pytest.raises(RuntimeError, match=r"^Executor is already spinning$"):
             executor.spin()
 
     simulate(program)
@@ -62,7 +62,7 @@ def test_rclpy_spin_inside_a_callback_of_rclpy_spin_is_the_spin_twice_error() ->
         node = Node("n")
 
         def nest() -> None:
-            with pytest.raises(RuntimeError, match="^Executor is already spinning$"):
+            with pytest.raises(RuntimeError, match=r"^Executor is already spinning$"):
                 rclpy.spin_until_future_complete(node, Future())
             rclpy.shutdown()
 

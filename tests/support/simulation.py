@@ -1,4 +1,4 @@
-"""Runs a program on virtual time inside a test: a host of its own, a trace in a list, no thread left behind."""
+"""Runs a program on virtual time in a test: a host of its own, a trace in a list, no thread left."""
 
 import sys
 import threading
@@ -180,7 +180,7 @@ def simulate(program: Program, until: float = 60.0) -> Trace:
         simulation = Simulation(clock)
         clock.before_jump = simulation.host.explain_waits
         clock.call_at(ns(until), clock.stop)
-        with _installed(simulation.host):
+        with installed(simulation.host):
             try:
                 program(simulation)
             except KeyboardInterrupt:
@@ -221,7 +221,7 @@ def wind_up(clock: VirtualClock) -> None:
 
 
 @contextmanager
-def _installed(host: Host) -> Iterator[None]:
+def installed(host: Host) -> Iterator[None]:
     """Have the process run on ``host``, with nothing in it of what ran before, and put all back after."""
     before = hosts._host
     _forget_last_program()

@@ -1,0 +1,168 @@
+"""Services: requests, replies, and what goes wrong between them."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+import sim.ros as rclpy
+from sim.ros.interfaces import service
+from sim.ros.node import Node
+from sim.trace.events import MessageDropped, ServiceCalled, ServiceReplied
+from tests.support.simulation import Simulation, simulate
+
+SetBool = service("std_srvs", "SetBool")
+Trigger = service("std_srvs", "Trigger")
+
+
+def test_a_service_gets_a_copy_of_the_request_and_the_caller_a_copy_of_the_response() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        kept: list[object] = []
+
+        def serve(request: object, response: object) -> object:
+            assert request.data  # type: ignore[attr-defined]
+            response.message = "served"  # type: ignore[attr-defined]
+            kept.append(response)
+            return response
+
+        node.create_service(SetBool, "s", serve)
+        request = SetBool.Request(data=True)
+        future = node.create_client(SetBool, "s").call_async(request)
+        request.data = False
+        rclpy.spin_until_future_complete(node, future)
+        kept[0].message = "spoilt"  # type: ignore[attr-defined]
+        reply: Any = future.result()
+        assert reply.message == "served"
+
+    trace = simulate(program)
+    (call,), (reply,) = trace.of(ServiceCalled), trace.of(ServiceReplied)
+    assert call.call == reply.call
+    assert call.request == "std_srvs.srv.SetBool_Request(data=True)"
+    assert "message='served'" in reply.response
+
+
+def test_a_request_sent_before_the_server_exists_is_lost() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        future = node.create_client(SetBool, "s").call_async(SetBool.Request())
+        node.create_service(SetBool, "s", lambda _, response: response)
+        rclpy.spin_until_future_complete(node, future, timeout_sec=5.0)
+        assert not future.done()
+
+    simulate(program)
+
+
+def test_a_service_of_another_type_is_not_reached() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_service(Trigger, "s", lambda _, response: response)
+        client = node.create_client(SetBool, "s")
+        assert not client.service_is_ready()
+        future = client.call_async(SetBool.Request())
+        rclpy.spin_until_future_complete(node, future, timeout_sec=5.0)
+        assert not future.done()
+
+    simulate(program)
+
+
+def test_a_callback_that_raises_sends_no_reply() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def serve(_request: object, _response: object) -> object:
+            raise ValueError("broken")
+
+        node.create_service(SetBool, "s", serve)
+        future = node.create_client(SetBool, "s").call_async(SetBool.Request())
+        with pytest.raises(ValueError, match=r"^broken$"):
+            rclpy.spin(node)
+        rclpy.spin_until_future_complete(node, future, timeout_sec=5.0)
+        assert not future.done()
+
+    assert simulate(program).of(ServiceReplied) == []
+
+
+@pytest.mark.parametrize("wrong", [None, True, Trigger.Response(), SetBool.Request()])
+def test_a_callback_that_returns_no_response_of_the_type_is_a_type_error(wrong: object) -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_service(SetBool, "s", lambda *_: wrong)
+        node.create_client(SetBool, "s").call_async(SetBool.Request())
+        with pytest.raises(TypeError) as caught:
+            rclpy.spin(node)
+        assert str(caught.value) == f"Expected {SetBool.Response}, got {type(wrong)}"
+
+    assert simulate(program).of(ServiceReplied) == []
+
+
+def test_a_service_type_itself_cannot_be_made() -> None:
+    with pytest.raises(NotImplementedError):
+        SetBool()
+
+
+def test_a_service_keeps_ten_requests_and_answers_them_in_order() -> None:
+    answered: list[int] = []
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_service(SetBool, "s", lambda _, response: response)
+        client = node.create_client(SetBool, "s")
+        for number in range(12):
+            client.call_async(SetBool.Request()).add_done_callback(_appending(answered, number))
+        rclpy.spin(node)
+
+    trace = simulate(program, until=1.0)
+    assert len(trace.of(MessageDropped)) == 2
+    assert answered == list(range(2, 12))
+
+
+def test_replies_reach_the_futures_they_belong_to() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def serve(request: object, response: object) -> object:
+            response.success = request.data  # type: ignore[attr-defined]
+            return response
+
+        node.create_service(SetBool, "s", serve)
+        clients = [node.create_client(SetBool, "s") for _ in range(2)]
+        wanted = [True, False, False, True]
+        futures = [
+            clients[number % 2].call_async(SetBool.Request(data=data)) for number, data in enumerate(wanted)
+        ]
+        for future in futures:
+            rclpy.spin_until_future_complete(node, future)
+        replies: list[Any] = [future.result() for future in futures]
+        assert [reply.success for reply in replies] == wanted
+
+    simulate(program)
+
+
+def test_the_reply_to_a_destroyed_client_is_thrown_away() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_service(SetBool, "s", lambda _, response: response)
+        client = node.create_client(SetBool, "s")
+        future = client.call_async(SetBool.Request())
+        node.destroy_client(client)
+        rclpy.spin_until_future_complete(node, future, timeout_sec=1.0)
+        assert not future.done()
+
+    simulate(program)
+
+
+def test_a_destroyed_service_is_no_longer_offered() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        server = node.create_service(SetBool, "s", lambda _, response: response)
+        client = node.create_client(SetBool, "s")
+        assert client.service_is_ready()
+        assert node.destroy_service(server)
+        assert not client.service_is_ready()
+
+    simulate(program)
+
+
+def _appending(to: list[int], number: int) -> Callable[[object], None]:
+    return lambda _: to.append(number)
