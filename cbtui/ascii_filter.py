@@ -16,6 +16,16 @@ _SIGNS = dict(
     )
 )
 
+_BLOCKS = (
+    ("\u2500", "\u257f", "+"),
+    ("\u258a", "\u2590", "|"),
+    ("\u2595", "\u2595", "|"),
+    ("\u2580", "\u259f", "#"),
+    ("\u2800", "\u2800", " "),
+    ("\u2801", "\u28ff", "."),
+)
+"""What the characters from one to another become: lines, narrow and other blocks, braille."""
+
 
 class AsciiFilter(LineFilter):
     """Replaces every character beyond ASCII by the plainest one like it, column by column."""
@@ -36,11 +46,8 @@ def _plain(character: str) -> str:
         return character
     if character in _SIGNS:
         return _SIGNS[character]
-    if "\u2500" <= character <= "\u257f":
-        return "+"
-    if "\u2580" <= character <= "\u259f":
-        return "#"
-    if "\u2800" <= character <= "\u28ff":
-        return " " if character == "\u2800" else "."
+    for first, last, plain in _BLOCKS:
+        if first <= character <= last:
+            return plain
     base = normalize("NFKD", character)[0]
     return base if base.isascii() and cell_len(character) == 1 else "?" * cell_len(character)

@@ -1,7 +1,7 @@
 """A lesson on screen: its run on lanes, the moment in words, and guide, source, robot and log."""
 
 import asyncio
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, ClassVar, cast
 
 from textual import on
@@ -37,7 +37,7 @@ from sim.trace.events import AnyEvent
 if TYPE_CHECKING:
     from cbtui.app import CbtuiApp
 
-FRAMES_A_SECOND = 25
+FRAMES_A_SECOND = 20
 
 
 class LessonScreen(SizedScreen[None]):
@@ -100,10 +100,7 @@ class LessonScreen(SizedScreen[None]):
         yield Lanes()
         yield Tabs()
         with Container(id="panes"):
-            yield Guide(self._lesson.guide, id="guide")
-            yield CodeView(self._lesson.node_path, id="code")
-            yield ArenaMap(id="robot")
-            yield LogView(id="log")
+            yield from self._panes()
         yield DiagnosisLine()
         yield KeyBar(Scope.LESSON, self._charset)
 
@@ -112,10 +109,6 @@ class LessonScreen(SizedScreen[None]):
         lanes, robot = self.query_one(Lanes), self.query_one(ArenaMap)
         lanes.charset = robot.charset = self._charset
         lanes.service = self._lesson.service.name
-        robot.can_focus = True
-        for name in PANES:
-            self._widget(name).border_title = title_of(name)
-            self._widget(name).add_class("pane")
         self._show(self._pane)
         self._run.start()
         self.set_interval(1 / FRAMES_A_SECOND, self._draw_if_stale)
@@ -211,6 +204,18 @@ class LessonScreen(SizedScreen[None]):
 
     # panes
 
+    def _panes(self) -> Iterator[Widget]:
+        robot = ArenaMap(id="robot")
+        robot.can_focus = True
+        guide = Guide(self._lesson.guide, id="guide")
+        code = CodeView(self._lesson.node_path, id="code")
+        for pane in (guide, code, robot, LogView(id="log")):
+            assert pane.id is not None
+            pane.border_title = title_of(pane.id)
+            pane.add_class("pane")
+            yield pane
+        code.border_title = f"{title_of('code')} {self._lesson.node_path.name}"
+
     def _widget(self, pane: str) -> Widget:
         return self.query_one(f"#{pane}")
 
@@ -218,7 +223,8 @@ class LessonScreen(SizedScreen[None]):
         """Make a pane the current one."""
         self._pane = pane
         for name in PANES:
-            self._widget(name).set_class(name == pane, "-current")
+            self._widget(name).set_class(name == pane, "-current", update=False)
+        self.update_node_styles(animate=False)
         self.query_one(Tabs).current = pane
         if not self._widget(pane).has_focus:
             self._widget(pane).focus()

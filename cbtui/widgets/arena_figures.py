@@ -34,9 +34,10 @@ def figures(robot: RobotMoved, command: VelocityCommanded | None, width: int, ch
 def _entries(robot: RobotMoved, command: VelocityCommanded | None, charset: Charset) -> Sequence[_Figure]:
     degree = GLYPHS[charset].degree
     told = "nothing yet".ljust(22) if command is None else _velocity(command.linear, command.angular)
+    place = f"{_two_places(robot.x)} {_two_places(robot.y)} m"
     front = f"{robot.front:5.2f} m" if math.isfinite(robot.front) else "   free"
     return (
-        (f"pose {_two_places(robot.x)} {_two_places(robot.y)} m {math.degrees(robot.yaw):4.0f}{degree}", PLAIN),
+        (f"pose {place} {math.degrees(robot.yaw):4.0f}{degree}", PLAIN),
         (f"front {front}", PLAIN),
         (f"told {told}", PLAIN),
         ("motors on " if robot.motors else "motors OFF", PLAIN if robot.motors else WARN),

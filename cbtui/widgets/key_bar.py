@@ -40,11 +40,7 @@ class KeyBar(Painted):
 
     def rows(self, size: Size) -> Sequence[Sequence[Run]]:
         """Paint the keys."""
-        runs = [Run(" ", _LABEL)]
-        for entry in self._entries(size.width):
-            runs += [Run(entry.keys, _KEY), Run(f" {entry.label}{_GAP}", _LABEL)]
-        taken = sum(len(run.text) for run in runs)
-        return [[*runs, Run(" " * (size.width - taken), _LABEL)]]
+        return [key_row(self._entries(size.width), size.width)]
 
     async def on_click(self, event: Click) -> None:
         """Do what the key under the pointer does; of several keys, the one that is nearest."""
@@ -67,6 +63,19 @@ class KeyBar(Painted):
 def entries(actions: Iterable[Action], charset: Charset) -> list[Entry]:
     """Return what the bar says of some actions."""
     return [Entry(signs_of(group, charset), group[0].label, group) for group in together(actions, "label")]
+
+
+def key_row(shown: Iterable[Entry], width: int) -> list[Run]:
+    """Return the line of the entries in exactly ``width`` columns."""
+    runs: list[Run] = []
+    for entry in shown:
+        runs += [
+            Run(" " if not runs else _GAP, _LABEL),
+            Run(entry.keys, _KEY),
+            Run(f" {entry.label}", _LABEL),
+        ]
+    taken = sum(len(run.text) for run in runs)
+    return [*runs, Run(" " * (width - taken), _LABEL)]
 
 
 def choose(every: list[Entry], width: int) -> list[Entry]:

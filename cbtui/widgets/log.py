@@ -6,11 +6,11 @@ from rich.cells import cell_len
 from rich.segment import Segment
 from rich.style import Style
 from textual.geometry import Size
-from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
-from cbtui.theme import Charset, Ink, Role, style_of
+from cbtui.theme import Charset, Ink, Role
 from cbtui.widgets.cells import fit, visible
+from cbtui.widgets.inked import Inked
 from cbtui.widgets.lanes.bars import short_thread
 from sim.trace.events import Logged, Printed, Severity
 from sim.trace.model import Nanoseconds
@@ -32,12 +32,10 @@ _STYLES = {
 }
 
 
-class LogView(ScrollView):
+class LogView(Inked):
     """The log up to a moment. It stays at the end unless the person scrolls away from there."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {*_STYLES.values()}
-
-    ALLOW_SELECT = False
 
     def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
         super().__init__(id=id)
@@ -74,13 +72,13 @@ class LogView(ScrollView):
         place = self.scroll_offset.y + y
         width = self.scrollable_content_region.width
         if place >= self._count:
-            return Strip.blank(width, self.rich_style)
+            return Strip.blank(width, self.in_class(""))
         event = self._timeline.logs[place]
         columns = self._columns(event) if width >= COLUMNS_FROM else []
         room = width - sum(segment.cell_length for segment in columns)
         text = Strip([Segment(line_of(event), self._text_style(event))])
         left = self.scroll_offset.x
-        shown = text.crop(left, left + room).adjust_cell_length(room, self.rich_style)
+        shown = text.crop(left, left + room).adjust_cell_length(room, self.in_class(""))
         return Strip([*shown, *columns], width)
 
     def _measure(self) -> None:
@@ -92,14 +90,18 @@ class LogView(ScrollView):
     def _fit_size(self) -> None:
         columns = _COLUMNS if self.scrollable_content_region.width >= COLUMNS_FROM else 0
         follows = self._follows
-        self.virtual_size = Size(self._widest + columns, self._count)
+        size = Size(self._widest + columns, self._count)
+        if size != self.virtual_size:
+            # Assigning it would lay out the whole screen anew for every line.
+            self.set_reactive(LogView.virtual_size, size)
+            self._scroll_update(size)
         if follows:
             self.scroll_to(y=self.max_scroll_y, animate=False, immediate=True, force=True)
             self._follows = True
 
     def _columns(self, event: Logged | Printed) -> list[Segment]:
         if isinstance(event, Printed):
-            return [Segment(" " * _COLUMNS, self.rich_style)]
+            return [Segment(" " * _COLUMNS, self.in_class(""))]
         thread = self._timeline.threads.get(event.thread)
         entity = self._timeline.entities.get(event.entity)
         name = short_thread(thread.name) if thread else ""
@@ -107,17 +109,14 @@ class LogView(ScrollView):
         number = list(self._timeline.groups).index(group.id) if group else -1
         letter = group.letter if group else ""
         return [
-            Segment(f" {fit(name, _THREAD, Charset.BRAILLE)}", self._style(Ink(Role.FAINT))),
-            Segment(fit(letter, _GROUP, Charset.BRAILLE), self._style(Ink(Role.LETTER, number))),
+            Segment(f" {fit(name, _THREAD, Charset.BRAILLE)}", self.in_ink(Ink(Role.FAINT))),
+            Segment(fit(letter, _GROUP, Charset.BRAILLE), self.in_ink(Ink(Role.LETTER, number))),
         ]
 
     def _text_style(self, event: Logged | Printed) -> Style:
         if isinstance(event, Printed):
-            return self.get_component_rich_style("log--error" if event.error else "log--info")
-        return self.get_component_rich_style(_STYLES[event.severity])
-
-    def _style(self, ink: Ink) -> Style:
-        return style_of(ink, self.app.current_theme.dark, self.background_colors[1].hex6.lower())
+            return self.in_class("log--error" if event.error else "log--info")
+        return self.in_class(_STYLES[event.severity])
 
 
 def line_of(event: Logged | Printed) -> str:

@@ -1,7 +1,7 @@
 from collections import Counter
 
 import pytest
-from textual.screen import Screen
+from textual.dom import DOMNode
 
 from cbtui.actions import ACTIONS, Action, Scope, actions_of, bindings_of, method_of, signs_of, together
 from cbtui.app import CbtuiApp
@@ -11,7 +11,7 @@ from cbtui.screens.menu import MenuScreen
 from cbtui.screens.threads import ThreadsScreen
 from cbtui.theme import Charset
 
-HOMES: dict[Scope, type[CbtuiApp] | type[Screen[object]]] = {
+HOMES: dict[Scope, type[DOMNode]] = {
     Scope.EVERYWHERE: CbtuiApp,
     Scope.MENU: MenuScreen,
     Scope.LESSON: LessonScreen,

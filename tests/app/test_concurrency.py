@@ -17,9 +17,9 @@ def timeline_of(events: list[AnyEvent]) -> Timeline:
 
 def two_threads() -> tuple[Run, int, int, int]:
     run = Run()
-    threads = [run.thread(f"ThreadPoolExecutor-0_{number}") for number in range(2)]
+    first, second = (run.thread(f"ThreadPoolExecutor-0_{number}") for number in range(2))
     timer = run.timer(run.reentrant(run.node("/n")), "tick", 1.0)
-    return run, timer, *threads
+    return run, timer, first, second
 
 
 def test_one_thread_is_needed_once_at_a_time() -> None:

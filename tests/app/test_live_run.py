@@ -1,6 +1,6 @@
 import pytest
 
-from cbtui.live_run import LiveRun, State
+from cbtui.live_run import Deliver, Ended, LiveRun, State
 from sim.engine.commands import CallService, Pause, ResetWorld, Resume, SetSpeed
 from sim.engine.setup import RunSetup, ServiceChoice
 from sim.trace.events import AnyEvent, RunEnded, RunStarted
@@ -19,14 +19,18 @@ def engines() -> FakeEngines:
 @pytest.fixture
 def run(engines: FakeEngines) -> LiveRun:
     def deliver(events: list[AnyEvent]) -> None:
-        run.take(events)
+        live.take(events)
 
     def ended(loss: str | None) -> None:
-        run.over(loss)
+        live.over(loss)
 
-    run = LiveRun(SETUP, engines, deliver, ended)
-    run.start()
-    return run
+    live = LiveRun(SETUP, engines, deliver, ended)
+    live.start()
+    return live
+
+
+def state_of(run: LiveRun) -> State:
+    return run.state
 
 
 @pytest.fixture
@@ -35,14 +39,14 @@ def session(engines: FakeEngines, run: LiveRun) -> FakeSession:
 
 
 def test_a_run_starts_with_its_first_event(run: LiveRun, session: FakeSession) -> None:
-    assert run.state is State.STARTING
+    assert state_of(run) is State.STARTING
     session.play(0)
-    assert run.state is State.LIVE
+    assert state_of(run) is State.LIVE
 
 
 def test_a_run_ends_with_its_last_event_even_before_its_process(run: LiveRun, session: FakeSession) -> None:
     session.play(5)
-    assert run.state is State.ENDED
+    assert state_of(run) is State.ENDED
     assert not run.alive
 
 
@@ -51,7 +55,7 @@ def test_a_run_whose_engine_is_gone_is_lost_whatever_it_told_before(
 ) -> None:
     session.play(0)
     session.end("the engine was killed by signal 9")
-    assert run.state is State.LOST
+    assert state_of(run) is State.LOST
     assert run.loss == "the engine was killed by signal 9"
 
 
@@ -60,8 +64,8 @@ def test_a_run_that_cannot_be_started_is_lost() -> None:
         def start(self) -> None:
             raise OSError(12, "Cannot allocate memory")
 
-    def open_session(*arguments: object) -> FakeSession:
-        return NoProcess(*arguments, [], 0)  # type: ignore[arg-type]
+    def open_session(setup: RunSetup, deliver: Deliver, ended: Ended) -> FakeSession:
+        return NoProcess(setup, deliver, ended, [], 0)
 
     run = LiveRun(SETUP, open_session, lambda _: None, lambda _: None)
     run.start()
@@ -72,9 +76,9 @@ def test_a_run_that_cannot_be_started_is_lost() -> None:
 def test_pause_and_resume_reach_the_engine(run: LiveRun, session: FakeSession) -> None:
     session.play(0)
     run.pause()
-    assert run.state is State.PAUSED
+    assert state_of(run) is State.PAUSED
     run.resume()
-    assert run.state is State.LIVE
+    assert state_of(run) is State.LIVE
     assert session.commands == [Pause(), Resume()]
 
 

@@ -4,8 +4,8 @@ from collections.abc import Iterator
 from enum import StrEnum
 from typing import NamedTuple
 
-from pygments.lexers.python import PythonLexer  # type: ignore[import-untyped]
-from pygments.token import Token, _TokenType  # type: ignore[import-untyped]
+from pygments.lexers.python import PythonLexer
+from pygments.token import Token, _TokenType
 
 
 class Kind(StrEnum):
@@ -60,8 +60,9 @@ def _tokens(source: str) -> Iterator[tuple[Kind, str]]:
 
 
 def _kind_of(token: _TokenType) -> Kind:
-    while token is not Token:
-        if token in _KINDS:
-            return _KINDS[token]
-        token = token.parent
+    kind: _TokenType | None = token
+    while kind is not None and kind is not Token:
+        if kind in _KINDS:
+            return _KINDS[kind]
+        kind = kind.parent
     return Kind.PLAIN

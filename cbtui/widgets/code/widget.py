@@ -1,18 +1,18 @@
 """The source on screen: scrolls, follows what runs, and draws only the lines in view."""
 
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import ClassVar
 
 from rich.segment import Segment
-from rich.style import Style
 from textual.geometry import Size
-from textual.scroll_view import ScrollView
 from textual.strip import Strip
 
-from cbtui.theme import GLYPHS, Charset, Ink, Role, style_of
+from cbtui.theme import GLYPHS, Charset, Ink, Role
 from cbtui.widgets.cells import fit, visible
 from cbtui.widgets.code.highlight import Kind, Word, highlight
 from cbtui.widgets.code.marks import Doing, Marked, Marks
+from cbtui.widgets.inked import Inked
 from sim.trace.events import Reason
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
@@ -27,12 +27,10 @@ _EDGES = {
 }
 
 
-class CodeView(ScrollView):
+class CodeView(Inked):
     """A node's source; beside each callback stands which thread runs it, or that it waits and why."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {kind.value for kind in Kind}
-
-    ALLOW_SELECT = False
 
     def __init__(self, path: Path, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
         super().__init__(id=id)
@@ -49,22 +47,23 @@ class CodeView(ScrollView):
         marked = self._marks.at(timeline, now)
         if marked == self._marked:
             return
-        self._marked = marked
+        before, self._marked = self._marked, marked
+        for line, count in changed_lines(before, marked):
+            self.refresh_lines(line - 1, count)
         self._follow()
-        self.refresh()
 
     def render_line(self, y: int) -> Strip:
         """Return one line of the view."""
         number = self.scroll_offset.y + y
         width = self.scrollable_content_region.width
         if number >= len(self._lines):
-            return Strip.blank(width, self.rich_style)
+            return Strip.blank(width, self.in_class(""))
         marked = self._marked_at(number + 1)
         code = Strip([self._segment(word) for word in self._lines[number]])
         left = self.scroll_offset.x
         line = Strip([*self._gutter(number + 1, marked), *code.crop(left, left + width - _GUTTER)])
         if marked is None or marked.first_line != number + 1 or marked.doing is Doing.IDLE:
-            return line.adjust_cell_length(width, self.rich_style)
+            return line.adjust_cell_length(width, self.in_class(""))
         return self._with_mark(line, marked, width)
 
     def _follow(self) -> None:
@@ -89,14 +88,14 @@ class CodeView(ScrollView):
         return inside[-1] if inside else None
 
     def _gutter(self, line: int, marked: Marked | None) -> list[Segment]:
-        number = Segment(f"{line:>4} ", self._style(Ink(Role.FAINT)))
+        number = Segment(f"{line:>4} ", self.in_ink(Ink(Role.FAINT)))
         if marked is None:
-            return [number, Segment("  ", self.rich_style)]
+            return [number, Segment("  ", self.in_class(""))]
         if marked.first_line == line:
             letter = fit(marked.letter, _GUTTER - 5, Charset.BRAILLE)
-            return [number, Segment(letter, self._style(Ink(Role.LETTER, marked.number)))]
+            return [number, Segment(letter, self.in_ink(Ink(Role.LETTER, marked.number)))]
         glyph, role = _EDGES.get(marked.doing, (" ", Role.FAINT))
-        return [number, Segment(f"{glyph} ", self._style(Ink(role, marked.number)))]
+        return [number, Segment(f"{glyph} ", self.in_ink(Ink(role, marked.number)))]
 
     def _with_mark(self, line: Strip, marked: Marked, width: int) -> Strip:
         """Put what a callback does at the right, in as many words as the code leaves room for."""
@@ -104,15 +103,25 @@ class CodeView(ScrollView):
         texts = [f" {text} " for text in marked.texts]
         text = next((text for text in texts if len(text) <= room), texts[-1])
         text = fit(text, min(len(text), max(0, width - _LEAST_CODE)), Charset.BRAILLE)
-        mark = Segment(text, self._style(Ink(_INKS[marked.doing], marked.number)))
-        return Strip([*line.adjust_cell_length(width - len(text), self.rich_style), mark], width)
+        mark = Segment(text, self.in_ink(Ink(_INKS[marked.doing], marked.number)))
+        return Strip([*line.adjust_cell_length(width - len(text), self.in_class("")), mark], width)
 
     def _segment(self, word: Word) -> Segment:
-        style = self.get_component_rich_style(word.kind.value)
+        style = self.in_class(word.kind.value)
         return Segment(visible(word.text, Charset.BRAILLE), style)
 
-    def _style(self, ink: Ink) -> Style:
-        return style_of(ink, self.app.current_theme.dark, self.background_colors[1].hex6.lower())
+
+def changed_lines(before: Sequence[Marked], after: Sequence[Marked]) -> Iterator[tuple[int, int]]:
+    """Yield the first line and the number of lines of each stretch of source that looks different."""
+    known = {marked.first_line: marked for marked in before}
+    for marked in after:
+        old = known.pop(marked.first_line, None)
+        if old == marked:
+            continue
+        alike = old is not None and old.doing is marked.doing and old.number == marked.number
+        yield marked.first_line, 1 if alike else marked.last_line - marked.first_line + 1
+    for gone in known.values():
+        yield gone.first_line, gone.last_line - gone.first_line + 1
 
 
 def _length(line: list[Word]) -> int:

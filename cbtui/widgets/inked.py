@@ -1,0 +1,37 @@
+"""A scrolling view whose lines are drawn in inks, one by one as they come into view."""
+
+from rich.style import Style
+from textual.scroll_view import ScrollView
+
+from cbtui.theme import Ink, style_of
+
+
+class Inked(ScrollView):
+    """Keeps the styles that its lines are drawn in until the theme changes."""
+
+    ALLOW_SELECT = False
+
+    def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
+        super().__init__(id=id)
+        self._inks: dict[Ink, Style] = {}
+        self._classes_drawn: dict[str, Style] = {}
+
+    def notify_style_update(self) -> None:
+        """Forget the styles of the theme before."""
+        super().notify_style_update()
+        self._inks.clear()
+        self._classes_drawn.clear()
+
+    def in_ink(self, ink: Ink) -> Style:
+        """Return the style of an ink on the view's background."""
+        if ink not in self._inks:
+            ground = self.background_colors[1].hex6.lower()
+            self._inks[ink] = style_of(ink, self.app.current_theme.dark, ground)
+        return self._inks[ink]
+
+    def in_class(self, component: str) -> Style:
+        """Return the style of a component class; "" is the view's own."""
+        if component not in self._classes_drawn:
+            style = self.get_component_rich_style(component) if component else self.rich_style
+            self._classes_drawn[component] = style
+        return self._classes_drawn[component]
