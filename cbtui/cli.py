@@ -7,6 +7,7 @@ import argparse
 import math
 import sys
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
 if TYPE_CHECKING:
@@ -27,7 +28,10 @@ class _Parser(argparse.ArgumentParser):
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code: 0 well, 1 the run failed, 2 the command was wrong."""
-    options = _parser().parse_args(argv)
+    words = list(sys.argv[1:] if argv is None else argv)
+    split = words.index("--") if "--" in words else len(words)
+    options = _parser().parse_args(words[:split])
+    options.arguments = words[split + 1 :]
     action: Callable[[argparse.Namespace], int] = options.action
     return action(options)
 
@@ -53,8 +57,9 @@ def _parser() -> argparse.ArgumentParser:
 
     running = commands.add_parser(
         "run",
-        help="run a lesson without the console",
-        description="Run a lesson headless: its log goes to stderr, a summary to stdout.",
+        help="run a lesson, or a file of your own, without the console",
+        usage="%(prog)s [options] LESSON|FILE.py [-- ARGUMENTS of the file]",
+        description="Run a lesson or a file headless: its log goes to stderr, a summary to stdout.",
     )
     _add_run_options(running)
     running.set_defaults(action=_run)
@@ -68,7 +73,7 @@ def _add_console_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_run_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("lesson", metavar="LESSON", help="a lesson's id, see cbtui list")
+    parser.add_argument("target", metavar="LESSON|FILE.py", help="a lesson's id, see cbtui list, or a file")
     parser.add_argument(
         "--for",
         dest="seconds",
@@ -78,7 +83,7 @@ def _add_run_options(parser: argparse.ArgumentParser) -> None:
         help="how long the run lasts in its own time (%(default)g)",
     )
     parser.add_argument(
-        "--threads", metavar="N", type=_threads, help="number of threads of the lesson's executor"
+        "--threads", metavar="N", type=_threads, help="number of threads of the executor, instead of its own"
     )
     parser.add_argument(
         "--call",
@@ -87,13 +92,13 @@ def _add_run_options(parser: argparse.ArgumentParser) -> None:
         type=_moment,
         action="append",
         default=[],
-        help="call the lesson's SetBool service at that time; may be given again",
+        help="call the SetBool service at that time; may be given again",
     )
     parser.add_argument(
         "--call-data", choices=("true", "false"), default="true", help="what the calls send (%(default)s)"
     )
     parser.add_argument(
-        "--clock", choices=("virtual", "real"), default="virtual", help="which time it runs on (%(default)s)"
+        "--clock", choices=("virtual", "real"), help="which time it runs on (virtual; a file: real)"
     )
     parser.add_argument(
         "--speed",
@@ -197,21 +202,52 @@ def _open_console(options: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    lesson = _lesson(options.lesson)
+    is_file = _is_file_name(options.target)
+    clock = options.clock or ("real" if is_file else "virtual")
+    _check_run(options, clock, is_file=is_file)
+    path = _file(options.target) if is_file else None
+    lesson = None if is_file else _lesson(options.target)
+
+    import msgspec
+
+    from cbtui.headless import run_headless
+    from cbtui.lesson_setup import setup_for, setup_for_file
+
+    speed = None if options.speed == math.inf else options.speed
+    if lesson is not None:
+        program = setup_for(lesson, threads=options.threads, speed=speed)
+    else:
+        assert path is not None
+        program = setup_for_file(path, options.arguments, threads=options.threads, speed=speed)
+    return run_headless(
+        msgspec.structs.replace(program, clock=clock),
+        seconds=options.seconds,
+        calls=options.calls,
+        call_data=options.call_data == "true",
+        events_path=options.events,
+    )
+
+
+def _check_run(options: argparse.Namespace, clock: str, *, is_file: bool) -> None:
+    """Refuse what does not fit together."""
     late = [call for call in options.calls if call >= options.seconds]
     if late:
         _refuse(f"a call at {late[0]:g} s comes when the run of {options.seconds:g} s is over; see --for")
-    if options.clock == "real" and options.speed != math.inf:
-        _refuse("--speed needs the virtual clock; leave it out with --clock real")
-    from cbtui.headless import run_headless
+    if clock == "real" and options.speed != math.inf:
+        _refuse("--speed needs the virtual clock; leave it out, or add --clock virtual")
+    if options.arguments and not is_file:
+        _refuse("a lesson has its own arguments; leave out what stands behind --")
 
-    return run_headless(
-        lesson,
-        seconds=options.seconds,
-        threads=options.threads,
-        calls=options.calls,
-        call_data=options.call_data == "true",
-        clock=options.clock,
-        speed=None if options.speed == math.inf else options.speed,
-        events_path=options.events,
-    )
+
+def _is_file_name(target: str) -> bool:
+    return target.endswith(".py") or "/" in target
+
+
+def _file(name: str) -> Path:
+    """The program file of that name; one that is not there ends the program with one line and 2."""
+    path = Path(name)
+    if path.is_dir():
+        _refuse(f"{name} is a folder; name the file in it that is to run")
+    if not path.is_file():
+        _refuse(f"there is no file {name}; give a Python file, or a lesson of cbtui list")
+    return path

@@ -1,4 +1,4 @@
-"""Runs a lesson without the console: its log to stderr, its summary to stdout, its events to a file."""
+"""Runs a program without the console: its log to stderr, its summary to stdout, its events to a file."""
 
 import sys
 from collections.abc import Iterator, Sequence
@@ -9,11 +9,9 @@ from typing import BinaryIO, TypeAlias
 
 import msgspec
 
-from cbtui.lesson_setup import setup_for
 from cbtui.session import Session
 from cbtui.theme import Charset
 from cbtui.widgets.cells import visible
-from lessons.lesson import Lesson
 from sim.engine.commands import Stop
 from sim.engine.setup import RunSetup, TimedCall
 from sim.trace.events import AnyEvent, Logged, Notice, Printed, RunStarted
@@ -30,20 +28,14 @@ News: TypeAlias = "list[AnyEvent] | str | None"
 
 
 def run_headless(
-    lesson: Lesson,
-    *,
-    seconds: float,
-    threads: int | None,
-    calls: Sequence[float],
-    call_data: bool,
-    clock: str,
-    speed: float | None,
-    events_path: str | None,
+    program: RunSetup, *, seconds: float, calls: Sequence[float], call_data: bool, events_path: str | None
 ) -> int:
-    """Run a lesson to its end; returns the exit code: 0 well, 1 it failed, 2 the events file cannot be."""
+    """Run a program to its end; returns the exit code: 0 well, 1 it failed, 2 the events file cannot be.
+
+    ``seconds`` is how long the run lasts in its own time, ``calls`` when its SetBool service is called.
+    """
     setup = msgspec.structs.replace(
-        setup_for(lesson, threads=threads, speed=speed),
-        clock=clock,
+        program,
         until=round(seconds * _SECOND),
         calls=tuple(TimedCall(round(at * _SECOND), call_data) for at in sorted(calls)),
     )

@@ -1,4 +1,7 @@
-"""From a lesson to the set-up of a run of it."""
+"""From a lesson, or a learner's own file, to the set-up of a run of it."""
+
+from collections.abc import Sequence
+from pathlib import Path
 
 from lessons.lesson import Lesson
 from sim.engine.setup import RunSetup, ServiceChoice
@@ -15,6 +18,20 @@ def setup_for(lesson: Lesson, *, threads: int | None = None, speed: float | None
         node_path=str(lesson.node_path),
         arguments=tuple(lesson.arguments_with(threads)),
         service=ServiceChoice(lesson.service.name, lesson.service.type),
+        speed=speed,
+        threads=threads,
+    )
+
+
+def setup_for_file(
+    path: Path, arguments: Sequence[str] = (), *, threads: int | None = None, speed: float | None = 1.0
+) -> RunSetup:
+    """Return what an engine needs to run a program file, on wall time as it would run elsewhere."""
+    return RunSetup(
+        title=path.name,
+        node_path=str(path.resolve()),
+        arguments=tuple(arguments),
+        clock="real",
         speed=speed,
         threads=threads,
     )

@@ -84,8 +84,8 @@ class Engine:
             self._clock.call_at(self._setup.until, self._time_is_up)
 
     def _call_service(self, data: bool) -> None:
-        if self._setup.service is not None:
-            self._requests.set_bool(self._setup.service.name, data)
+        service = self._setup.service
+        self._requests.set_bool(None if service is None else service.name, data)
 
     def _time_is_up(self) -> None:
         self._finish_run("its time was up", failed=False)

@@ -1,5 +1,6 @@
 """Runs a learner's file as ``python FILE ARGS`` would, and tells in one sentence how it ended."""
 
+import ast
 import runpy
 import sys
 import threading
@@ -20,12 +21,17 @@ class Outcome:
 
 
 def run_program(path: str, arguments: tuple[str, ...]) -> Outcome:
-    """Run the file in this thread, and wait for the threads that it leaves."""
+    """Run the file in this thread, and wait for the threads that it leaves.
+
+    A file that defines ``main`` and does nothing with it, as one for an entry point may, has it called.
+    """
     sys.argv = [path, *arguments]
     warnings.formatwarning = _as_short_warning
     sys.path.insert(0, str(Path(path).parent))
     try:
-        runpy.run_path(path, run_name="__main__")
+        names = runpy.run_path(path, run_name="__main__")
+        if callable(names.get("main")) and not _starts_itself(Path(path)):
+            names["main"]()
         _join_left_threads()
     except SystemExit as exit_:
         return _exited(exit_)
@@ -35,6 +41,17 @@ def run_program(path: str, arguments: tuple[str, ...]) -> Outcome:
         _print_traceback(error, path)
         return Outcome(_failure(error, path), failed=True)
     return Outcome("the program returned", failed=False)
+
+
+def _starts_itself(path: Path) -> bool:
+    """Whether the file does more at its top level than to import, define and assign."""
+    passive = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Assign)
+    body = ast.parse(path.read_bytes()).body
+    return any(not isinstance(each, (*passive, ast.AnnAssign)) and not _is_text(each) for each in body)
+
+
+def _is_text(statement: ast.stmt) -> bool:
+    return isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
 
 
 def _as_short_warning(

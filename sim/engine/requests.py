@@ -16,10 +16,21 @@ class Requests:
         self._host = host
         self._record = record
 
-    def set_bool(self, name: str, data: bool) -> None:
-        """Call a SetBool service; a notice tells when nobody offers it."""
+    def set_bool(self, name: str | None, data: bool) -> None:
+        """Call a SetBool service, the program's first for None; a notice tells when nobody offers it."""
         srv_type = service("std_srvs", "SetBool")
+        if name is None:
+            name = self._first_offered(srv_type)
+        if name is None:
+            text = "the program offers no SetBool service yet, so the call is lost"
+            self._record(Notice(self._host.clock.now(), Severity.WARN, text))
+            return
         self._send(name, srv_type, srv_type.Request(data=data), f"call {name} {str(data).lower()}")
+
+    def _first_offered(self, srv_type: Any) -> str | None:
+        with self._host.lock:
+            offered = self._host.network.services(srv_type)
+        return next((each.name for each in offered if each.node.context.probe.visible), None)
 
     def reset_world(self) -> None:
         """Call ``/reset_world``."""

@@ -22,7 +22,8 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
 
     ``speed`` is virtual seconds per real second, None for as fast as it can; the real clock ignores it.
     ``until`` is nanoseconds of run time after which the run ends, None for no end. ``threads`` replaces
-    the number of threads of the program's executor, None leaves the program's own.
+    the number of threads of the program's executor, None leaves the program's own. ``service`` None means
+    the program's first SetBool service.
     """
 
     title: str

@@ -44,6 +44,10 @@ class Network:
         """The subscriptions to a topic."""
         return tuple(self._subscriptions.get(topic, ()))
 
+    def services(self, srv_type: type) -> tuple[Service, ...]:
+        """The services of a type, in the order in which their names came up."""
+        return tuple(each for them in self._services.values() for each in them if each.srv_type is srv_type)
+
     def has_service(self, name: str, srv_type: type) -> bool:
         """Whether somebody offers a service of that name and type."""
         return self._server(name, srv_type) is not None

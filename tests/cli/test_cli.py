@@ -46,6 +46,9 @@ def test_list_names_every_lesson_in_order(capsys: pytest.CaptureFixture[str]) ->
         (["run", "single-thread", "--clock", "real", "--speed", "2"], "--speed needs the virtual clock"),
         (["run", "single-thread", "--call-data", "perhaps"], "invalid choice: 'perhaps'"),
         (["run", "single-thread", "--events", "/no/such/folder/x.jsonl"], "cannot write events"),
+        (["run", "nothing_here.py"], "there is no file nothing_here.py"),
+        (["run", "./"], "is a folder; name the file in it that is to run"),
+        (["run", "single-thread", "--", "-x"], "a lesson has its own arguments"),
         (["run"], "LESSON"),
         (["fly"], "invalid choice: 'fly'"),
         (["open", "single-thread"], "the console needs a terminal"),
@@ -86,6 +89,47 @@ def test_events_are_one_json_object_a_line_and_the_same_each_time(tmp_path: Path
     assert "TURNING" in reply["response"]
     robot = next(line for line in lines if line["event"] == "robot")
     assert {"x", "y", "yaw", "front"} <= robot.keys()
+
+
+SERVER = """
+import sys
+import rclpy
+from rclpy.node import Node
+from std_srvs.srv import SetBool
+
+
+class Server(Node):
+    def __init__(self):
+        super().__init__("server")
+        self.create_service(SetBool, "switch", self.answer)
+
+    def answer(self, request, response):
+        self.get_logger().info(f"{sys.argv[1]} {request.data}")
+        return response
+
+
+def main():
+    rclpy.init()
+    rclpy.spin(Server())
+"""
+
+
+@pytest.mark.parametrize("ending", ["", "\n\nif __name__ == '__main__':\n    main()\n"])
+def test_a_file_runs_with_its_arguments_and_its_own_service_is_called(tmp_path: Path, ending: str) -> None:
+    (tmp_path / "server.py").write_text(SERVER + ending)
+    file = str(tmp_path / "server.py")
+    done = _cbtui("run", file, "--clock", "virtual", "--for", "2", "--call", "1", "--", "hello")
+    assert done.returncode == 0
+    assert done.stderr == "[INFO] [1700000001.000000000] [server]: hello True\n"
+    assert "/switch  1 call" in done.stdout
+
+
+def test_a_file_runs_on_the_real_clock_unless_told_otherwise(tmp_path: Path) -> None:
+    (tmp_path / "one.py").write_text("print('one')")
+    done = _cbtui("run", str(tmp_path / "one.py"), "--for", "5")
+    assert done.returncode == 0
+    assert done.stdout.startswith("one\none.py, ")
+    assert "of real time: the program returned" in done.stdout
 
 
 def test_a_program_that_fails_gives_exit_code_1_and_one_sentence_after_its_traceback(
