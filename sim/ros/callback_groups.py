@@ -10,6 +10,7 @@ from sim.trace.events import GroupKind
 
 if TYPE_CHECKING:
     from sim.ros.entity import Entity
+    from sim.ros.node import Node
 
 
 class CallbackGroup(ABC):
@@ -25,10 +26,19 @@ class CallbackGroup(ABC):
     def __init__(self) -> None:
         super().__init__()
         self.entities: dict[weakref.ref[Entity], None] = {}
+        self._nodes: list[weakref.ref[Node]] = []
 
     def add_entity(self, entity: Entity) -> None:
         """Make an entity a member."""
         self.entities[weakref.ref(entity)] = None
+        if all(node() is not entity.node for node in self._nodes):
+            self._nodes.append(weakref.ref(entity.node))
+
+    def other_nodes(self, than: Node) -> list[Node]:
+        """The other nodes that have members: a group is seldom shared, and then by few."""
+        if len(self._nodes) == 1:
+            return []
+        return [node for each in self._nodes if (node := each()) is not None and node is not than]
 
     def has_entity(self, entity: Entity) -> bool:
         """Whether an entity is a member."""

@@ -311,7 +311,8 @@ class Executor:
             try:
                 task()
             finally:
-                self._leave()
+                with self._lock:
+                    self._leave()
             error = task.exception() if task.done() else None
             if error is not None:
                 raise error
@@ -328,7 +329,8 @@ class Executor:
                 self._running.remove(entity)
                 self._probe.callback_suspended(entity, outer)
             task._arm(awaited)
-            self._leave()
+            with self._lock:
+                self._leave()
             return
         del self._coroutines[task]
         error = task.exception()
@@ -349,25 +351,24 @@ class Executor:
             self._probe.callback_ended(entity, outer)
             entity.callback_group.ending_execution(entity)
             self._wake_sharers(entity)
-        self._leave()
+            self._leave()
 
     def _wake_sharers(self, entity: Entity) -> None:
-        """The group is free: wake this executor, and any other that serves members of the group."""
-        self._look_again()
-        for reference in entity.callback_group.entities:
-            member = reference()
-            if member is not None and member.pending:
-                executor = member.node.executor
-                if executor is not None and executor is not self:
-                    executor.wake()
+        """The group is free: wake this executor if it waits, and any other that serves its members."""
+        if self._waiting or self._foreign_awaits:
+            self._look_again()
+        for node in entity.callback_group.other_nodes(entity.node):
+            executor = node.executor
+            if executor is not None and executor is not self:
+                executor.wake()
 
     def _leave(self) -> None:
-        with self._lock:
-            self._at_work -= 1
-            if self._at_work == 0:
-                signals, self._idle_signals = self._idle_signals, []
-                for signal in signals:
-                    signal.set()
+        """A thread is done with its work. With the lock held."""
+        self._at_work -= 1
+        if self._at_work == 0 and self._idle_signals:
+            signals, self._idle_signals = self._idle_signals, []
+            for signal in signals:
+                signal.set()
 
     def _wait_for_the_running(self, nanoseconds: int) -> bool:
         with self._lock:
