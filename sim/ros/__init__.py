@@ -11,6 +11,8 @@ from typing import Any
 from sim.ros.context import Context
 from sim.ros.executors import Executor, SingleThreadedExecutor
 from sim.ros.node import Node
+from sim.ros.parameter import Parameter
+from sim.ros.signals import SignalHandlerOptions, install_signal_handlers
 from sim.ros.task import Future
 from sim.ros.utilities import (
     get_default_context,
@@ -24,6 +26,8 @@ __all__ = [
     "Context",
     "Future",
     "Node",
+    "Parameter",
+    "SignalHandlerOptions",
     "create_node",
     "get_default_context",
     "get_global_executor",
@@ -45,20 +49,53 @@ def init(
     args: Sequence[str] | None = None,
     context: Context | None = None,
     domain_id: int | None = None,
+    signal_handler_options: SignalHandlerOptions | None = None,
 ) -> Context:
     """Begin; ``args`` None means the program's own arguments.
 
+    ``signal_handler_options`` None means all for the default context, none for another.
+
     Raises:
         RuntimeError: it was called before.
+        RCLError, UnknownROSArgsError: a ROS argument cannot be read, or is none.
     """
-    chosen = get_default_context() if context is None else context
+    default = get_default_context()
+    chosen = default if context is None else context
+    if signal_handler_options is None:
+        signal_handler_options = SignalHandlerOptions.ALL if chosen is default else SignalHandlerOptions.NO
+    install_signal_handlers(signal_handler_options)
     chosen.init(args, domain_id=domain_id)
     return chosen
 
 
-def create_node(node_name: str, *, context: Context | None = None, namespace: str | None = None) -> Node:
-    """Make a node."""
-    return Node(node_name, context=context, namespace=namespace)
+def create_node(
+    node_name: str,
+    *,
+    context: Context | None = None,
+    cli_args: Sequence[str] | None = None,
+    namespace: str | None = None,
+    use_global_arguments: bool = True,
+    enable_rosout: bool = True,
+    start_parameter_services: bool = True,
+    parameter_overrides: list[Parameter[Any]] | None = None,
+    allow_undeclared_parameters: bool = False,
+    automatically_declare_parameters_from_overrides: bool = False,
+    enable_logger_service: bool = False,
+) -> Node:
+    """Make a node; everything as for ``Node``."""
+    return Node(
+        node_name,
+        context=context,
+        cli_args=cli_args,
+        namespace=namespace,
+        use_global_arguments=use_global_arguments,
+        enable_rosout=enable_rosout,
+        start_parameter_services=start_parameter_services,
+        parameter_overrides=parameter_overrides,
+        allow_undeclared_parameters=allow_undeclared_parameters,
+        automatically_declare_parameters_from_overrides=automatically_declare_parameters_from_overrides,
+        enable_logger_service=enable_logger_service,
+    )
 
 
 def get_global_executor() -> Executor:

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Sequence
 from types import TracebackType
 
+from sim.ros.arguments import Arguments, arguments_of_program
 from sim.ros.exceptions import NotInitializedException
 from sim.ros.host import Host, current_host
 from sim.ros.probe import Probe
@@ -19,26 +21,29 @@ class Context:
     def __init__(self, *, host: Host | None = None, probe: Probe | None = None) -> None:
         self.host = current_host() if host is None else host
         self.probe = self.host.probe if probe is None else probe
-        self.arguments: tuple[str, ...] = ()
+        self.arguments = Arguments()
         self._initialized = False
         self._valid = False
         self._shutdown_callbacks: list[Callable[[], None]] = []
 
     def init(self, args: Sequence[str] | None = None, *, domain_id: int | None = None) -> None:
-        """Begin.
+        """Begin; ``args`` None means the program's own arguments.
 
         Raises:
             RuntimeError: it was called before.
             ValueError: a negative domain id.
+            RCLError, UnknownROSArgsError: a ROS argument cannot be read, or is none.
         """
         if domain_id is not None and domain_id < 0:
             raise ValueError(f"Domain id ({domain_id}) should not be lower than zero.")
+        if self._initialized:
+            raise RuntimeError("Context.init() must only be called once")
+        arguments = arguments_of_program(sys.argv if args is None else args)
         with self.host.lock:
-            if self._initialized:
-                raise RuntimeError("Context.init() must only be called once")
             self._initialized = True
             self._valid = True
-            self.arguments = tuple(args or ())
+            self.arguments = arguments
+        arguments.set_log_levels()
 
     def ok(self) -> bool:
         """Whether it has begun and not ended."""

@@ -33,6 +33,9 @@ class Entity:
     rank: ClassVar[int]
     """Place of the kind in the order in which a snapshot is served."""
 
+    traced: ClassVar[bool] = True
+    """Whether the trace shows it."""
+
     def __init__(self, node: Node, name: str, callback_group: CallbackGroup) -> None:
         self.node = node
         self.name = name

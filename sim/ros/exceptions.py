@@ -123,7 +123,8 @@ class InvalidParameterValueException(ParameterException):
     """A parameter's descriptor or a callback refused its value."""
 
     def __init__(self, parameter: str, value: object, reason: str, *args: object) -> None:
-        super().__init__(f"Invalid parameter value ({value}) for parameter. Reason: {reason}", parameter, *args)
+        text = f"Invalid parameter value ({value}) for parameter. Reason: {reason}"
+        super().__init__(text, parameter, *args)
 
 
 class ParameterUninitializedException(ParameterException):

@@ -6,6 +6,7 @@ import sys
 from sim.ros.interfaces.finder import InterfaceFinder
 
 _MODULES = (
+    "_rclpy_pybind11",
     "callback_groups",
     "client",
     "clock",
@@ -15,15 +16,22 @@ _MODULES = (
     "executors",
     "guard_condition",
     "logging",
+    "logging_service",
     "node",
+    "parameter",
+    "parameter_service",
     "publisher",
     "qos",
     "service",
+    "signals",
     "subscription",
     "task",
     "time",
+    "time_source",
     "timer",
+    "type_description_service",
     "utilities",
+    "validate_parameter_name",
 )
 
 

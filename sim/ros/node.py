@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import weakref
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from heapq import heappop, heappush
 from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar
 
+from sim.ros.arguments import arguments_of_node, parameters_for
 from sim.ros.callback_groups import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
@@ -20,12 +21,20 @@ from sim.ros.entity import Entity
 from sim.ros.guard_condition import GuardCondition
 from sim.ros.host import WaitsExplained
 from sim.ros.logging import RcutilsLogger, get_logger
-from sim.ros.names import expand_service, expand_topic, validate_namespace, validate_node_name
+from sim.ros.logging_service import LoggingService
+from sim.ros.node_names import NodeNames
+from sim.ros.node_parameters import NodeParameters, ParameterChange
+from sim.ros.parameter import Parameter
+from sim.ros.parameter_events import parameter_event_publisher, publish_change
+from sim.ros.parameter_service import ParameterService
 from sim.ros.publisher import Publisher
 from sim.ros.qos import QoSProfile, as_profile, qos_profile_services_default
+from sim.ros.remapping import Remapping
 from sim.ros.service import Service
 from sim.ros.subscription import Subscription
+from sim.ros.time_source import TimeSource
 from sim.ros.timer import Rate, Timer
+from sim.ros.type_description_service import TypeDescriptionService
 from sim.ros.utilities import get_default_context
 from sim.trace.events import Reason
 
@@ -35,24 +44,45 @@ if TYPE_CHECKING:
 EntityT = TypeVar("EntityT", bound=Entity)
 
 
-class Node(WaitsExplained):
+class Node(NodeParameters, WaitsExplained):
     """A node of the ROS graph.
+
+    ``cli_args`` are arguments for this node alone and count before the program's, which are left out
+    without ``use_global_arguments``. ``parameter_overrides`` count before both. ``enable_rosout`` makes no
+    difference: log lines are on the trace or on stderr, not on a topic.
 
     Raises:
         NotInitializedException: ``rclpy.init()`` has not been called.
         InvalidNodeNameException, InvalidNamespaceException: a name breaks the rules.
+        RCLInvalidROSArgsError, UnknownROSArgsError: ``cli_args`` cannot be read.
     """
 
     def __init__(
-        self, node_name: str, *, context: Context | None = None, namespace: str | None = None
+        self,
+        node_name: str,
+        *,
+        context: Context | None = None,
+        cli_args: Sequence[str] | None = None,
+        namespace: str | None = None,
+        use_global_arguments: bool = True,
+        enable_rosout: bool = True,
+        start_parameter_services: bool = True,
+        parameter_overrides: list[Parameter[Any]] | None = None,
+        allow_undeclared_parameters: bool = False,
+        automatically_declare_parameters_from_overrides: bool = False,
+        enable_logger_service: bool = False,
     ) -> None:
         self._context = get_default_context() if context is None else context
         self._context.require_ok()
-        space = "/" + (namespace or "").strip("/")
-        validate_node_name(node_name)
-        validate_namespace(space)
-        self._name = node_name
-        self._namespace = space
+        own_arguments = arguments_of_node(cli_args or ())
+        sources = [self._context.arguments, own_arguments] if use_global_arguments else [own_arguments]
+        rules = [rule for source in reversed(sources) for rule in source.remap_rules]
+        self._names = NodeNames(node_name, namespace or "", Remapping(rules))
+        given = parameters_for(self.get_fully_qualified_name(), sources)
+        overrides = [Parameter(name, value=value) for name, value in given.items()]
+        NodeParameters.__init__(
+            self, [*overrides, *(parameter_overrides or ())], allow_undeclared=allow_undeclared_parameters
+        )
         self._host = self._context.host
         self._orders = 0
         self._entities: list[Entity] = []
@@ -63,11 +93,20 @@ class Node(WaitsExplained):
         self._executor: weakref.ref[Executor] | None = None
         self._destroyed = False
         self._clock = ROSClock()
-        self._logger = get_logger(self.get_fully_qualified_name().strip("/").replace("/", "."))
+        self._logger = get_logger(self._names.logger_name)
         self.trace_id = self._context.probe.node_made(self.get_fully_qualified_name())
         self._default_callback_group = MutuallyExclusiveCallbackGroup()
         self._rate_group = ReentrantCallbackGroup()
         self._host.explain_waits_of(self)
+        self._parameter_event_publisher = parameter_event_publisher(self)
+        if automatically_declare_parameters_from_overrides:
+            self._declare_overrides()
+        self._time_source = TimeSource(node=self)
+        if start_parameter_services:
+            self._parameter_service = ParameterService(self)
+        if enable_logger_service:
+            self._logger_service = LoggingService(self)
+        self._type_description_service = TypeDescriptionService(self)
 
     # What it is
 
@@ -88,15 +127,15 @@ class Node(WaitsExplained):
 
     def get_name(self) -> str:
         """Its name without namespace."""
-        return self._name
+        return self._names.name
 
     def get_namespace(self) -> str:
         """Its namespace, ``/`` for none."""
-        return self._namespace
+        return self._names.namespace
 
     def get_fully_qualified_name(self) -> str:
         """Namespace and name, such as ``/arm/sub_node``."""
-        return f"{self._namespace.rstrip('/')}/{self._name}"
+        return self._names.full_name
 
     def get_logger(self) -> RcutilsLogger:
         """Its logger."""
@@ -106,13 +145,13 @@ class Node(WaitsExplained):
         """Its clock."""
         return self._clock
 
-    def resolve_topic_name(self, topic: str) -> str:
-        """The full name of a topic as this node means it."""
-        return expand_topic(topic, self._name, self._namespace)
+    def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
+        """The full name of a topic as this node means it; remapped, unless ``only_expand``."""
+        return self._names.expanded_topic(topic) if only_expand else self._names.topic(topic)
 
-    def resolve_service_name(self, service: str) -> str:
-        """The full name of a service as this node means it."""
-        return expand_service(service, self._name, self._namespace)
+    def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
+        """The full name of a service as this node means it; remapped, unless ``only_expand``."""
+        return self._names.expanded_service(service) if only_expand else self._names.service(service)
 
     @property
     def executor(self) -> Executor | None:
@@ -241,8 +280,7 @@ class Node(WaitsExplained):
         with self._host.lock:
             group = self._group(callback_group)
             service = Service(self, srv_type, name, callback, group, qos_profile)
-            self._add(service)
-            self._host.network.join_service(service)
+            self._offer(service)
         return service
 
     def create_client(
@@ -271,6 +309,10 @@ class Node(WaitsExplained):
 
     def _group(self, wanted: CallbackGroup | None) -> CallbackGroup:
         return self._default_callback_group if wanted is None else wanted
+
+    def _offer(self, service: Service) -> None:
+        self._add(service)
+        self._host.network.join_service(service)
 
     def _add(self, entity: Entity) -> None:
         self._entities.append(entity)
@@ -388,6 +430,9 @@ class Node(WaitsExplained):
         executor = self.executor
         if executor is not None:
             executor.wake()
+
+    def _tell_parameter_change(self, change: ParameterChange) -> None:
+        publish_change(self._parameter_event_publisher, change)
 
     def _warn_when_spinning(self, text: str) -> None:
         self._warnings.append(text)

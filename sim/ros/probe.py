@@ -64,6 +64,8 @@ class Probe:
 
     def entity_made(self, entity: "Entity") -> None:
         """An entity was made; its group appears with its first entity."""
+        if not entity.traced:
+            return
         now = self._now()
         group = self._group_id(now, entity)
         entity.trace_id = next(self._entities)
@@ -98,21 +100,25 @@ class Probe:
 
     def entity_gone(self, entity: "Entity") -> None:
         """An entity was destroyed."""
+        if not entity.traced:
+            return
         self.wait_ended(entity)
         self._sink(events.EntityGone(self._now(), entity.trace_id))
 
     def ready(self, entity: "Entity", depth: int, message: int) -> None:
         """Something arrived for an entity."""
-        self._sink(events.EntityReady(self._now(), entity.trace_id, depth, message))
+        if entity.traced:
+            self._sink(events.EntityReady(self._now(), entity.trace_id, depth, message))
 
     def dropped(self, entity: "Entity", depth: int, message: int) -> None:
         """A full queue lost its oldest message."""
-        self._sink(events.MessageDropped(self._now(), entity.trace_id, depth, message))
+        if entity.traced:
+            self._sink(events.MessageDropped(self._now(), entity.trace_id, depth, message))
 
     def waits(self, entity: "Entity", reason: Reason, holder: "Entity | None", workers_busy: bool) -> None:
         """A ready callback does not run; recorded when that is new or its reason changed."""
         state = (reason, 0 if holder is None else holder.trace_id, workers_busy)
-        if entity.wait_shown != state:
+        if entity.traced and entity.wait_shown != state:
             entity.wait_shown = state
             self._sink(events.WaitStarted(self._now(), entity.trace_id, entity.ready_since, *state))
 
@@ -125,24 +131,28 @@ class Probe:
     def callback_started(self, entity: "Entity", message: int, age: int, depth: int) -> int:
         """A callback begins on the calling thread; returns what ran there until now."""
         outer, self._here.entity = self._here.entity, entity.trace_id
-        thread = self.thread()
-        self._sink(events.CallbackStarted(self._now(), entity.trace_id, thread, message, age, depth))
+        if entity.traced:
+            thread = self.thread()
+            self._sink(events.CallbackStarted(self._now(), entity.trace_id, thread, message, age, depth))
         return outer
 
     def callback_ended(self, entity: "Entity", outer: int) -> None:
         """The callback that ran on the calling thread ended; ``outer`` runs there again."""
         self._here.entity = outer
-        self._sink(events.CallbackEnded(self._now(), entity.trace_id, self.thread()))
+        if entity.traced:
+            self._sink(events.CallbackEnded(self._now(), entity.trace_id, self.thread()))
 
     def callback_suspended(self, entity: "Entity", outer: int) -> None:
         """A coroutine callback awaits something and leaves the calling thread."""
         self._here.entity = outer
-        self._sink(events.CallbackSuspended(self._now(), entity.trace_id, self.thread()))
+        if entity.traced:
+            self._sink(events.CallbackSuspended(self._now(), entity.trace_id, self.thread()))
 
     def callback_resumed(self, entity: "Entity") -> int:
         """A coroutine callback goes on on the calling thread; returns what ran there until now."""
         outer, self._here.entity = self._here.entity, entity.trace_id
-        self._sink(events.CallbackResumed(self._now(), entity.trace_id, self.thread()))
+        if entity.traced:
+            self._sink(events.CallbackResumed(self._now(), entity.trace_id, self.thread()))
         return outer
 
     def callback_failed(self, entity: "Entity", error: BaseException) -> None:

@@ -5,6 +5,7 @@ import sys
 from collections.abc import Sequence
 
 from sim.ros.context import Context
+from sim.ros.remapping import is_rule
 
 _default: list[Context] = []
 
@@ -40,7 +41,10 @@ def try_shutdown(*, context: Context | None = None) -> None:
 
 
 def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
-    """The arguments without those between ``--ros-args`` and ``--`` (or the end); None: ``sys.argv``."""
+    """The arguments without those for ROS; None: ``sys.argv``.
+
+    Those are what stands between ``--ros-args`` and ``--`` (or the end), and remapping rules in the old form.
+    """
     kept = []
     inside = False
     for argument in sys.argv if args is None else args:
@@ -48,7 +52,7 @@ def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:
             inside = True
         elif inside:
             inside = argument != "--"
-        else:
+        elif not is_rule(argument):
             kept.append(argument)
     return kept
 
