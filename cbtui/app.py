@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from textual.command import Provider
 
     from cbtui.live_run import Deliver, Ended, OpenSession, Session
+    from cbtui.subject import Subject
     from sim.engine.setup import RunSetup
 
 
@@ -39,7 +40,8 @@ def _engine_session(setup: "RunSetup", deliver: "Deliver", ended: "Ended") -> "S
 class CbtuiApp(App[None]):
     """The console.
 
-    ``start_lesson`` is the id of a lesson to open at once; ``open_session`` starts engines, the real ones
+    ``start_lesson`` is the id of a lesson to open at once, ``start_file`` a program file, its arguments and
+    its clock; ``open_session`` starts engines, the real ones
     unless a test says otherwise.
     """
 
@@ -58,11 +60,13 @@ class CbtuiApp(App[None]):
         self,
         charset: str = Charset.BRAILLE,
         start_lesson: str | None = None,
+        start_file: tuple[Path, Sequence[str], str] | None = None,
         open_session: "OpenSession" = _engine_session,
     ) -> None:
         super().__init__()
         self.charset = Charset(charset)
         self._start_lesson = start_lesson
+        self._start_file = start_file
         self._open_session = open_session
         self._ascii = AsciiFilter()
 
@@ -74,12 +78,21 @@ class CbtuiApp(App[None]):
         """Open the lesson that was asked for."""
         if self._start_lesson is not None:
             self.open_lesson(find(self._start_lesson))
+        elif self._start_file is not None:
+            from cbtui.subject import of_file
+
+            self._show(of_file(*self._start_file))
 
     def open_lesson(self, lesson: Lesson) -> None:
         """Run a lesson on screen, in place of another that may be open."""
+        from cbtui.subject import of_lesson
+
+        self._show(of_lesson(lesson, lessons()))
+
+    def _show(self, subject: "Subject") -> None:
         from cbtui.screens.lesson import LessonScreen  # the menu has to be there before all that is needed
 
-        screen = LessonScreen(lesson, lessons(), self._open_session, self.charset)
+        screen = LessonScreen(subject, self._open_session, self.charset)
         if isinstance(self.screen, LessonScreen):
             self.switch_screen(screen)
         else:

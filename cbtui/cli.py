@@ -44,15 +44,22 @@ def _parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"cbtui {_version()}")
     _add_console_options(parser)
-    parser.set_defaults(action=_open_console, lesson=None)
+    parser.set_defaults(action=_open_console, target=None, clock="real")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
 
     listing = commands.add_parser("list", help="list the lessons")
     listing.set_defaults(action=_list)
 
-    opening = commands.add_parser("open", help="open a lesson in the console")
-    opening.add_argument("lesson", metavar="LESSON")
+    opening = commands.add_parser(
+        "open",
+        help="open a lesson, or a file of your own, in the console",
+        usage="%(prog)s [options] LESSON|FILE.py [-- ARGUMENTS of the file]",
+    )
+    opening.add_argument("target", metavar="LESSON|FILE.py", help="a lesson's id, see cbtui list, or a file")
     _add_console_options(opening)
+    opening.add_argument(
+        "--clock", choices=("virtual", "real"), default="real", help="which time a file runs on (%(default)s)"
+    )
     opening.set_defaults(action=_open_console)
 
     running = commands.add_parser(
@@ -191,13 +198,17 @@ def _list(_options: argparse.Namespace) -> int:
 
 
 def _open_console(options: argparse.Namespace) -> int:
-    if options.lesson is not None:
-        _lesson(options.lesson)
+    target: str | None = options.target
+    start_file, lesson = None, None
+    if target is not None and _is_file_name(target):
+        start_file = (_file(target), options.arguments, options.clock)
+    elif target is not None:
+        lesson = _lesson(target).id
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
-        _refuse("the console needs a terminal; use cbtui run LESSON where there is none")
+        _refuse("the console needs a terminal; use cbtui run where there is none")
     from cbtui.app import CbtuiApp
 
-    CbtuiApp(charset=options.charset, start_lesson=options.lesson).run()
+    CbtuiApp(charset=options.charset, start_lesson=lesson, start_file=start_file).run()
     return 0
 
 

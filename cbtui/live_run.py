@@ -99,9 +99,9 @@ class LiveRun:
             self._session.stop()
 
     def call(self, data: bool) -> None:
-        """Call the SetBool service that the run was set up with."""
-        if self.setup.service is not None:
-            self._session.send(CallService(self.setup.service.name, data))
+        """Call the SetBool service that the run was set up with, or else the program's first."""
+        service = self.setup.service
+        self._session.send(CallService(None if service is None else service.name, data))
 
     def pause(self) -> None:
         """Stop time."""

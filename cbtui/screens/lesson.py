@@ -1,7 +1,7 @@
 """A lesson on screen: its run on lanes, the moment in words, and guide, source, robot and log."""
 
 import asyncio
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, ClassVar, cast
 
 from textual import on
@@ -14,12 +14,12 @@ from textual.widget import Widget
 
 from cbtui.actions import PANES, Scope, bindings_of
 from cbtui.concurrency import Concurrency
-from cbtui.lesson_setup import setup_for
 from cbtui.live_run import SPEEDS, LiveRun, OpenSession
 from cbtui.playhead import SPANS, Playhead
 from cbtui.screens.layout import Layout
 from cbtui.screens.sized import SizedScreen
 from cbtui.screens.threads import ThreadsScreen
+from cbtui.subject import Subject
 from cbtui.theme import Charset
 from cbtui.widgets.arena_map import ArenaMap
 from cbtui.widgets.code import CodeView
@@ -68,12 +68,9 @@ class LessonScreen(SizedScreen[None]):
             self.run = run
             self.loss = loss
 
-    def __init__(
-        self, lesson: Lesson, lessons: Sequence[Lesson], open_session: OpenSession, charset: Charset
-    ) -> None:
+    def __init__(self, subject: Subject, open_session: OpenSession, charset: Charset) -> None:
         super().__init__()
-        self._lesson = lesson
-        self._lessons = lessons
+        self._subject = subject
         self._open_session = open_session
         self._charset = charset
         self._threads: int | None = None
@@ -85,9 +82,9 @@ class LessonScreen(SizedScreen[None]):
         self._begin(speed=1.0)
 
     @property
-    def lesson(self) -> Lesson:
-        """The lesson that is run."""
-        return self._lesson
+    def lesson(self) -> Lesson | None:
+        """The lesson that is run; None for a file."""
+        return self._subject.lesson
 
     @property
     def live_run(self) -> LiveRun:
@@ -108,7 +105,7 @@ class LessonScreen(SizedScreen[None]):
         """Start the run and the timer that draws it."""
         lanes, robot = self.query_one(Lanes), self.query_one(ArenaMap)
         lanes.charset = robot.charset = self._charset
-        lanes.service = self._lesson.service.name
+        lanes.service = self._subject.service
         self._show(self._pane)
         self._run.start()
         self.set_interval(1 / FRAMES_A_SECOND, self._draw_if_stale)
@@ -144,8 +141,8 @@ class LessonScreen(SizedScreen[None]):
             return
         run, timeline = self._run, self._run.timeline
         now = self._playhead.now(timeline.end)
-        title = f"{self._lesson.number}/{len(self._lessons)} {self._lesson.title}"
-        self.query_one(StatusLine).status = status_of(title, run, self._playhead, self._lesson.executor)
+        subject = self._subject
+        self.query_one(StatusLine).status = status_of(subject.heading, run, self._playhead, subject.executor)
         lanes = self.query_one(Lanes)
         lanes.window, lanes.now, lanes.timeline = self._playhead.window(timeline.end), now, timeline
         line = self.query_one(DiagnosisLine)
@@ -187,7 +184,7 @@ class LessonScreen(SizedScreen[None]):
         self._runs += 1
         number = self._runs
         self._run = LiveRun(
-            setup_for(self._lesson, threads=self._threads, speed=speed),
+            self._subject.set_up(self._threads, speed),
             self._open_session,
             lambda events: self._hand_over(self.Delivered(number, events)),
             lambda loss: self._hand_over(self.Over(number, loss)),
@@ -207,14 +204,14 @@ class LessonScreen(SizedScreen[None]):
     def _panes(self) -> Iterator[Widget]:
         robot = ArenaMap(id="robot")
         robot.can_focus = True
-        guide = Guide(self._lesson.guide, id="guide")
-        code = CodeView(self._lesson.node_path, id="code")
+        guide = Guide(self._subject.guide, id="guide")
+        code = CodeView(self._subject.node_path, id="code")
         for pane in (guide, code, robot, LogView(id="log")):
             assert pane.id is not None
             pane.border_title = title_of(pane.id)
             pane.add_class("pane")
             yield pane
-        code.border_title = f"{title_of('code')} {self._lesson.node_path.name}"
+        code.border_title = f"{title_of('code')} {self._subject.node_path.name}"
 
     def _widget(self, pane: str) -> Widget:
         return self.query_one(f"#{pane}")
@@ -248,8 +245,8 @@ class LessonScreen(SizedScreen[None]):
         meaningless = {
             "call_service": not run.alive,
             "call_service_off": not run.alive,
-            "pause": not run.alive or run.paused,
-            "resume": not run.alive or not run.paused,
+            "pause": not paced or run.paused,
+            "resume": not paced or not run.paused,
             "reset_world": not run.alive,
             "run_again": run.alive,
             "slower": not paced or run.speed == SPEEDS[0],
@@ -258,7 +255,7 @@ class LessonScreen(SizedScreen[None]):
             "later": playhead.at is None,
             "zoom_in": playhead.span == SPANS[0],
             "zoom_out": playhead.span == SPANS[-1],
-            "next_lesson": self._lesson == self._lessons[-1],
+            "next_lesson": self._subject.following is None,
         }
         return not meaningless.get(action, False)
 
@@ -291,7 +288,7 @@ class LessonScreen(SizedScreen[None]):
     def action_threads(self) -> None:
         """Ask for a number of threads."""
         self.app.push_screen(
-            ThreadsScreen(self._lesson.executor, self._threads, self._charset), self._run_with_threads
+            ThreadsScreen(self._subject.executor, self._threads, self._charset), self._run_with_threads
         )
 
     async def _run_with_threads(self, threads: int | None) -> None:
@@ -348,8 +345,8 @@ class LessonScreen(SizedScreen[None]):
 
     def action_next_lesson(self) -> None:
         """Open the next lesson."""
-        place = self._lessons.index(self._lesson)
-        cast("CbtuiApp", self.app).open_lesson(self._lessons[place + 1])
+        if self._subject.following is not None:
+            cast("CbtuiApp", self.app).open_lesson(self._subject.following)
 
     def action_leave(self) -> None:
         """Go back to the menu."""

@@ -20,9 +20,9 @@ class SetSpeed(msgspec.Struct, frozen=True, tag="speed"):
 
 
 class CallService(msgspec.Struct, frozen=True, tag="call"):
-    """Call a SetBool service from outside, as ``ros2 service call`` would."""
+    """Call a SetBool service from outside, as ``ros2 service call`` would; None: the program's first."""
 
-    name: str
+    name: str | None
     data: bool
 
 

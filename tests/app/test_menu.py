@@ -21,7 +21,8 @@ def menu() -> CbtuiApp:
 
 
 def opened(app: CbtuiApp) -> str | None:
-    return app.screen.lesson.id if isinstance(app.screen, LessonScreen) else None
+    lesson = app.screen.lesson if isinstance(app.screen, LessonScreen) else None
+    return None if lesson is None else lesson.id
 
 
 @pytest.mark.parametrize("size", [NARROW, WIDE])

@@ -19,3 +19,22 @@ def test_a_virtual_minute(benchmark: BenchmarkFixture, lesson: str) -> None:
 
 def test_help(benchmark: BenchmarkFixture) -> None:
     benchmark.pedantic(lambda: _run("--help"), rounds=5, warmup_rounds=1)
+
+
+MENU = """
+import asyncio
+from cbtui.app import CbtuiApp
+
+async def first_frame():
+    async with CbtuiApp().run_test(size=(140, 40)):
+        pass
+
+asyncio.run(first_frame())
+"""
+
+
+def test_the_menu_from_process_start_to_end(benchmark: BenchmarkFixture) -> None:
+    def run() -> None:
+        subprocess.run([sys.executable, "-c", MENU], check=True)
+
+    benchmark.pedantic(run, rounds=5, warmup_rounds=1)
