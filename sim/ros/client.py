@@ -11,11 +11,13 @@ from sim.ros.entity import Entity, Taken
 from sim.ros.interfaces import copy_message
 from sim.ros.network import Request
 from sim.ros.qos import QoSProfile
+from sim.ros.service_introspection import ServiceIntrospectionState, require_off
 from sim.ros.task import Future
 from sim.trace.events import EntityKind
 
 if TYPE_CHECKING:
     from sim.ros.callback_groups import CallbackGroup
+    from sim.ros.clock import Clock
     from sim.ros.node import Node
 
 _POLL = 0.25
@@ -31,7 +33,10 @@ class Reply(NamedTuple):
 
 
 class Client(Entity):
-    """Calls one service. The reply is taken by the executor, as a callback of the client's group."""
+    """Calls one service. The reply is taken by the executor, as a callback of the client's group.
+
+    ``srv_name`` is the service's name as the program wrote it; ``service_name`` is the full one.
+    """
 
     kind = EntityKind.CLIENT
     rank = 3
@@ -40,19 +45,35 @@ class Client(Entity):
         self,
         node: Node,
         srv_type: Any,
-        srv_name: str,
+        service_name: str,
         qos_profile: QoSProfile,
         callback_group: CallbackGroup,
+        *,
+        srv_name: str | None = None,
     ) -> None:
-        super().__init__(node, srv_name, callback_group)
+        super().__init__(node, service_name, callback_group)
         self.srv_type = srv_type
-        self.srv_name = srv_name
+        self.srv_name = service_name if srv_name is None else srv_name
         self.qos_profile = qos_profile
         self.depth = qos_profile.queue_length or 0
         self._host = node.context.host
         self._probe = node.context.probe
         self._pending_requests: dict[int, Future[Any]] = {}
         self._queue: deque[Reply] = deque()
+
+    @property
+    def service_name(self) -> str:
+        """The service's full name."""
+        return self.name
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Nothing for OFF; raises NotImplementedError for the rest."""
+        require_off("Client", introspection_state)
 
     def call(self, request: Any, timeout_sec: float | None = None) -> Any:
         """Call and wait on this thread for the reply, which another thread has to take.

@@ -28,6 +28,8 @@ class Duration:
         return f"Duration(nanoseconds={self._nanoseconds})"
 
     def __str__(self) -> str:
+        if self == Infinite:
+            return "Infinite"
         return f"{self._nanoseconds} nanoseconds"
 
     def __hash__(self) -> int:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
+from sim.ros.handle import Handle
 from sim.trace.events import EntityKind, Reason
 
 if TYPE_CHECKING:
@@ -50,6 +51,26 @@ class Entity:
         self.trace_id = 0
         self.wait_shown: tuple[Reason, int, bool] | None = None
         callback_group.add_entity(self)
+
+    @property
+    def handle(self) -> Handle:
+        """What keeps it alive while it is used."""
+        return Handle(self)
+
+    @property
+    def logger_name(self) -> str:
+        """The name of its node's logger."""
+        return self.node.get_logger().name
+
+    def destroy(self) -> None:
+        """Remove it from its node."""
+        raise NotImplementedError
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self.destroy()
 
     def shown_callback(self) -> Callable[..., Any] | None:
         """The function that a learner knows this entity by; None: it has none of its own."""

@@ -72,6 +72,10 @@ class RCLError(RuntimeError):
     """ROS's client library refuses something."""
 
 
+class NodeNameNonExistentError(RCLError):
+    """A question about a node that is not there."""
+
+
 class RCLInvalidROSArgsError(RCLError):
     """An argument after ``--ros-args`` cannot be read."""
 

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Callable
 from enum import IntEnum
+from pathlib import Path
 from typing import Any
 
 from sim.ros.host import current_host
+from sim.ros.log_filters import LogPlace, Place, calling_place
 from sim.trace.events import Severity
 
 
@@ -40,23 +41,12 @@ def line(severity: Severity, stamp: int, logger: str, text: str) -> str:
     return f"[{severity}] [{seconds}.{nanoseconds:09d}] [{logger}]: {text}"
 
 
-class _Site:
-    """What one place in the program that logs has logged so far."""
-
-    __slots__ = ("last", "skipped", "spoken")
-
-    def __init__(self) -> None:
-        self.last: int | None = None
-        self.skipped = False
-        self.spoken = False
-
-
 class RcutilsLogger:
     """A named logger. Lines below its level are dropped; without a level of its own, its parent's counts."""
 
     def __init__(self, name: str = "") -> None:
         self.name = name
-        self._sites: dict[tuple[str, int], _Site] = {}
+        self._places: dict[Place, LogPlace] = {}
 
     def get_child(self, name: str) -> RcutilsLogger:
         """The logger ``self.name``.``name``.
@@ -70,92 +60,86 @@ class RcutilsLogger:
 
     def set_level(self, level: LoggingSeverity | int) -> None:
         """Drop lines below ``level``."""
-        _levels[self.name] = LoggingSeverity(level)
+        set_logger_level(self.name, level)
 
     def get_effective_level(self) -> LoggingSeverity:
         """Its own level, or the nearest parent's, or INFO."""
-        name = self.name
-        while name:
-            if _levels.get(name, LoggingSeverity.UNSET) != LoggingSeverity.UNSET:
-                return _levels[name]
-            name = name.rpartition(".")[0]
-        return _levels.get("", LoggingSeverity.INFO)
+        return get_logger_effective_level(self.name)
 
     def is_enabled_for(self, severity: LoggingSeverity | int) -> bool:
         """Whether lines of that severity are kept."""
         return severity >= self.get_effective_level()
 
-    def log(self, message: object, severity: LoggingSeverity | int, **filters: Any) -> bool:
+    def log(self, message: object, severity: LoggingSeverity | int, **options: Any) -> bool:
         """Write a line; whether it was written.
 
-        ``once``, ``skip_first`` and ``throttle_duration_sec`` (seconds) hold back lines of the same place
-        in the program.
+        ``once``, ``skip_first`` and ``throttle_duration_sec`` (seconds, on the clock
+        ``throttle_time_source_type``) hold back lines of the same place in the program; ``name`` stands in
+        for the logger's own.
 
         Raises:
-            TypeError: an unknown filter.
+            TypeError: an unknown option.
+            ValueError: the place asked for another severity, name or filter before.
         """
+        if not self.is_enabled_for(severity):
+            return False
         level = LoggingSeverity(severity)
-        if not self.is_enabled_for(level) or (filters and not self._passes(filters)):
+        name = options.pop("name", self.name)
+        where = calling_place()
+        place = self._places.get(where)
+        if place is None:
+            place = self._places[where] = LogPlace(name, level, options)
+        else:
+            place.require_same(name, level, options)
+        if not place.lets_pass():
             return False
         host = current_host()
         if host.probe.visible:
-            host.probe.logged(_SHOWN[level], self.name, str(message))
+            host.probe.logged(_SHOWN[level], name, str(message))
         else:
             stamp = host.clock.epoch + host.clock.now()
-            print(line(_SHOWN[level], stamp, self.name, str(message)), file=sys.stderr)  # noqa: T201
+            print(line(_SHOWN[level], stamp, name, str(message)), file=sys.stderr)  # noqa: T201
         return True
 
-    def _passes(self, filters: dict[str, Any]) -> bool:
-        known = {"once", "skip_first", "throttle_duration_sec", "throttle_time_source_type"}
-        if unknown := sorted(set(filters) - known):
-            raise TypeError(f"invalid arguments for log call: {', '.join(unknown)}")
-        site = self._sites.setdefault(_calling_place(), _Site())
-        if filters.get("skip_first") and not site.skipped:
-            site.skipped = True
-            return False
-        if filters.get("once") and site.spoken:
-            return False
-        throttle = filters.get("throttle_duration_sec")
-        now = current_host().clock.now()
-        if throttle and site.last is not None and now - site.last < throttle * 1e9:
-            return False
-        site.spoken = True
-        site.last = now
-        return True
-
-    def debug(self, message: object, **filters: Any) -> bool:
+    def debug(self, message: object, **options: Any) -> bool:
         """Write a DEBUG line."""
-        return self.log(message, LoggingSeverity.DEBUG, **filters)
+        return self.log(message, LoggingSeverity.DEBUG, **options)
 
-    def info(self, message: object, **filters: Any) -> bool:
+    def info(self, message: object, **options: Any) -> bool:
         """Write an INFO line."""
-        return self.log(message, LoggingSeverity.INFO, **filters)
+        return self.log(message, LoggingSeverity.INFO, **options)
 
-    def warning(self, message: object, **filters: Any) -> bool:
+    def warning(self, message: object, **options: Any) -> bool:
         """Write a WARN line."""
-        return self.log(message, LoggingSeverity.WARN, **filters)
+        return self.log(message, LoggingSeverity.WARN, **options)
 
-    def warn(self, message: object, **filters: Any) -> bool:
+    def warn(self, message: object, **options: Any) -> bool:
         """Write a WARN line."""
-        return self.log(message, LoggingSeverity.WARN, **filters)
+        return self.log(message, LoggingSeverity.WARN, **options)
 
-    def error(self, message: object, **filters: Any) -> bool:
+    def error(self, message: object, **options: Any) -> bool:
         """Write an ERROR line."""
-        return self.log(message, LoggingSeverity.ERROR, **filters)
+        return self.log(message, LoggingSeverity.ERROR, **options)
 
-    def fatal(self, message: object, **filters: Any) -> bool:
+    def fatal(self, message: object, **options: Any) -> bool:
         """Write a FATAL line."""
-        return self.log(message, LoggingSeverity.FATAL, **filters)
+        return self.log(message, LoggingSeverity.FATAL, **options)
 
 
 def get_logger(name: str) -> RcutilsLogger:
-    """The logger of that name; the same object each time."""
+    """The logger of that name; the same object each time.
+
+    Raises:
+        ValueError: the name is empty.
+    """
+    if not name:
+        raise ValueError("Logger name must not be empty.")
     return _loggers.setdefault(name, RcutilsLogger(name))
 
 
 def set_logger_level(name: str, level: LoggingSeverity | int, detailed_error: bool = False) -> None:  # noqa: ARG001
-    """Drop the lines of a logger below ``level``."""
-    get_logger(name).set_level(level)
+    """Drop the lines of a logger below ``level``; an empty name means all that have no level."""
+    _levels[name] = LoggingSeverity(level)
 
 
 def get_logger_level(name: str) -> LoggingSeverity:
@@ -164,16 +148,37 @@ def get_logger_level(name: str) -> LoggingSeverity:
 
 
 def get_logger_effective_level(name: str) -> LoggingSeverity:
-    """The level that counts for a logger."""
-    return get_logger(name).get_effective_level()
+    """The level that counts for a logger: its own, or the nearest parent's, or INFO."""
+    while name:
+        if (level := get_logger_level(name)) != LoggingSeverity.UNSET:
+            return level
+        name = name.rpartition(".")[0]
+    return get_logger_level("") or LoggingSeverity.INFO
 
 
-def _calling_place() -> tuple[str, int]:
-    frame = sys._getframe(1)
-    here = os.path.normcase(__file__)
-    depth: Callable[[int], Any] = sys._getframe
-    level = 1
-    while os.path.normcase(frame.f_code.co_filename) == here:
-        level += 1
-        frame = depth(level)
-    return frame.f_code.co_filename, frame.f_lineno
+def get_logging_severity_from_string(log_severity: str) -> LoggingSeverity:
+    """The severity of that name, in letters of any size.
+
+    Raises:
+        RuntimeError: there is none.
+    """
+    try:
+        return LoggingSeverity[log_severity.upper()]
+    except KeyError:
+        raise RuntimeError(f'Failed to get log severity from name: "{log_severity}"') from None
+
+
+def get_logging_directory() -> Path:
+    """Where ROS 2 keeps its logs: ``$ROS_LOG_DIR``, ``$ROS_HOME/log`` or ``~/.ros/log``."""
+    if chosen := os.environ.get("ROS_LOG_DIR"):
+        return Path(chosen).expanduser()
+    return Path(os.environ.get("ROS_HOME") or "~/.ros").expanduser() / "log"
+
+
+def initialize() -> None:
+    """Begin logging, which needs no beginning here."""
+
+
+def shutdown() -> None:
+    """Forget the levels of all loggers."""
+    _levels.clear()

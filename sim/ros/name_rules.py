@@ -15,10 +15,10 @@ _MAX_NAMESPACE = 245
 
 
 class Problem(NamedTuple):
-    """What is wrong with a name, and the index of the character."""
+    """What is wrong with a name, and at which character."""
 
     text: str
-    index: int
+    place: int
 
 
 def node_name_problem(name: str) -> Problem | None:
@@ -75,7 +75,7 @@ def _absolute_problem(name: str, what: str) -> Problem | None:
 
 
 def topic_name_problem(name: str) -> Problem | None:
-    """The first problem of a topic's or service's name as a program writes it: ``~/x``, ``{node}/x``, ``x``."""
+    """The first problem of a topic's or service's name as a program writes it, such as ``~/x``."""
     if not name:
         return Problem("topic name must not be empty string", 0)
     if name.endswith("/"):

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from sim.ros.qos import mismatches
 
 if TYPE_CHECKING:
+    from sim.ros.node import Node
     from sim.ros.publisher import Publisher
     from sim.ros.service import Service
     from sim.ros.subscription import Subscription
@@ -29,12 +30,25 @@ class Request:
 
 
 class Network:
-    """Every publisher, subscription and service of the process, by full name."""
+    """Every node, publisher, subscription and service of the process, by full name."""
 
     def __init__(self) -> None:
+        self._nodes: list[Node] = []
         self._publishers: defaultdict[str, list[Publisher]] = defaultdict(list)
         self._subscriptions: defaultdict[str, list[Subscription]] = defaultdict(list)
         self._services: defaultdict[str, list[Service]] = defaultdict(list)
+
+    def nodes(self) -> tuple[Node, ...]:
+        """The nodes, oldest first."""
+        return tuple(self._nodes)
+
+    def join_node(self, node: Node) -> None:
+        """A node came up."""
+        self._nodes.append(node)
+
+    def leave_node(self, node: Node) -> None:
+        """A node went away."""
+        self._nodes.remove(node)
 
     def publishers(self, topic: str) -> tuple[Publisher, ...]:
         """The publishers on a topic."""
@@ -54,14 +68,14 @@ class Network:
 
     def join_publisher(self, publisher: Publisher) -> None:
         """A publisher came up: it is matched with every subscription that can hear it."""
-        self._publishers[publisher.topic].append(publisher)
-        for subscription in self._subscriptions.get(publisher.topic, ()):
+        self._publishers[publisher.topic_name].append(publisher)
+        for subscription in self._subscriptions.get(publisher.topic_name, ()):
             self._match(publisher, subscription)
 
     def join_subscription(self, subscription: Subscription) -> None:
         """A subscription came up: matched, and given what transient-local publishers have kept."""
-        self._subscriptions[subscription.topic].append(subscription)
-        for publisher in self._publishers.get(subscription.topic, ()):
+        self._subscriptions[subscription.name].append(subscription)
+        for publisher in self._publishers.get(subscription.name, ()):
             if self._match(publisher, subscription):
                 publisher.catch_up(subscription)
 
@@ -71,12 +85,12 @@ class Network:
 
     def leave_publisher(self, publisher: Publisher) -> None:
         """A publisher went away."""
-        self._publishers[publisher.topic].remove(publisher)
+        self._publishers[publisher.topic_name].remove(publisher)
 
     def leave_subscription(self, subscription: Subscription) -> None:
         """A subscription went away; nobody sends to it any more."""
-        self._subscriptions[subscription.topic].remove(subscription)
-        for publisher in self._publishers.get(subscription.topic, ()):
+        self._subscriptions[subscription.name].remove(subscription)
+        for publisher in self._publishers.get(subscription.name, ()):
             publisher.forget(subscription)
 
     def leave_service(self, service: Service) -> None:
@@ -96,6 +110,8 @@ class Network:
 
     def _match(self, publisher: Publisher, subscription: Subscription) -> bool:
         if publisher.msg_type is not subscription.msg_type:
+            publisher.events.type_refused()
+            subscription.events.type_refused()
             return False
         problems = list(mismatches(publisher.qos_profile, subscription.qos_profile))
         if problems:

@@ -18,10 +18,13 @@ from sim.ros.client import Client
 from sim.ros.clock import Clock, ROSClock
 from sim.ros.context import Context
 from sim.ros.entity import Entity
+from sim.ros.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from sim.ros.guard_condition import GuardCondition
+from sim.ros.handle import Handle
 from sim.ros.host import WaitsExplained
 from sim.ros.logging import RcutilsLogger, get_logger
 from sim.ros.logging_service import LoggingService
+from sim.ros.node_graph import GraphQueries
 from sim.ros.node_names import NodeNames
 from sim.ros.node_parameters import NodeParameters, ParameterChange
 from sim.ros.parameter import Parameter
@@ -29,12 +32,14 @@ from sim.ros.parameter_events import parameter_event_publisher, publish_change
 from sim.ros.parameter_service import ParameterService
 from sim.ros.publisher import Publisher
 from sim.ros.qos import QoSProfile, as_profile, qos_profile_services_default
+from sim.ros.qos_overriding_options import QoSOverridingOptions, overridden
 from sim.ros.remapping import Remapping
 from sim.ros.service import Service
 from sim.ros.subscription import Subscription
 from sim.ros.time_source import TimeSource
 from sim.ros.timer import Rate, Timer
 from sim.ros.type_description_service import TypeDescriptionService
+from sim.ros.type_support import check_is_valid_msg_type, check_is_valid_srv_type
 from sim.ros.utilities import get_default_context
 from sim.trace.events import Reason
 
@@ -44,7 +49,7 @@ if TYPE_CHECKING:
 EntityT = TypeVar("EntityT", bound=Entity)
 
 
-class Node(NodeParameters, WaitsExplained):
+class Node(NodeParameters, GraphQueries, WaitsExplained):
     """A node of the ROS graph.
 
     ``cli_args`` are arguments for this node alone and count before the program's, which are left out
@@ -91,13 +96,15 @@ class Node(NodeParameters, WaitsExplained):
         self._timer_queue: list[tuple[int, int, Timer]] = []
         self._warnings: list[str] = []
         self._executor: weakref.ref[Executor] | None = None
-        self._destroyed = False
+        self.destroyed = False
         self._clock = ROSClock()
         self._logger = get_logger(self._names.logger_name)
         self.trace_id = self._context.probe.node_made(self.get_fully_qualified_name())
         self._default_callback_group = MutuallyExclusiveCallbackGroup()
         self._rate_group = ReentrantCallbackGroup()
         self._host.explain_waits_of(self)
+        with self._host.lock:
+            self._host.network.join_node(self)
         self._parameter_event_publisher = parameter_event_publisher(self)
         if automatically_declare_parameters_from_overrides:
             self._declare_overrides()
@@ -121,9 +128,13 @@ class Node(NodeParameters, WaitsExplained):
         return self._default_callback_group
 
     @property
-    def handle(self) -> Node:
-        """The node itself: there is nothing below it here."""
-        return self
+    def handle(self) -> Handle:
+        """What keeps it alive while it is used."""
+        return Handle(self)
+
+    def destroy(self) -> None:
+        """Remove everything, as ``destroy_node``."""
+        self.destroy_node()
 
     def get_name(self) -> str:
         """Its name without namespace."""
@@ -136,6 +147,9 @@ class Node(NodeParameters, WaitsExplained):
     def get_fully_qualified_name(self) -> str:
         """Namespace and name, such as ``/arm/sub_node``."""
         return self._names.full_name
+
+    def assert_liveliness(self) -> None:
+        """Tell that it lives, which nobody watches."""
 
     def get_logger(self) -> RcutilsLogger:
         """Its logger."""
@@ -214,9 +228,24 @@ class Node(NodeParameters, WaitsExplained):
         qos_profile: QoSProfile | int,
         *,
         callback_group: CallbackGroup | None = None,
+        event_callbacks: PublisherEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        publisher_class: type[Publisher] = Publisher,
     ) -> Publisher:
-        """Make a publisher; ``qos_profile`` may be a depth."""
-        publisher = Publisher(self, msg_type, self.resolve_topic_name(topic), as_profile(qos_profile))
+        """Make a publisher; ``qos_profile`` may be a depth.
+
+        Raises:
+            InvalidTopicNameException: the topic's name breaks the rules.
+            AttributeError, RuntimeError: ``msg_type`` is no message class.
+            NotImplementedError: for callbacks about deadlines and liveliness.
+        """
+        profile, name = as_profile(qos_profile), self.resolve_topic_name(topic)
+        if qos_overriding_options is not None:
+            profile = overridden("publisher", self, name, profile, qos_overriding_options)
+        check_is_valid_msg_type(msg_type)
+        publisher = publisher_class(
+            self, msg_type, topic, profile, event_callbacks=event_callbacks, callback_group=callback_group
+        )
         self._publishers.append(publisher)
         return publisher
 
@@ -224,16 +253,40 @@ class Node(NodeParameters, WaitsExplained):
         self,
         msg_type: type,
         topic: str,
-        callback: Callable[[Any], Any],
+        callback: Callable[..., Any],
         qos_profile: QoSProfile | int,
         *,
         callback_group: CallbackGroup | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
+        qos_overriding_options: QoSOverridingOptions | None = None,
+        raw: bool = False,
     ) -> Subscription:
-        """Make a subscription; ``qos_profile`` may be a depth."""
+        """Make a subscription; ``qos_profile`` may be a depth.
+
+        The callback takes a message (with ``raw`` its bytes), or a message and its info.
+
+        Raises:
+            InvalidTopicNameException: the topic's name breaks the rules.
+            AttributeError, RuntimeError: ``msg_type`` is no message class, or the callback takes too much.
+            NotImplementedError: for callbacks about deadlines and liveliness.
+        """
         name, profile = self.resolve_topic_name(topic), as_profile(qos_profile)
+        if qos_overriding_options is not None:
+            profile = overridden("subscription", self, name, profile, qos_overriding_options)
+        check_is_valid_msg_type(msg_type)
         with self._host.lock:
             group = self._group(callback_group)
-            subscription = Subscription(self, msg_type, name, callback, group, profile)
+            subscription = Subscription(
+                self,
+                msg_type,
+                name,
+                callback,
+                group,
+                profile,
+                topic=topic,
+                raw=raw,
+                event_callbacks=event_callbacks,
+            )
             self._add(subscription)
             self._host.network.join_subscription(subscription)
         return subscription
@@ -241,7 +294,7 @@ class Node(NodeParameters, WaitsExplained):
     def create_timer(
         self,
         timer_period_sec: float,
-        callback: Callable[[], Any],
+        callback: Callable[..., Any] | None,
         callback_group: CallbackGroup | None = None,
         clock: Clock | None = None,
         autostart: bool = True,
@@ -276,10 +329,11 @@ class Node(NodeParameters, WaitsExplained):
         callback_group: CallbackGroup | None = None,
     ) -> Service:
         """Make a service."""
+        check_is_valid_srv_type(srv_type)
         name = self.resolve_service_name(srv_name)
         with self._host.lock:
             group = self._group(callback_group)
-            service = Service(self, srv_type, name, callback, group, qos_profile)
+            service = Service(self, srv_type, name, callback, group, qos_profile, srv_name=srv_name)
             self._offer(service)
         return service
 
@@ -292,9 +346,11 @@ class Node(NodeParameters, WaitsExplained):
         callback_group: CallbackGroup | None = None,
     ) -> Client:
         """Make a client of a service."""
+        check_is_valid_srv_type(srv_type)
         name = self.resolve_service_name(srv_name)
         with self._host.lock:
-            client = Client(self, srv_type, name, qos_profile, self._group(callback_group))
+            group = self._group(callback_group)
+            client = Client(self, srv_type, name, qos_profile, group, srv_name=srv_name)
             self._add(client)
         return client
 
@@ -335,6 +391,7 @@ class Node(NodeParameters, WaitsExplained):
             if not self._remove(subscription):
                 return False
             self._host.network.leave_subscription(subscription)
+            subscription.events.destroy()
         return True
 
     def destroy_service(self, service: Service) -> bool:
@@ -365,14 +422,15 @@ class Node(NodeParameters, WaitsExplained):
     def destroy_node(self) -> None:
         """Remove everything; the executor that serves the node lets go of it."""
         with self._host.lock:
-            if self._destroyed:
+            if self.destroyed:
                 return
-            self._destroyed = True
+            self.destroyed = True
             self.executor = None
             for publisher in tuple(self._publishers):
                 self.destroy_publisher(publisher)
             for entity in tuple(self._entities):
-                entity.destroy()  # type: ignore[attr-defined]  # every kind has it, with its own leave-taking
+                entity.destroy()
+            self._host.network.leave_node(self)
 
     def _remove(self, entity: Entity) -> bool:
         with self._host.lock:

@@ -6,66 +6,115 @@ from collections import deque
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
+from sim.ros.duration import Duration
+from sim.ros.event_handler import EndpointEvents, EventCallbacks, EventHandler
 from sim.ros.exceptions import InvalidHandle
-from sim.ros.interfaces import Message, copy_message
+from sim.ros.handle import Handle
+from sim.ros.interfaces import Message, copy_message, from_cdr
 from sim.ros.qos import DurabilityPolicy, QoSProfile
 from sim.ros.subscription import Delivery
 
 if TYPE_CHECKING:
+    from sim.ros.callback_groups import CallbackGroup
     from sim.ros.node import Node
     from sim.ros.subscription import Subscription
 
 
-class Publisher:
-    """Sends messages of one type to every matching subscription of a topic. Thread-safe."""
+_FOR_EVER = Duration(seconds=-1)
 
-    def __init__(self, node: Node, msg_type: type[Message], topic: str, qos_profile: QoSProfile) -> None:
+
+class Publisher:
+    """Sends messages of one type to every matching subscription of a topic. Thread-safe.
+
+    ``topic`` is the topic's name as the program wrote it; ``topic_name`` is the full one.
+
+    Raises:
+        NotImplementedError: for callbacks about deadlines and liveliness.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        msg_type: type[Message],
+        topic: str,
+        qos_profile: QoSProfile,
+        event_callbacks: EventCallbacks | None = None,
+        callback_group: CallbackGroup | None = None,
+    ) -> None:
         self.node = node
         self.msg_type = msg_type
         self.topic = topic
+        self.topic_name = node.resolve_topic_name(topic)
         self.qos_profile = qos_profile
         self._host = node.context.host
         self._probe = node.context.probe
         self._reached: tuple[Subscription, ...] = ()
         self._kept: deque[Delivery] | None = None
-        self._destroyed = False
+        self._sent = 0
+        self.destroyed = False
         if qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL:
             self._kept = deque(maxlen=qos_profile.queue_length)
         with self._host.lock:
+            group = node.default_callback_group if callback_group is None else callback_group
+            self.events = EndpointEvents(node, self.topic_name, group, event_callbacks)
             self._host.network.join_publisher(self)
 
     @property
-    def topic_name(self) -> str:
-        """The topic's full name."""
-        return self.topic
+    def handle(self) -> Handle:
+        """What keeps it alive while it is used."""
+        return Handle(self)
+
+    @property
+    def logger_name(self) -> str:
+        """The name of its node's logger."""
+        return self.node.get_logger().name
+
+    @property
+    def event_handlers(self) -> list[EventHandler]:
+        """What calls back for its events."""
+        return self.events.handlers
 
     def publish(self, msg: Any) -> None:
-        """Send a message to whoever listens.
+        """Send a message, or the bytes of one, to whoever listens.
 
         Raises:
             TypeError: it is not a message of this publisher's type.
+            ValueError: the bytes hold no such message.
             InvalidHandle: the publisher was destroyed.
         """
         self.send(msg)
 
     def send(self, msg: Any) -> int:
         """Do what ``publish`` does, and return the message's id on the trace."""
-        if not isinstance(msg, self.msg_type):
-            raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
-        if self._destroyed:
+        copy = self._copy(msg)
+        if self.destroyed:
             raise InvalidHandle("Cannot publish: the publisher was destroyed")
-        copy = copy_message(msg)
         with self._host.lock:
             message = self._probe.message_id()
-            self._probe.published(message, self.topic, self.node.trace_id)
+            self._probe.published(message, self.topic_name, self.node.trace_id)
             reached = self._reached
             shared = len(reached) > 1 or self._kept is not None
-            delivery = Delivery(copy, message, self._host.clock.now(), shared)
+            self._sent += 1
+            delivery = Delivery(copy, message, self._host.clock.now(), shared, self._sent)
             if self._kept is not None:
                 self._kept.append(delivery)
             for subscription in reached:
                 subscription.deliver(delivery)
         return message
+
+    def _copy(self, msg: Any) -> Message:
+        if isinstance(msg, self.msg_type):
+            return copy_message(msg)
+        if isinstance(msg, bytes):
+            return from_cdr(self.msg_type, msg)
+        raise TypeError(f"Expected {self.msg_type}, got {type(msg)}")
+
+    def wait_for_all_acked(self, timeout: Duration = _FOR_EVER) -> bool:
+        """Wait until every reliable subscription has what was sent: always so, since that takes no time."""
+        return True
+
+    def assert_liveliness(self) -> None:
+        """Tell that it lives, which nobody watches."""
 
     def get_subscription_count(self) -> int:
         """How many subscriptions it reaches."""
@@ -74,10 +123,14 @@ class Publisher:
     def reach(self, subscription: Subscription) -> None:
         """Send to ``subscription`` from now on. With the host's lock held."""
         self._reached = (*self._reached, subscription)
+        self.events.match_made()
+        subscription.events.match_made()
 
     def forget(self, subscription: Subscription) -> None:
         """Send to ``subscription`` no more. With the host's lock held."""
-        self._reached = tuple(each for each in self._reached if each is not subscription)
+        if subscription in self._reached:
+            self._reached = tuple(each for each in self._reached if each is not subscription)
+            self.events.match_lost()
 
     def catch_up(self, subscription: Subscription) -> None:
         """Give a late subscription what a transient-local publisher kept, if both want that."""
@@ -86,22 +139,28 @@ class Publisher:
                 subscription.deliver(delivery)
 
     def incompatible_with(self, subscription: Subscription, policy: str) -> None:
-        """Both sides warn that they do not match, when their executors next spin."""
-        self.node._warn_when_spinning(
-            f"New subscription discovered on topic '{self.topic}', requesting incompatible QoS. "
-            f"No messages will be sent to it. Last incompatible policy: {policy}"
+        """Both sides tell that they do not match, when their executors next spin."""
+        self.events.qos_refused(
+            policy,
+            f"New subscription discovered on topic '{self.topic_name}', requesting incompatible QoS. "
+            f"No messages will be sent to it. Last incompatible policy: {policy}",
         )
-        subscription.node._warn_when_spinning(
-            f"New publisher discovered on topic '{self.topic}', offering incompatible QoS. "
-            f"No messages will be received from it. Last incompatible policy: {policy}"
+        subscription.events.qos_refused(
+            policy,
+            f"New publisher discovered on topic '{self.topic_name}', offering incompatible QoS. "
+            f"No messages will be received from it. Last incompatible policy: {policy}",
         )
 
     def destroy(self) -> None:
         """Take it off the network; publishing raises from now on."""
         with self._host.lock:
-            if not self._destroyed:
-                self._destroyed = True
-                self._host.network.leave_publisher(self)
+            if self.destroyed:
+                return
+            self.destroyed = True
+            self._host.network.leave_publisher(self)
+            self.events.destroy()
+            for subscription in self._reached:
+                subscription.events.match_lost()
 
     def __enter__(self) -> Publisher:
         return self

@@ -1,11 +1,58 @@
 """Quality of service: how many messages are kept, and which publishers a subscription can hear."""
 
-from collections.abc import Iterator
+from __future__ import annotations
+
+import warnings
 from dataclasses import dataclass, fields
-from enum import IntEnum
+from enum import Enum
 from typing import Any
 
 from sim.ros.duration import Duration
+from sim.ros.qos_compatibility import QoSCompatibility, mismatches, qos_check_compatible
+from sim.ros.qos_policies import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSPolicyEnum,
+    QoSPolicyKind,
+    ReliabilityPolicy,
+    qos_policy_name_from_kind,
+)
+
+__all__ = [
+    "DurabilityPolicy",
+    "HistoryPolicy",
+    "InvalidQoSProfileException",
+    "LivelinessPolicy",
+    "QoSCompatibility",
+    "QoSDurabilityPolicy",
+    "QoSHistoryPolicy",
+    "QoSLivelinessPolicy",
+    "QoSPolicyEnum",
+    "QoSPolicyKind",
+    "QoSPresetProfiles",
+    "QoSProfile",
+    "QoSReliabilityPolicy",
+    "ReliabilityPolicy",
+    "as_profile",
+    "mismatches",
+    "qos_check_compatible",
+    "qos_policy_name_from_kind",
+    "qos_profile_action_status_default",
+    "qos_profile_best_available",
+    "qos_profile_default",
+    "qos_profile_parameter_events",
+    "qos_profile_parameters",
+    "qos_profile_sensor_data",
+    "qos_profile_services_default",
+    "qos_profile_system_default",
+    "qos_profile_unknown",
+]
+
+QoSHistoryPolicy = HistoryPolicy
+QoSReliabilityPolicy = ReliabilityPolicy
+QoSDurabilityPolicy = DurabilityPolicy
+QoSLivelinessPolicy = LivelinessPolicy
 
 
 class InvalidQoSProfileException(Exception):
@@ -13,68 +60,6 @@ class InvalidQoSProfileException(Exception):
 
     def __init__(self, *args: object) -> None:
         super().__init__("Invalid QoSProfile", *args)
-
-
-class _Policy(IntEnum):
-    @property
-    def short_key(self) -> str:
-        """The policy's name in lower case, as the command line writes it."""
-        return self.name.lower()
-
-    @classmethod
-    def short_keys(cls) -> list[str]:
-        """Every short name of the policy."""
-        return [each.short_key for each in cls if each.name != "UNKNOWN"]
-
-    @classmethod
-    def get_from_short_key(cls, name: str) -> int:
-        """The value of a policy's short name; KeyError for an unknown one."""
-        return int(cls[name.upper()])
-
-
-class HistoryPolicy(_Policy):
-    """What a full queue does."""
-
-    SYSTEM_DEFAULT = 0
-    KEEP_LAST = 1
-    KEEP_ALL = 2
-    UNKNOWN = 3
-
-
-class ReliabilityPolicy(_Policy):
-    """Whether a lost message is sent again."""
-
-    SYSTEM_DEFAULT = 0
-    RELIABLE = 1
-    BEST_EFFORT = 2
-    UNKNOWN = 3
-    BEST_AVAILABLE = 4
-
-
-class DurabilityPolicy(_Policy):
-    """Whether a late subscription gets what was published before it."""
-
-    SYSTEM_DEFAULT = 0
-    TRANSIENT_LOCAL = 1
-    VOLATILE = 2
-    UNKNOWN = 3
-    BEST_AVAILABLE = 4
-
-
-class LivelinessPolicy(_Policy):
-    """How a publisher shows that it lives."""
-
-    SYSTEM_DEFAULT = 0
-    AUTOMATIC = 1
-    MANUAL_BY_TOPIC = 3
-    UNKNOWN = 4
-    BEST_AVAILABLE = 5
-
-
-QoSHistoryPolicy = HistoryPolicy
-QoSReliabilityPolicy = ReliabilityPolicy
-QoSDurabilityPolicy = DurabilityPolicy
-QoSLivelinessPolicy = LivelinessPolicy
 
 
 _UNSPECIFIED = Duration()
@@ -86,10 +71,12 @@ class QoSProfile:
 
     Raises:
         InvalidQoSProfileException: neither a history nor a depth is given, or KEEP_LAST without a depth.
+        AssertionError: there is no such policy, or a value is of the wrong type.
+        ValueError: the depth is negative, or a policy has no such value.
     """
 
     history: HistoryPolicy = HistoryPolicy.KEEP_LAST
-    depth: int = 0
+    depth: int = 10
     reliability: ReliabilityPolicy = ReliabilityPolicy.RELIABLE
     durability: DurabilityPolicy = DurabilityPolicy.VOLATILE
     lifespan: Duration = _UNSPECIFIED
@@ -100,21 +87,28 @@ class QoSProfile:
 
     def __init__(self, **settings: Any) -> None:
         known = {each.name for each in fields(QoSProfile)}
-        if unknown := sorted(set(settings) - known):
-            raise TypeError(f"Invalid arguments for QoSProfile: {', '.join(unknown)}")
+        assert settings.keys() <= known, f"Invalid arguments passed to constructor: {settings.keys()!r}"
         if "history" not in settings:
             if "depth" not in settings:
                 raise InvalidQoSProfileException("History and/or depth settings are required.")
             settings["history"] = HistoryPolicy.KEEP_LAST
         if settings["history"] == HistoryPolicy.KEEP_LAST and "depth" not in settings:
             raise InvalidQoSProfileException("History set to KEEP_LAST without a depth setting.")
-        if not isinstance(settings.get("depth", 0), int) or settings.get("depth", 0) < 0:
-            raise ValueError("depth must be an integer of 0 or more")
         for name, default in _DEFAULTS.items():
             setattr(self, name, settings.get(name, default))
-        self.history = HistoryPolicy(self.history)
-        self.reliability = ReliabilityPolicy(self.reliability)
-        self.durability = DurabilityPolicy(self.durability)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        object.__setattr__(self, name, _CHECKS[name](value) if name in _CHECKS else value)
+        if name == "depth" and value == 0 and self.history == HistoryPolicy.KEEP_LAST:
+            warnings.warn(
+                "A zero depth with KEEP_LAST doesn't make sense; no data could be stored. "
+                "This will be interpreted as SYSTEM_DEFAULT",
+                stacklevel=3,
+            )
+
+    def __str__(self) -> str:
+        values = (f"{each.name}={getattr(self, each.name)}" for each in fields(self))
+        return f"{type(self).__name__}({', '.join(values)})"
 
     @property
     def queue_length(self) -> int | None:
@@ -122,9 +116,45 @@ class QoSProfile:
         return None if self.history == HistoryPolicy.KEEP_ALL else max(self.depth, 1)
 
 
+def _policy(kind: type[QoSPolicyEnum]) -> Any:
+    def check(value: Any) -> QoSPolicyEnum:
+        assert isinstance(value, int)
+        return kind(value)
+
+    return check
+
+
+def _depth(value: Any) -> int:
+    assert isinstance(value, int)
+    if value < 0:
+        raise ValueError("depth must be an integer of 0 or more")
+    return value
+
+
+def _duration(value: Any) -> Duration:
+    assert isinstance(value, Duration)
+    return value
+
+
+def _truth(value: Any) -> bool:
+    assert isinstance(value, bool)
+    return value
+
+
+_CHECKS: dict[str, Any] = {
+    "history": _policy(HistoryPolicy),
+    "depth": _depth,
+    "reliability": _policy(ReliabilityPolicy),
+    "durability": _policy(DurabilityPolicy),
+    "lifespan": _duration,
+    "deadline": _duration,
+    "liveliness": _policy(LivelinessPolicy),
+    "liveliness_lease_duration": _duration,
+    "avoid_ros_namespace_conventions": _truth,
+}
 _DEFAULTS: dict[str, Any] = {
     "history": HistoryPolicy.KEEP_LAST,
-    "depth": 0,
+    "depth": 10,
     "reliability": ReliabilityPolicy.RELIABLE,
     "durability": DurabilityPolicy.VOLATILE,
     "lifespan": _UNSPECIFIED,
@@ -134,9 +164,17 @@ _DEFAULTS: dict[str, Any] = {
     "avoid_ros_namespace_conventions": False,
 }
 
+qos_profile_unknown = QoSProfile(
+    history=HistoryPolicy.UNKNOWN,
+    depth=0,
+    reliability=ReliabilityPolicy.UNKNOWN,
+    durability=DurabilityPolicy.UNKNOWN,
+    liveliness=LivelinessPolicy.UNKNOWN,
+)
 qos_profile_default = QoSProfile(depth=10)
 qos_profile_system_default = QoSProfile(
     history=HistoryPolicy.SYSTEM_DEFAULT,
+    depth=0,
     reliability=ReliabilityPolicy.SYSTEM_DEFAULT,
     durability=DurabilityPolicy.SYSTEM_DEFAULT,
 )
@@ -144,12 +182,38 @@ qos_profile_sensor_data = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST
 qos_profile_services_default = QoSProfile(depth=10)
 qos_profile_parameters = QoSProfile(depth=1000)
 qos_profile_parameter_events = QoSProfile(depth=1000)
+qos_profile_action_status_default = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 qos_profile_best_available = QoSProfile(
     depth=10,
     reliability=ReliabilityPolicy.BEST_AVAILABLE,
     durability=DurabilityPolicy.BEST_AVAILABLE,
     liveliness=LivelinessPolicy.BEST_AVAILABLE,
 )
+
+
+class QoSPresetProfiles(Enum):
+    """The profiles that ROS 2 has made up; of equal ones the first gives its name to all, as in rclpy."""
+
+    UNKNOWN = qos_profile_unknown
+    DEFAULT = qos_profile_default
+    SYSTEM_DEFAULT = qos_profile_system_default
+    SENSOR_DATA = qos_profile_sensor_data
+    SERVICES_DEFAULT = qos_profile_services_default
+    PARAMETERS = qos_profile_parameters
+    PARAMETER_EVENTS = qos_profile_parameter_events
+    ACTION_STATUS_DEFAULT = qos_profile_action_status_default
+    BEST_AVAILABLE = qos_profile_best_available
+
+    @classmethod
+    def short_keys(cls) -> list[str]:
+        """Every short name of a profile."""
+        return [name.lower() for name in cls.__members__]
+
+    @classmethod
+    def get_from_short_key(cls, name: str) -> QoSProfile:
+        """The profile of a short name; KeyError for an unknown one."""
+        found: QoSProfile = cls[name.upper()].value
+        return found
 
 
 def as_profile(qos: QoSProfile | int) -> QoSProfile:
@@ -163,23 +227,6 @@ def as_profile(qos: QoSProfile | int) -> QoSProfile:
         return qos
     if isinstance(qos, int) and not isinstance(qos, bool):
         if qos < 0:
-            raise ValueError("depth must be an integer of 0 or more")
+            raise ValueError(f"Depth must be greater than or equal to zero; got {qos!r}")
         return QoSProfile(depth=qos)
     raise TypeError(f"Expected QoSProfile or int, but received {type(qos)!r}")
-
-
-def mismatches(offered: QoSProfile, requested: QoSProfile) -> Iterator[str]:
-    """Name the policies by which a subscription cannot hear a publisher; nothing: they match.
-
-    Source: the ROS 2 documentation, "QoS compatibilities" (requested versus offered).
-    """
-    if (
-        requested.reliability == ReliabilityPolicy.RELIABLE
-        and offered.reliability == ReliabilityPolicy.BEST_EFFORT
-    ):
-        yield "RELIABILITY"
-    if (
-        requested.durability == DurabilityPolicy.TRANSIENT_LOCAL
-        and offered.durability == DurabilityPolicy.VOLATILE
-    ):
-        yield "DURABILITY"

@@ -11,15 +11,20 @@ from sim.ros.entity import Entity, Taken
 from sim.ros.interfaces import copy_message
 from sim.ros.network import Request
 from sim.ros.qos import QoSProfile
+from sim.ros.service_introspection import ServiceIntrospectionState, require_off
 from sim.trace.events import EntityKind
 
 if TYPE_CHECKING:
     from sim.ros.callback_groups import CallbackGroup
+    from sim.ros.clock import Clock
     from sim.ros.node import Node
 
 
 class Service(Entity):
-    """Answers calls of one service. A callback that raises sends no reply."""
+    """Answers calls of one service. A callback that raises sends no reply.
+
+    ``srv_name`` is the service's name as the program wrote it; ``service_name`` is the full one.
+    """
 
     kind = EntityKind.SERVICE
     rank = 4
@@ -28,19 +33,35 @@ class Service(Entity):
         self,
         node: Node,
         srv_type: Any,
-        srv_name: str,
+        service_name: str,
         callback: Callable[[Any, Any], Any],
         callback_group: CallbackGroup,
         qos_profile: QoSProfile,
+        *,
+        srv_name: str | None = None,
     ) -> None:
-        super().__init__(node, srv_name, callback_group)
+        super().__init__(node, service_name, callback_group)
         self.srv_type = srv_type
-        self.srv_name = srv_name
+        self.srv_name = service_name if srv_name is None else srv_name
         self.callback = callback
         self.qos_profile = qos_profile
         self.depth = qos_profile.queue_length or 0
         self._probe = node.context.probe
         self._queue: deque[Request] = deque()
+
+    @property
+    def service_name(self) -> str:
+        """The service's full name."""
+        return self.name
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Nothing for OFF; raises NotImplementedError for the rest."""
+        require_off("Service", introspection_state)
 
     def deliver(self, request: Request) -> None:
         """A request arrived; a full queue loses its oldest. With the host's lock held."""
@@ -72,19 +93,24 @@ class Service(Entity):
         outcome = self.callback(request.data, self.srv_type.Response())
         if inspect.iscoroutine(outcome):
             return self._answer_later(request, outcome)
-        self._answer(request, outcome)
+        self.send_response(outcome, request)
         return None
 
     async def _answer_later(self, request: Request, outcome: Any) -> None:
-        self._answer(request, await outcome)
+        self.send_response(await outcome, request)
 
-    def _answer(self, request: Request, response: Any) -> None:
+    def send_response(self, response: Any, header: Request) -> None:
+        """Answer the request of that header.
+
+        Raises:
+            TypeError: the response is not of the service's type.
+        """
         if not isinstance(response, self.srv_type.Response):
             raise TypeError(f"Expected {self.srv_type.Response}, got {type(response)}")
         copy = copy_message(response)
         with self.node.context.host.lock:
-            self._probe.service_replied(request.call, self.name, copy)
-            request.answer(copy)
+            self._probe.service_replied(header.call, self.name, copy)
+            header.answer(copy)
 
     def destroy(self) -> None:
         """Take it off the network."""

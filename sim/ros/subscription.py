@@ -7,7 +7,9 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from sim.ros.entity import Entity, Taken
-from sim.ros.interfaces import copy_message
+from sim.ros.event_handler import EndpointEvents, EventCallbacks, EventHandler
+from sim.ros.interfaces import copy_message, to_cdr
+from sim.ros.message_info import MessageInfo, wants_message_info
 from sim.ros.qos import QoSProfile
 from sim.trace.events import EntityKind
 
@@ -17,16 +19,28 @@ if TYPE_CHECKING:
 
 
 class Delivery(NamedTuple):
-    """A message on its way; ``shared`` tells that other subscriptions get the same object."""
+    """A message on its way, the ``number``-th of its publisher.
+
+    ``shared`` tells that other subscriptions get the same object.
+    """
 
     data: Any
     message: int
     published: int
     shared: bool
+    number: int = 0
 
 
 class Subscription(Entity):
-    """Keeps the newest messages of a topic until its callback takes them, the oldest first."""
+    """Keeps the newest messages of a topic until its callback takes them, the oldest first.
+
+    ``topic`` is the topic's name as the program wrote it; ``topic_name`` is the full one. With ``raw`` the
+    callback gets each message as bytes.
+
+    Raises:
+        RuntimeError: the callback takes neither a message, nor a message and its info.
+        NotImplementedError: for callbacks about deadlines and liveliness.
+    """
 
     kind = EntityKind.SUBSCRIPTION
     rank = 1
@@ -35,24 +49,42 @@ class Subscription(Entity):
         self,
         node: Node,
         msg_type: type,
-        topic: str,
-        callback: Callable[[Any], Any],
+        topic_name: str,
+        callback: Callable[..., Any],
         callback_group: CallbackGroup,
         qos_profile: QoSProfile,
+        *,
+        topic: str | None = None,
+        raw: bool = False,
+        event_callbacks: EventCallbacks | None = None,
     ) -> None:
-        super().__init__(node, topic, callback_group)
+        super().__init__(node, topic_name, callback_group)
         self.msg_type = msg_type
+        self.topic = topic_name if topic is None else topic
+        self.raw = raw
         self.callback = callback
         self.qos_profile = qos_profile
         self.depth = qos_profile.queue_length or 0
         self._probe = node.context.probe
         self._clock = node.context.host.clock
         self._queue: deque[Delivery] = deque()
+        self._received = 0
+        self.events = EndpointEvents(node, topic_name, callback_group, event_callbacks)
 
     @property
-    def topic(self) -> str:
-        """The topic's full name."""
-        return self.name
+    def callback(self) -> Callable[..., Any]:
+        """What is called with each message, and with its info if it takes two arguments."""
+        return self._callback
+
+    @callback.setter
+    def callback(self, value: Callable[..., Any]) -> None:
+        self._with_info = wants_message_info(value)
+        self._callback = value
+
+    @property
+    def event_handlers(self) -> list[EventHandler]:
+        """What calls back for its events."""
+        return self.events.handlers
 
     @property
     def topic_name(self) -> str:
@@ -76,7 +108,7 @@ class Subscription(Entity):
 
     def shown_callback(self) -> Callable[..., Any]:
         """The callback."""
-        return self.callback
+        return self._callback
 
     def take(self, now: int) -> Taken | None:
         """Take the oldest message."""
@@ -87,12 +119,25 @@ class Subscription(Entity):
             self.ready_since = now
         else:
             self.nothing_left()
-        data = copy_message(delivery.data) if delivery.shared else delivery.data
+        self._received += 1
+        data: Any = copy_message(delivery.data) if delivery.shared else delivery.data
+        if self.raw:
+            data = to_cdr(data)
+        if self._with_info:
+            data = (data, self._info_of(delivery, now))
         return Taken(data, delivery.message, now - delivery.published, len(self._queue))
+
+    def _info_of(self, delivery: Delivery, now: int) -> MessageInfo:
+        return MessageInfo(
+            source_timestamp=self._clock.epoch + delivery.published,
+            received_timestamp=self._clock.epoch + now,
+            publication_sequence_number=delivery.number,
+            reception_sequence_number=self._received,
+        )
 
     def invoke(self, taken: Taken) -> Any:
         """Run the callback on the message."""
-        return self.callback(taken.data)
+        return self._callback(*taken.data) if self._with_info else self._callback(taken.data)
 
     def destroy(self) -> None:
         """Take it off the network."""

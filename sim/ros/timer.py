@@ -6,12 +6,15 @@ whole periods. Ticks missed meanwhile are not made up.
 
 from __future__ import annotations
 
+import inspect
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from sim.ros.clock import Clock
+from sim.ros.clock_type import ClockType
 from sim.ros.entity import Entity, Taken
 from sim.ros.exceptions import ROSInterruptException
+from sim.ros.time import Time
 from sim.trace.events import EntityKind
 
 if TYPE_CHECKING:
@@ -36,8 +39,34 @@ def next_due(due: int, period: int, now: int) -> int:
     return following + missed * period
 
 
+class TimerInfo:
+    """A call of a timer: when it was due, and when it came."""
+
+    def __init__(
+        self,
+        *,
+        expected_call_time: int = 0,
+        actual_call_time: int = 0,
+        clock_type: ClockType = ClockType.SYSTEM_TIME,
+    ) -> None:
+        self._expected_call_time = Time(nanoseconds=expected_call_time, clock_type=clock_type)
+        self._actual_call_time = Time(nanoseconds=actual_call_time, clock_type=clock_type)
+
+    @property
+    def expected_call_time(self) -> Time:
+        """When the call was due."""
+        return self._expected_call_time
+
+    @property
+    def actual_call_time(self) -> Time:
+        """When the call came."""
+        return self._actual_call_time
+
+
 class Timer(Entity):
     """Calls back every ``timer_period_ns`` nanoseconds, the first time one period after its creation.
+
+    A callback with a parameter annotated as TimerInfo gets one.
 
     Raises:
         ValueError: the period is negative.
@@ -50,7 +79,7 @@ class Timer(Entity):
         self,
         node: Node,
         timer_period_ns: int,
-        callback: Callable[[], Any],
+        callback: Callable[..., Any] | None,
         callback_group: CallbackGroup,
         clock: Clock,
         *,
@@ -68,6 +97,16 @@ class Timer(Entity):
         self._canceled = True
         if autostart:
             self.reset()
+
+    @property
+    def callback(self) -> Callable[..., Any] | None:
+        """What is called when it is due."""
+        return self._callback
+
+    @callback.setter
+    def callback(self, value: Callable[..., Any] | None) -> None:
+        self._info_parameter = _info_parameter(value)
+        self._callback = value
 
     @property
     def timer_period_ns(self) -> int:
@@ -110,9 +149,9 @@ class Timer(Entity):
         """Nanoseconds since the last call, or since it was made."""
         return self._host.clock.now() - self._last_call
 
-    def shown_callback(self) -> Callable[..., Any]:
+    def shown_callback(self) -> Callable[..., Any] | None:
         """The callback."""
-        return self.callback
+        return self._callback
 
     def still_ready(self, now: int) -> bool:
         """Whether it is due and neither cancelled nor destroyed."""
@@ -123,19 +162,42 @@ class Timer(Entity):
         if not self.still_ready(now):
             return None
         late = now - self.due
+        info = None if self._info_parameter is None else self._info(now)
         self.due = next_due(self.due, self.period, now)
         self._last_call = now
         self.nothing_left()
         self.node._timer_set(self)
-        return Taken(None, 0, late, 0)
+        return Taken(info, 0, late, 0)
 
     def invoke(self, taken: Taken) -> Any:
         """Run the callback."""
-        return self.callback()
+        if self._callback is None:
+            return None
+        if self._info_parameter is None:
+            return self._callback()
+        return self._callback(**{self._info_parameter: taken.data})
+
+    def _info(self, now: int) -> TimerInfo:
+        return TimerInfo(
+            expected_call_time=self.clock._time_at(self.due).nanoseconds,
+            actual_call_time=self.clock._time_at(now).nanoseconds,
+            clock_type=self.clock.clock_type,
+        )
 
     def destroy(self) -> None:
         """Remove it from its node."""
         self.node.destroy_timer(self)
+
+
+def _info_parameter(callback: Callable[..., Any] | None) -> str | None:
+    """The name of the parameter by which a callback asks for a TimerInfo."""
+    if callback is None:
+        return None
+    try:
+        parameters = inspect.signature(callback).parameters.values()
+    except ValueError:  # some functions written in C do not tell theirs
+        return None
+    return next((each.name for each in parameters if each.annotation is TimerInfo), None)
 
 
 class Rate:

@@ -47,7 +47,7 @@ def check_is_valid_srv_type(srv_type: Any) -> None:
         RuntimeError: it is a message class.
     """
     check_for_type_support(srv_type)
-    if not isinstance(srv_type, ServiceType):
+    if _is_message(srv_type):
         raise RuntimeError(
             f"The service type provided is not valid ({srv_type}), this might be a message or action"
         )

@@ -18,10 +18,12 @@ def _serving_order(entity: Entity) -> tuple[int, int]:
 def snapshot(nodes: Iterable[Node], now: int) -> deque[Entity]:
     """The entities that are ready at ``now`` and whose group lets them in, in the order of service.
 
-    Node by node timers, subscriptions, guard conditions, clients, services; within a kind, in creation
-    order. Entities that are handed out already are left out, and so are those of a busy group.
+    Waitables of all nodes, then node by node timers, subscriptions, guard conditions, clients, services;
+    within a kind, in creation order. Entities that are handed out already are left out, and so are those of
+    a busy group.
     """
     ready: deque[Entity] = deque()
+    waitables: list[Entity] = []
     for node in nodes:
         pending = node._collect_due(now)
         if pending:
@@ -29,7 +31,10 @@ def snapshot(nodes: Iterable[Node], now: int) -> deque[Entity]:
                 each for each in pending if not each.handed_out and each.callback_group.can_execute(each)
             ]
             let_in.sort(key=_serving_order)
+            while let_in and let_in[0].rank < 0:
+                waitables.append(let_in.pop(0))
             ready.extend(let_in)
+    ready.extendleft(reversed(waitables))
     return ready
 
 

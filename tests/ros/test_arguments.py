@@ -106,7 +106,7 @@ def test_what_is_remapped_meets_on_the_new_name() -> None:
         publisher.publish(Int32(data=7))
         rclpy.spin_once(listener, timeout_sec=1.0)
         server = speaker.create_service(SetBool, "chatter", lambda _, response: response)
-        assert server.srv_name == "/gossip"
+        assert server.service_name == "/gossip"
         assert listener.create_client(SetBool, "/gossip").service_is_ready()
 
     simulate(program)

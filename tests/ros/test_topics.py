@@ -50,7 +50,8 @@ def test_keep_last_keeps_the_newest_and_an_int_is_a_depth() -> None:
 
 
 def test_a_depth_of_zero_keeps_one() -> None:
-    assert hear(0, 10, 5) == [4]
+    with pytest.warns(UserWarning, match="A zero depth with KEEP_LAST"):
+        assert hear(0, 10, 5) == [4]
 
 
 def test_keep_all_loses_nothing() -> None:
@@ -232,7 +233,7 @@ def test_something_else_than_a_profile_or_a_depth_is_refused() -> None:
         for wrong in ("10", None, 1.5, True):
             with pytest.raises(TypeError, match="Expected QoSProfile or int, but received"):
                 node.create_publisher(Int32, "t", wrong)  # type: ignore[arg-type]
-        with pytest.raises(ValueError, match="depth must be an integer of 0 or more"):
+        with pytest.raises(ValueError, match="Depth must be greater than or equal to zero; got -1"):
             node.create_subscription(Int32, "t", lambda _: None, -1)
 
     simulate(program)

@@ -1,0 +1,225 @@
+"""Events of publishers and subscriptions: a match made or lost, or refused for its quality or type.
+
+Deadlines and liveliness are not watched, and asking for their events is an error. No message is ever lost on
+the way, so the event that tells of it never comes; a full queue that drops its oldest is not meant by it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any
+
+from sim.ros.entity import Entity, Taken
+from sim.ros.qos_policies import QoSPolicyKind
+from sim.trace.events import EntityKind
+
+if TYPE_CHECKING:
+    from sim.ros.callback_groups import CallbackGroup
+    from sim.ros.node import Node
+
+EventCallback = Callable[[Any], Any]
+
+
+class QoSPublisherEventType(IntEnum):
+    """What a publisher can tell of."""
+
+    RCL_PUBLISHER_OFFERED_DEADLINE_MISSED = 0
+    RCL_PUBLISHER_LIVELINESS_LOST = 1
+    RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS = 2
+    RCL_PUBLISHER_INCOMPATIBLE_TYPE = 3
+    RCL_PUBLISHER_MATCHED = 4
+
+
+class QoSSubscriptionEventType(IntEnum):
+    """What a subscription can tell of."""
+
+    RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED = 0
+    RCL_SUBSCRIPTION_LIVELINESS_CHANGED = 1
+    RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS = 2
+    RCL_SUBSCRIPTION_MESSAGE_LOST = 3
+    RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE = 4
+    RCL_SUBSCRIPTION_MATCHED = 5
+
+
+class UnsupportedEventTypeError(RuntimeError):
+    """An event that what carries the messages does not know; never raised here."""
+
+
+@dataclass(slots=True)
+class MatchedInfo:
+    """How many matches there were and are; the changes count from the last event taken."""
+
+    total_count: int = 0
+    total_count_change: int = 0
+    current_count: int = 0
+    current_count_change: int = 0
+
+
+@dataclass(slots=True)
+class IncompatibleQoSInfo:
+    """How many matches failed for their quality of service, the last by which policy."""
+
+    total_count: int = 0
+    total_count_change: int = 0
+    last_policy_kind: QoSPolicyKind = QoSPolicyKind.INVALID
+
+
+@dataclass(slots=True)
+class IncompatibleTypeInfo:
+    """How many matches failed for the type of their messages."""
+
+    total_count: int = 0
+    total_count_change: int = 0
+
+
+QoSPublisherMatchedInfo = QoSSubscriptionMatchedInfo = MatchedInfo
+QoSOfferedIncompatibleQoSInfo = QoSRequestedIncompatibleQoSInfo = IncompatibleQoSInfo
+
+
+class EventHandler(Entity):
+    """Calls back with the state of one kind of event once it has changed."""
+
+    kind = EntityKind.WAITABLE
+    rank = -1
+
+    def __init__(
+        self, node: Node, topic: str, callback: EventCallback, callback_group: CallbackGroup, info: Any
+    ) -> None:
+        super().__init__(node, topic, callback_group)
+        self.callback = callback
+        self.info = info
+
+    def changed(self) -> None:
+        """The state has changed. With the host's lock held."""
+        self.become_ready(self.node.context.host.clock.now())
+
+    def shown_callback(self) -> EventCallback:
+        """The callback."""
+        return self.callback
+
+    def take(self, now: int) -> Taken | None:
+        """Take the state; its changes count anew."""
+        if not self.pending:
+            return None
+        late = now - self.ready_since
+        info = replace(self.info)
+        for name in ("total_count_change", "current_count_change"):
+            if hasattr(self.info, name):
+                setattr(self.info, name, 0)
+        self.nothing_left()
+        return Taken(info, 0, late, 0)
+
+    def invoke(self, taken: Taken) -> Any:
+        """Run the callback on the state."""
+        return self.callback(taken.data)
+
+    def destroy(self) -> None:
+        """Remove it from its node."""
+        self.node._remove(self)
+
+
+class EventCallbacks:
+    """Base of the callbacks for events; without one for it, a match refused for its quality is warned of."""
+
+    def __init__(
+        self,
+        *,
+        deadline: EventCallback | None = None,
+        liveliness: EventCallback | None = None,
+        incompatible_qos: EventCallback | None = None,
+        incompatible_type: EventCallback | None = None,
+        matched: EventCallback | None = None,
+        use_default_callbacks: bool = True,
+    ) -> None:
+        self.deadline = deadline
+        self.liveliness = liveliness
+        self.incompatible_qos = incompatible_qos
+        self.incompatible_type = incompatible_type
+        self.matched = matched
+        self.use_default_callbacks = use_default_callbacks
+
+
+class PublisherEventCallbacks(EventCallbacks):
+    """What a program wants to hear of a publisher."""
+
+
+class SubscriptionEventCallbacks(EventCallbacks):
+    """What a program wants to hear of a subscription; ``message_lost`` is never called."""
+
+    def __init__(self, *, message_lost: EventCallback | None = None, **callbacks: Any) -> None:
+        super().__init__(**callbacks)
+        self.message_lost = message_lost
+
+
+class EndpointEvents:
+    """The events of one publisher or subscription. All is called with the host's lock held.
+
+    Raises:
+        NotImplementedError: for callbacks about deadlines and liveliness.
+    """
+
+    def __init__(
+        self, node: Node, topic: str, callback_group: CallbackGroup, callbacks: EventCallbacks | None
+    ) -> None:
+        wanted = EventCallbacks() if callbacks is None else callbacks
+        for name in ("deadline", "liveliness"):
+            if getattr(wanted, name) is not None:
+                raise NotImplementedError(f"{type(wanted).__name__}({name}=...) is not supported")
+        self.handlers: list[EventHandler] = []
+        self._node = node
+        self._warns = wanted.use_default_callbacks
+
+        def handler(callback: EventCallback | None, info: Any) -> EventHandler | None:
+            if callback is None:
+                return None
+            made = EventHandler(node, topic, callback, callback_group, info)
+            self.handlers.append(made)
+            node._add(made)
+            return made
+
+        self._incompatible_qos = handler(wanted.incompatible_qos, IncompatibleQoSInfo())
+        self._incompatible_type = handler(wanted.incompatible_type, IncompatibleTypeInfo())
+        self._matched = handler(wanted.matched, MatchedInfo())
+
+    def match_made(self) -> None:
+        """One match more."""
+        if self._matched is not None:
+            info = self._matched.info
+            info.total_count += 1
+            info.total_count_change += 1
+            info.current_count += 1
+            info.current_count_change += 1
+            self._matched.changed()
+
+    def match_lost(self) -> None:
+        """One match less."""
+        if self._matched is not None:
+            info = self._matched.info
+            info.current_count -= 1
+            info.current_count_change -= 1
+            self._matched.changed()
+
+    def qos_refused(self, policy: str, warning: str) -> None:
+        """No match for ``policy``; without a callback for that, the warning is given while spinning."""
+        handler = self._incompatible_qos
+        if handler is not None:
+            handler.info.total_count += 1
+            handler.info.total_count_change += 1
+            handler.info.last_policy_kind = QoSPolicyKind[policy]
+            handler.changed()
+        elif self._warns:
+            self._node._warn_when_spinning(warning)
+
+    def type_refused(self) -> None:
+        """No match for the type of the messages."""
+        if self._incompatible_type is not None:
+            self._incompatible_type.info.total_count += 1
+            self._incompatible_type.info.total_count_change += 1
+            self._incompatible_type.changed()
+
+    def destroy(self) -> None:
+        """Tell of nothing any more."""
+        for each in self.handlers:
+            each.destroy()

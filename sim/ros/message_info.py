@@ -1,0 +1,38 @@
+"""What a subscription can tell of a message beside its data."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from typing import Any, TypedDict
+
+
+class MessageInfo(TypedDict):
+    """When a message was sent and received (nanoseconds since 1970), and its numbers in both rows."""
+
+    source_timestamp: int
+    received_timestamp: int
+    publication_sequence_number: int
+    reception_sequence_number: int
+
+
+def wants_message_info(callback: Callable[..., Any]) -> bool:
+    """Whether a subscription's callback takes the message's info as well.
+
+    Raises:
+        RuntimeError: it takes neither one argument nor two.
+    """
+    try:
+        signature = inspect.signature(callback)
+    except ValueError:  # some functions written in C do not tell theirs
+        return False
+    for count in (1, 2):
+        try:
+            signature.bind(*[None] * count)
+        except TypeError:
+            continue
+        return count == 2
+    raise RuntimeError(
+        "Subscription.__init__(): callback should be either be callable with one argument "
+        "(to get only the message) or two (to get message and message info)"
+    )

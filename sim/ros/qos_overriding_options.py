@@ -1,0 +1,110 @@
+"""Letting the user of a program override the quality of service of a topic, by parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Literal
+
+from sim.ros import rcl_interfaces
+from sim.ros.duration import Duration
+from sim.ros.exceptions import ParameterAlreadyDeclaredException
+from sim.ros.qos import QoSPolicyKind, QoSProfile
+from sim.ros.qos_policies import QoSPolicyEnum
+
+if TYPE_CHECKING:
+    from sim.ros.node import Node
+
+
+class InvalidQosOverridesError(Exception):
+    """The program's callback refused the overridden profile."""
+
+
+class QoSOverridingOptions:
+    """Which policies may be overridden.
+
+    ``callback`` gets the overridden profile and returns a SetParametersResult; ``entity_id`` tells several
+    publishers or subscriptions of one topic apart.
+    """
+
+    def __init__(
+        self,
+        policy_kinds: Iterable[QoSPolicyKind],
+        *,
+        callback: Callable[[QoSProfile], Any] | None = None,
+        entity_id: str | None = None,
+    ) -> None:
+        self._policy_kinds = tuple(policy_kinds)
+        self._callback = callback
+        self._entity_id = entity_id
+
+    @property
+    def policy_kinds(self) -> Iterable[QoSPolicyKind]:
+        """The policies that may be overridden."""
+        return self._policy_kinds
+
+    @property
+    def callback(self) -> Callable[[QoSProfile], Any] | None:
+        """What judges the overridden profile."""
+        return self._callback
+
+    @property
+    def entity_id(self) -> str | None:
+        """What tells several of one topic apart."""
+        return self._entity_id
+
+    @classmethod
+    def with_default_policies(
+        cls, *, callback: Callable[[QoSProfile], Any] | None = None, entity_id: str | None = None
+    ) -> QoSOverridingOptions:
+        """History, depth and reliability may be overridden."""
+        kinds = (QoSPolicyKind.HISTORY, QoSPolicyKind.DEPTH, QoSPolicyKind.RELIABILITY)
+        return cls(kinds, callback=callback, entity_id=entity_id)
+
+
+def overridden(
+    entity: Literal["publisher", "subscription"],
+    node: Node,
+    topic: str,
+    qos: QoSProfile,
+    options: QoSOverridingOptions,
+) -> QoSProfile:
+    """A profile with what the parameters ``qos_overrides.<topic>.<entity>.<policy>`` say; declares them.
+
+    Raises:
+        InvalidQosOverridesError: the options' callback refuses the outcome.
+    """
+    changed = replace(qos)
+    suffix = f"_{options.entity_id}" if options.entity_id else ""
+    for kind in options.policy_kinds:
+        policy = kind.name.lower()
+        name = f"qos_overrides.{topic}.{entity}{suffix}.{policy}"
+        value = _declared(node, name, _as_parameter(getattr(qos, policy)))
+        setattr(changed, policy, _as_policy(getattr(qos, policy), value))
+    if options.callback is not None:
+        verdict = options.callback(changed)
+        if not verdict.successful:
+            raise InvalidQosOverridesError(
+                f"{entity} {{{topic}}}: Provided QoS overrides `{changed}`, are not valid: {verdict.reason}"
+            )
+    return changed
+
+
+def _declared(node: Node, name: str, value: Any) -> Any:
+    descriptor = rcl_interfaces.ParameterDescriptor(read_only=True)
+    try:
+        return node.declare_parameter(name, value, descriptor).value
+    except ParameterAlreadyDeclaredException:
+        return node.get_parameter(name).value
+
+
+def _as_parameter(policy: Any) -> Any:
+    if isinstance(policy, QoSPolicyEnum):
+        return policy.short_key
+    return policy.nanoseconds if isinstance(policy, Duration) else policy
+
+
+def _as_policy(former: Any, value: Any) -> Any:
+    if isinstance(former, QoSPolicyEnum):
+        return type(former).get_from_short_key(value)
+    return Duration(nanoseconds=value) if isinstance(former, Duration) else value
