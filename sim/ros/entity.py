@@ -41,7 +41,7 @@ class Entity:
         self.node = node
         self.name = name
         self.callback_group = callback_group
-        self.order = node._next_order()
+        self.order = node._agenda.next_order()
         self.handed_out = False
         self.pending = False
         self.destroyed = False
@@ -93,10 +93,10 @@ class Entity:
         if not self.pending:
             self.pending = True
             self.ready_since = since
-            self.node._entity_ready(self)
+            self.node._agenda.entity_ready(self)
 
     def nothing_left(self) -> None:
         """There is nothing more to take. With the host's lock held."""
         if self.pending:
             self.pending = False
-            self.node._entity_idle(self)
+            self.node._agenda.entity_idle(self)

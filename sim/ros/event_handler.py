@@ -117,7 +117,7 @@ class EventHandler(Entity):
 
     def destroy(self) -> None:
         """Remove it from its node."""
-        self.node._remove(self)
+        self.node._agenda.remove(self)
 
 
 class EventCallbacks:
@@ -176,7 +176,7 @@ class EndpointEvents:
                 return None
             made = EventHandler(node, topic, callback, callback_group, info)
             self.handlers.append(made)
-            node._add(made)
+            node._agenda.add(made)
             return made
 
         self._incompatible_qos = handler(wanted.incompatible_qos, IncompatibleQoSInfo())
@@ -210,7 +210,7 @@ class EndpointEvents:
             handler.info.last_policy_kind = QoSPolicyKind[policy]
             handler.changed()
         elif self._warns:
-            self._node._warn_when_spinning(warning)
+            self._node._agenda.warn_when_spinning(warning)
 
     def type_refused(self) -> None:
         """No match for the type of the messages."""

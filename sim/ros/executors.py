@@ -213,7 +213,7 @@ class Executor:
                     return work
                 if deadline is not None and now >= deadline:
                     raise TimeoutException
-                until = _earliest((deadline, *(node._next_due() for node in self._nodes)))
+                until = _earliest((deadline, *(node._agenda.next_due() for node in self._nodes)))
                 self._waits_until = until
                 self._waiting = True
             self._signal.wait(until)
@@ -233,8 +233,8 @@ class Executor:
         if not self._looked:
             self._looked = True
             for node in self._nodes:
-                if node._warnings:
-                    node._speak_warnings()
+                if node._agenda.warnings:
+                    node._agenda.speak_warnings()
             self._wait_set.look(self._nodes, now)
         return self._wait_set.next(now)
 

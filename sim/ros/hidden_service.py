@@ -25,5 +25,6 @@ def offer_hidden(
     name = node.resolve_service_name(srv_name)
     with node.context.host.lock:
         service = HiddenService(node, srv_type, name, callback, node.default_callback_group, qos_profile)
-        node._offer(service)
+        node._agenda.add(service)
+        node.context.host.network.join_service(service)
     return service

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import weakref
 from collections.abc import Callable, Iterator, Sequence
-from heapq import heappop, heappush
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
+from sim.ros.agenda import Agenda
 from sim.ros.arguments import arguments_of_node, parameters_for
 from sim.ros.callback_groups import (
     CallbackGroup,
@@ -17,11 +16,9 @@ from sim.ros.callback_groups import (
 from sim.ros.client import Client
 from sim.ros.clock import Clock, ROSClock
 from sim.ros.context import Context
-from sim.ros.entity import Entity
 from sim.ros.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from sim.ros.guard_condition import GuardCondition
 from sim.ros.handle import Handle
-from sim.ros.host import WaitsExplained
 from sim.ros.logging import RcutilsLogger, get_logger
 from sim.ros.logging_service import LoggingService
 from sim.ros.node_graph import GraphQueries
@@ -41,15 +38,12 @@ from sim.ros.timer import Rate, Timer
 from sim.ros.type_description_service import TypeDescriptionService
 from sim.ros.type_support import check_is_valid_msg_type, check_is_valid_srv_type
 from sim.ros.utilities import get_default_context
-from sim.trace.events import Reason
 
 if TYPE_CHECKING:
     from sim.ros.executors import Executor
 
-EntityT = TypeVar("EntityT", bound=Entity)
 
-
-class Node(NodeParameters, GraphQueries, WaitsExplained):
+class Node(NodeParameters, GraphQueries):
     """A node of the ROS graph.
 
     ``cli_args`` are arguments for this node alone and count before the program's, which are left out
@@ -82,32 +76,25 @@ class Node(NodeParameters, GraphQueries, WaitsExplained):
         own_arguments = arguments_of_node(cli_args or ())
         sources = [self._context.arguments, own_arguments] if use_global_arguments else [own_arguments]
         rules = [rule for source in reversed(sources) for rule in source.remap_rules]
-        self._names = NodeNames(node_name, namespace or "", Remapping(rules))
+        self._node_names = NodeNames(node_name, namespace or "", Remapping(rules))
         given = parameters_for(self.get_fully_qualified_name(), sources)
         overrides = [Parameter(name, value=value) for name, value in given.items()]
         NodeParameters.__init__(
             self, [*overrides, *(parameter_overrides or ())], allow_undeclared=allow_undeclared_parameters
         )
-        self._host = self._context.host
-        self._orders = 0
-        self._entities: list[Entity] = []
         self._publishers: list[Publisher] = []
-        self._pending: dict[Entity, None] = {}
-        self._timer_queue: list[tuple[int, int, Timer]] = []
-        self._warnings: list[str] = []
-        self._executor: weakref.ref[Executor] | None = None
         self.destroyed = False
         self._clock = ROSClock()
-        self._logger = get_logger(self._names.logger_name)
+        self._logger = get_logger(self._node_names.logger_name)
+        self._agenda = Agenda(self._context.host, self._context.probe, self._logger)
         self.trace_id = self._context.probe.node_made(self.get_fully_qualified_name())
         self._default_callback_group = MutuallyExclusiveCallbackGroup()
         self._rate_group = ReentrantCallbackGroup()
-        self._host.explain_waits_of(self)
-        with self._host.lock:
-            self._host.network.join_node(self)
+        with self._agenda.host.lock:
+            self._agenda.host.network.join_node(self)
         self._parameter_event_publisher = parameter_event_publisher(self)
         if automatically_declare_parameters_from_overrides:
-            self._declare_overrides()
+            self._declare_parameter_overrides()
         self._time_source = TimeSource(node=self)
         if start_parameter_services:
             self._parameter_service = ParameterService(self)
@@ -138,15 +125,15 @@ class Node(NodeParameters, GraphQueries, WaitsExplained):
 
     def get_name(self) -> str:
         """Its name without namespace."""
-        return self._names.name
+        return self._node_names.name
 
     def get_namespace(self) -> str:
         """Its namespace, ``/`` for none."""
-        return self._names.namespace
+        return self._node_names.namespace
 
     def get_fully_qualified_name(self) -> str:
         """Namespace and name, such as ``/arm/sub_node``."""
-        return self._names.full_name
+        return self._node_names.full_name
 
     def assert_liveliness(self) -> None:
         """Tell that it lives, which nobody watches."""
@@ -161,27 +148,29 @@ class Node(NodeParameters, GraphQueries, WaitsExplained):
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
         """The full name of a topic as this node means it; remapped, unless ``only_expand``."""
-        return self._names.expanded_topic(topic) if only_expand else self._names.topic(topic)
+        return self._node_names.expanded_topic(topic) if only_expand else self._node_names.topic(topic)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
         """The full name of a service as this node means it; remapped, unless ``only_expand``."""
-        return self._names.expanded_service(service) if only_expand else self._names.service(service)
+        return (
+            self._node_names.expanded_service(service) if only_expand else self._node_names.service(service)
+        )
 
     @property
     def executor(self) -> Executor | None:
         """The executor that serves it, if any."""
-        return None if self._executor is None else self._executor()
+        return self._agenda.executor
 
     @executor.setter
     def executor(self, new_executor: Executor | None) -> None:
         current = self.executor
         if current is new_executor:
             return
-        self._executor = None
+        self._agenda.executor = None
         if current is not None:
             current.remove_node(self)
         if new_executor is not None:
-            self._executor = weakref.ref(new_executor)
+            self._agenda.executor = new_executor
             new_executor.add_node(self)
 
     # What it has
@@ -194,30 +183,27 @@ class Node(NodeParameters, GraphQueries, WaitsExplained):
     @property
     def subscriptions(self) -> Iterator[Subscription]:
         """Its subscriptions, oldest first."""
-        yield from self._of(Subscription)
+        yield from self._agenda.of(Subscription)
 
     @property
     def timers(self) -> Iterator[Timer]:
         """Its timers, oldest first."""
-        yield from self._of(Timer)
+        yield from self._agenda.of(Timer)
 
     @property
     def services(self) -> Iterator[Service]:
         """Its services, oldest first."""
-        yield from self._of(Service)
+        yield from self._agenda.of(Service)
 
     @property
     def clients(self) -> Iterator[Client]:
         """Its clients, oldest first."""
-        yield from self._of(Client)
+        yield from self._agenda.of(Client)
 
     @property
     def guards(self) -> Iterator[GuardCondition]:
         """Its guard conditions, oldest first."""
-        yield from self._of(GuardCondition)
-
-    def _of(self, kind: type[EntityT]) -> tuple[EntityT, ...]:
-        return tuple(each for each in tuple(self._entities) if isinstance(each, kind))
+        yield from self._agenda.of(GuardCondition)
 
     # Making entities
 
@@ -274,8 +260,8 @@ class Node(NodeParameters, GraphQueries, WaitsExplained):
         if qos_overriding_options is not None:
             profile = overridden("subscription", self, name, profile, qos_overriding_options)
         check_is_valid_msg_type(msg_type)
-        with self._host.lock:
-            group = self._group(callback_group)
+        with self._agenda.host.lock:
+            group = self._chosen_group(callback_group)
             subscription = Subscription(
                 self,
                 msg_type,
@@ -287,8 +273,8 @@ class Node(NodeParameters, GraphQueries, WaitsExplained):
                 raw=raw,
                 event_callbacks=event_callbacks,
             )
-            self._add(subscription)
-            self._host.network.join_subscription(subscription)
+            self._agenda.add(subscription)
+            self._agenda.host.network.join_subscription(subscription)
         return subscription
 
     def create_timer(
@@ -301,10 +287,10 @@ class Node(NodeParameters, GraphQueries, WaitsExplained):
     ) -> Timer:
         """Make a timer that calls back every ``timer_period_sec`` seconds."""
         period = int(float(timer_period_sec) * 1_000_000_000)
-        with self._host.lock:
-            group = self._group(callback_group)
+        with self._agenda.host.lock:
+            group = self._chosen_group(callback_group)
             timer = Timer(self, period, callback, group, clock or self._clock, autostart=autostart)
-            self._add(timer)
+            self._agenda.add(timer)
         return timer
 
     def create_rate(self, frequency: float, clock: Clock | None = None) -> Rate:
@@ -331,10 +317,11 @@ class Node(NodeParameters, GraphQueries, WaitsExplained):
         """Make a service."""
         check_is_valid_srv_type(srv_type)
         name = self.resolve_service_name(srv_name)
-        with self._host.lock:
-            group = self._group(callback_group)
+        with self._agenda.host.lock:
+            group = self._chosen_group(callback_group)
             service = Service(self, srv_type, name, callback, group, qos_profile, srv_name=srv_name)
-            self._offer(service)
+            self._agenda.add(service)
+            self._agenda.host.network.join_service(service)
         return service
 
     def create_client(
@@ -348,32 +335,23 @@ class Node(NodeParameters, GraphQueries, WaitsExplained):
         """Make a client of a service."""
         check_is_valid_srv_type(srv_type)
         name = self.resolve_service_name(srv_name)
-        with self._host.lock:
-            group = self._group(callback_group)
+        with self._agenda.host.lock:
+            group = self._chosen_group(callback_group)
             client = Client(self, srv_type, name, qos_profile, group, srv_name=srv_name)
-            self._add(client)
+            self._agenda.add(client)
         return client
 
     def create_guard_condition(
         self, callback: Callable[[], Any] | None, callback_group: CallbackGroup | None = None
     ) -> GuardCondition:
         """Make a guard condition."""
-        with self._host.lock:
-            guard = GuardCondition(self, callback, self._group(callback_group))
-            self._add(guard)
+        with self._agenda.host.lock:
+            guard = GuardCondition(self, callback, self._chosen_group(callback_group))
+            self._agenda.add(guard)
         return guard
 
-    def _group(self, wanted: CallbackGroup | None) -> CallbackGroup:
+    def _chosen_group(self, wanted: CallbackGroup | None) -> CallbackGroup:
         return self._default_callback_group if wanted is None else wanted
-
-    def _offer(self, service: Service) -> None:
-        self._add(service)
-        self._host.network.join_service(service)
-
-    def _add(self, entity: Entity) -> None:
-        self._entities.append(entity)
-        self._context.probe.entity_made(entity)
-        self._wake_executor()
 
     # Removing them
 
@@ -387,132 +365,53 @@ class Node(NodeParameters, GraphQueries, WaitsExplained):
 
     def destroy_subscription(self, subscription: Subscription) -> bool:
         """Remove a subscription; whether it was this node's."""
-        with self._host.lock:
-            if not self._remove(subscription):
+        with self._agenda.host.lock:
+            if not self._agenda.remove(subscription):
                 return False
-            self._host.network.leave_subscription(subscription)
+            self._agenda.host.network.leave_subscription(subscription)
             subscription.events.destroy()
         return True
 
     def destroy_service(self, service: Service) -> bool:
         """Remove a service; whether it was this node's."""
-        with self._host.lock:
-            if not self._remove(service):
+        with self._agenda.host.lock:
+            if not self._agenda.remove(service):
                 return False
-            self._host.network.leave_service(service)
+            self._agenda.host.network.leave_service(service)
         return True
 
     def destroy_client(self, client: Client) -> bool:
         """Remove a client; whether it was this node's."""
-        return self._remove(client)
+        return self._agenda.remove(client)
 
     def destroy_timer(self, timer: Timer) -> bool:
         """Remove a timer; whether it was this node's."""
-        return self._remove(timer)
+        return self._agenda.remove(timer)
 
     def destroy_guard_condition(self, guard: GuardCondition) -> bool:
         """Remove a guard condition; whether it was this node's."""
-        return self._remove(guard)
+        return self._agenda.remove(guard)
 
     def destroy_rate(self, rate: Rate) -> bool:
         """Remove a rate and its timer; whether it was this node's."""
         rate.destroy()
-        return rate.timer is not None and self._remove(rate.timer)
+        return rate.timer is not None and self._agenda.remove(rate.timer)
 
     def destroy_node(self) -> None:
         """Remove everything; the executor that serves the node lets go of it."""
-        with self._host.lock:
+        with self._agenda.host.lock:
             if self.destroyed:
                 return
             self.destroyed = True
             self.executor = None
             for publisher in tuple(self._publishers):
                 self.destroy_publisher(publisher)
-            for entity in tuple(self._entities):
+            for entity in tuple(self._agenda.entities):
                 entity.destroy()
-            self._host.network.leave_node(self)
-
-    def _remove(self, entity: Entity) -> bool:
-        with self._host.lock:
-            if entity not in self._entities:
-                return False
-            self._entities.remove(entity)
-            entity.destroyed = True
-            entity.nothing_left()
-            self._context.probe.entity_gone(entity)
-            self._wake_executor()
-        return True
-
-    # For the executor; all with the host's lock held
-
-    def _next_order(self) -> int:
-        self._orders += 1
-        return self._orders
-
-    def _entity_ready(self, entity: Entity) -> None:
-        self._pending[entity] = None
-        executor = self.executor
-        if executor is not None:
-            executor._entity_ready(entity)
-
-    def _entity_idle(self, entity: Entity) -> None:
-        self._pending.pop(entity, None)
-        self._context.probe.wait_ended(entity)
-
-    def _timer_set(self, timer: Timer) -> None:
-        heappush(self._timer_queue, (timer.due, timer.order, timer))
-        executor = self.executor
-        if executor is not None:
-            executor._timer_set(timer)
-
-    def _collect_due(self, now: int) -> dict[Entity, None]:
-        """Everything that has something to take, once the timers that are due are among it."""
-        while (due := self._next_due()) is not None and due <= now:
-            timer = heappop(self._timer_queue)[2]
-            timer.pending = True
-            timer.ready_since = due
-            self._pending[timer] = None
-        return self._pending
-
-    def _next_due(self) -> int | None:
-        """When the next timer that is not due yet falls due; None without one."""
-        queue = self._timer_queue
-        while queue:
-            due, _, timer = queue[0]
-            if timer.due == due and not (timer.pending or timer.is_canceled() or timer.destroyed):
-                return due
-            heappop(queue)
-        return None
-
-    def _wake_executor(self) -> None:
-        executor = self.executor
-        if executor is not None:
-            executor.wake()
+            self._agenda.host.network.leave_node(self)
 
     def _tell_parameter_change(self, change: ParameterChange) -> None:
         publish_change(self._parameter_event_publisher, change)
-
-    def _warn_when_spinning(self, text: str) -> None:
-        self._warnings.append(text)
-        self._wake_executor()
-
-    def _speak_warnings(self) -> None:
-        warnings, self._warnings = self._warnings, []
-        for text in warnings:
-            self._logger.warning(text)
-
-    def explain_waits(self) -> int | None:
-        """Record which of its callbacks wait, and why; returns when the next timer falls due."""
-        executor = self.executor
-        probe = self._context.probe
-        if not probe.visible:
-            return None
-        for entity in self._collect_due(self._host.clock.now()):
-            if executor is None:
-                probe.waits(entity, Reason.NOBODY_SPINS, None, workers_busy=False)
-            else:
-                executor._explain_wait(entity)
-        return self._next_due()
 
     def __enter__(self) -> Node:
         return self

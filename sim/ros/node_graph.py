@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterable
 from itertools import chain
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from sim.ros.agenda import Agenda
 from sim.ros.exceptions import NodeNameNonExistentError
 from sim.ros.expand_topic_name import expand_topic_name
-from sim.ros.host import Host
 from sim.ros.interfaces import type_name
 from sim.ros.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 from sim.ros.validate_full_topic_name import validate_full_topic_name
@@ -32,7 +32,7 @@ class GraphQueries:
     Names are expanded as the node means them, and not remapped.
     """
 
-    _host: Host
+    _agenda: Agenda
 
     @abstractmethod
     def get_name(self) -> str:
@@ -46,11 +46,11 @@ class GraphQueries:
 
     def get_node_names(self) -> list[str]:
         """The names of all nodes, without namespaces."""
-        return [node.get_name() for node in self._nodes()]
+        return [node.get_name() for node in self.__nodes()]
 
     def get_node_names_and_namespaces(self) -> list[tuple[str, str]]:
         """Name and namespace of all nodes."""
-        return [(node.get_name(), node.get_namespace()) for node in self._nodes()]
+        return [(node.get_name(), node.get_namespace()) for node in self.__nodes()]
 
     def get_node_names_and_namespaces_with_enclaves(self) -> list[tuple[str, str, str]]:
         """Name, namespace and security enclave (always ``/``) of all nodes."""
@@ -58,11 +58,11 @@ class GraphQueries:
 
     def get_fully_qualified_node_names(self) -> list[str]:
         """The full names of all nodes."""
-        return [node.get_fully_qualified_name() for node in self._nodes()]
+        return [node.get_fully_qualified_name() for node in self.__nodes()]
 
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
         """Wait until there is a node of that full name; False when ``timeout`` seconds were not enough."""
-        clock = self._host.clock
+        clock = self._agenda.host.clock
         end = clock.now() + int(timeout * 1e9)
         wanted = f"/{fully_qualified_node_name.lstrip('/')}"
         while not (found := wanted in self.get_fully_qualified_node_names()) and clock.now() < end:
@@ -74,67 +74,67 @@ class GraphQueries:
     def get_topic_names_and_types(self, no_demangle: bool = False) -> NamesAndTypes:
         """All topics with their types."""
         ends: list[Publisher | Subscription] = []
-        for node in self._nodes():
+        for node in self.__nodes():
             ends += (*node.publishers, *node.subscriptions)
         return _sorted((each.topic_name, each.msg_type) for each in ends)
 
     def get_service_names_and_types(self) -> NamesAndTypes:
         """All services with their types."""
-        services = chain.from_iterable(node.services for node in self._nodes())
+        services = chain.from_iterable(node.services for node in self.__nodes())
         return _sorted((each.name, each.srv_type) for each in services)
 
     def get_publisher_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
         """The topics that a node publishes; raises NodeNameNonExistentError without that node."""
-        node = self._node(node_name, node_namespace, "publisher")
+        node = self.__node(node_name, node_namespace, "publisher")
         return _sorted((each.topic_name, each.msg_type) for each in node.publishers)
 
     def get_subscriber_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
     ) -> NamesAndTypes:
         """The topics that a node subscribes to; raises NodeNameNonExistentError without that node."""
-        node = self._node(node_name, node_namespace, "subscriber")
+        node = self.__node(node_name, node_namespace, "subscriber")
         return _sorted((each.topic_name, each.msg_type) for each in node.subscriptions)
 
     def get_service_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """The services that a node offers; raises NodeNameNonExistentError without that node."""
-        node = self._node(node_name, node_namespace, "service")
+        node = self.__node(node_name, node_namespace, "service")
         return _sorted((each.name, each.srv_type) for each in node.services)
 
     def get_client_names_and_types_by_node(self, node_name: str, node_namespace: str) -> NamesAndTypes:
         """The services that a node calls; raises NodeNameNonExistentError without that node."""
-        node = self._node(node_name, node_namespace, "client")
+        node = self.__node(node_name, node_namespace, "client")
         return _sorted((each.name, each.srv_type) for each in node.clients)
 
     # One topic or service
 
     def count_publishers(self, topic_name: str) -> int:
         """How many publishers a topic has."""
-        full = self._full(topic_name, is_service=False)
-        return self._count(lambda node: (each.topic_name == full for each in node.publishers))
+        full = self.__full(topic_name, is_service=False)
+        return self.__count(lambda node: (each.topic_name == full for each in node.publishers))
 
     def count_subscribers(self, topic_name: str) -> int:
         """How many subscriptions a topic has."""
-        full = self._full(topic_name, is_service=False)
-        return self._count(lambda node: (each.topic_name == full for each in node.subscriptions))
+        full = self.__full(topic_name, is_service=False)
+        return self.__count(lambda node: (each.topic_name == full for each in node.subscriptions))
 
     def count_clients(self, service_name: str) -> int:
         """How many clients a service has."""
-        full = self._full(service_name, is_service=True)
-        return self._count(lambda node: (each.name == full for each in node.clients))
+        full = self.__full(service_name, is_service=True)
+        return self.__count(lambda node: (each.name == full for each in node.clients))
 
     def count_services(self, service_name: str) -> int:
         """How many offer a service."""
-        full = self._full(service_name, is_service=True)
-        return self._count(lambda node: (each.name == full for each in node.services))
+        full = self.__full(service_name, is_service=True)
+        return self.__count(lambda node: (each.name == full for each in node.services))
 
     def get_publishers_info_by_topic(
         self, topic_name: str, no_mangle: bool = False
     ) -> list[TopicEndpointInfo]:
         """The publishers of a topic."""
-        full = topic_name if no_mangle else self._full(topic_name, is_service=False)
-        every = chain.from_iterable(node.publishers for node in self._nodes())
+        full = topic_name if no_mangle else self.__full(topic_name, is_service=False)
+        every = chain.from_iterable(node.publishers for node in self.__nodes())
         kind = TopicEndpointTypeEnum.PUBLISHER
         return [_info(each, kind) for each in every if each.topic_name == full]
 
@@ -142,17 +142,17 @@ class GraphQueries:
         self, topic_name: str, no_mangle: bool = False
     ) -> list[TopicEndpointInfo]:
         """The subscriptions of a topic."""
-        full = topic_name if no_mangle else self._full(topic_name, is_service=False)
-        every = chain.from_iterable(node.subscriptions for node in self._nodes())
+        full = topic_name if no_mangle else self.__full(topic_name, is_service=False)
+        every = chain.from_iterable(node.subscriptions for node in self.__nodes())
         kind = TopicEndpointTypeEnum.SUBSCRIPTION
         return [_info(each, kind) for each in every if each.topic_name == full]
 
-    def _nodes(self) -> tuple[Node, ...]:
-        with self._host.lock:
-            return self._host.network.nodes()
+    def __nodes(self) -> tuple[Node, ...]:
+        with self._agenda.host.lock:
+            return self._agenda.host.network.nodes()
 
-    def _node(self, name: str, namespace: str, what: str) -> Node:
-        for node in self._nodes():
+    def __node(self, name: str, namespace: str, what: str) -> Node:
+        for node in self.__nodes():
             if (node.get_name(), node.get_namespace()) == (name, namespace or "/"):
                 return node
         raise NodeNameNonExistentError(
@@ -160,10 +160,10 @@ class GraphQueries:
             f"node '{name}' in namespace '{namespace}'"
         )
 
-    def _count(self, found: Callable[[Node], Iterable[bool]]) -> int:
-        return sum(sum(found(node)) for node in self._nodes())
+    def __count(self, found: Callable[[Node], Iterable[bool]]) -> int:
+        return sum(sum(found(node)) for node in self.__nodes())
 
-    def _full(self, name: str, *, is_service: bool) -> str:
+    def __full(self, name: str, *, is_service: bool) -> str:
         full = expand_topic_name(name, self.get_name(), self.get_namespace())
         validate_full_topic_name(full, is_service=is_service)
         return full

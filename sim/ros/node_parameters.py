@@ -105,10 +105,10 @@ class NodeParameters:
         if known := [name for name in names if name in self._parameters]:
             raise ParameterAlreadyDeclaredException(known)
         for parameter, descriptor in wanted:
-            self._declare(parameter, descriptor)
+            self.__declare(parameter, descriptor)
         return [self._parameters[name] for name in names]
 
-    def _declare_overrides(self) -> None:
+    def _declare_parameter_overrides(self) -> None:
         """Declare every parameter that is overridden from outside."""
         declared = [
             (each.name, each.value, rcl_interfaces.ParameterDescriptor())
@@ -116,18 +116,18 @@ class NodeParameters:
         ]
         self.declare_parameters("", declared, ignore_override=True)
 
-    def _declare(self, parameter: AnyParameter, descriptor: Any) -> None:
+    def __declare(self, parameter: AnyParameter, descriptor: Any) -> None:
         descriptor.name = parameter.name
         reason = objection(parameter, descriptor)
         if reason.startswith(WRONG_TYPE):
             raise InvalidParameterTypeException(parameter, Parameter.Type(descriptor.type).name)
         if not reason:
-            result = self._ask_callbacks([parameter])
+            result = self.__ask_callbacks([parameter])
             if result.successful:
                 self._descriptors[parameter.name] = descriptor
                 change = ParameterChange()
-                self._store(parameter, change)
-                self._finish_setting([parameter], change)
+                self.__store(parameter, change)
+                self.__finish_setting([parameter], change)
                 return
             reason = result.reason
         raise InvalidParameterValueException(parameter.name, parameter.value, reason)
@@ -160,7 +160,7 @@ class NodeParameters:
         """
         parameter = self._parameters.get(name)
         if parameter is None:
-            self._require_undeclared_allowed(name)
+            self.__require_undeclared_allowed(name)
             return Parameter(name, _NOT_SET)
         if parameter.type_ is _NOT_SET and not self._descriptors[name].dynamic_typing:
             raise ParameterUninitializedException(name)
@@ -195,7 +195,7 @@ class NodeParameters:
         """
         if name in self._parameters:
             return self._parameters[name].type_
-        self._require_undeclared_allowed(name)
+        self.__require_undeclared_allowed(name)
         return _NOT_SET
 
     def get_parameter_types(self, names: list[str]) -> list[Parameter.Type]:
@@ -234,7 +234,7 @@ class NodeParameters:
             TypeError: one is no ``Parameter``.
         """
         if not self._pre_set_parameters_callbacks:
-            self._require_declared(parameter_list)
+            self.__require_declared(parameter_list)
         return [self.set_parameters_atomically([parameter]) for parameter in parameter_list]
 
     def set_parameters_atomically(self, parameter_list: list[AnyParameter]) -> Any:
@@ -245,21 +245,21 @@ class NodeParameters:
             chosen = [parameter for callback in asked for parameter in callback(list(parameter_list))]
             if not chosen:
                 return _result(_NOTHING_LEFT)
-        self._require_declared(chosen)
-        if reason := self._objection_to(chosen):
+        self.__require_declared(chosen)
+        if reason := self.__objection_to(chosen):
             return _result(reason)
-        result = self._ask_callbacks(chosen)
+        result = self.__ask_callbacks(chosen)
         if result.successful:
             change = ParameterChange()
             for parameter in chosen:
                 if parameter.type_ is _NOT_SET:
-                    self._drop(parameter, change)
+                    self.__drop(parameter, change)
                 else:
-                    self._store(parameter, change)
-            self._finish_setting(chosen, change)
+                    self.__store(parameter, change)
+            self.__finish_setting(chosen, change)
         return result
 
-    def _objection_to(self, parameters: list[AnyParameter]) -> str:
+    def __objection_to(self, parameters: list[AnyParameter]) -> str:
         for parameter in parameters:
             descriptor = self._descriptors.get(parameter.name)
             if descriptor is None:
@@ -272,26 +272,26 @@ class NodeParameters:
                 return reason
         return ""
 
-    def _ask_callbacks(self, parameters: list[AnyParameter]) -> Any:
+    def __ask_callbacks(self, parameters: list[AnyParameter]) -> Any:
         for callback in tuple(self._on_set_parameters_callbacks):
             result = callback(parameters)
             if not result.successful:
                 return result
         return _result("")
 
-    def _store(self, parameter: AnyParameter, change: ParameterChange) -> None:
+    def __store(self, parameter: AnyParameter, change: ParameterChange) -> None:
         known = self.get_parameter_or(parameter.name).type_ is not _NOT_SET
         (change.changed if known else change.new).append(parameter)
         if parameter.name not in self._descriptors:
             self._descriptors[parameter.name] = rcl_interfaces.ParameterDescriptor(dynamic_typing=True)
         self._parameters[parameter.name] = parameter
 
-    def _drop(self, parameter: AnyParameter, change: ParameterChange) -> None:
+    def __drop(self, parameter: AnyParameter, change: ParameterChange) -> None:
         change.deleted.append(parameter)
         self._parameters.pop(parameter.name, None)
         self._descriptors.pop(parameter.name, None)
 
-    def _finish_setting(self, parameters: list[AnyParameter], change: ParameterChange) -> None:
+    def __finish_setting(self, parameters: list[AnyParameter], change: ParameterChange) -> None:
         self._tell_parameter_change(change)
         for callback in tuple(self._post_set_parameters_callbacks):
             callback(parameters)
@@ -332,7 +332,7 @@ class NodeParameters:
         """
         if name in self._descriptors:
             return self._descriptors[name]
-        self._require_undeclared_allowed(name)
+        self.__require_undeclared_allowed(name)
         return rcl_interfaces.ParameterDescriptor()
 
     def describe_parameters(self, names: list[str]) -> list[Any]:
@@ -369,11 +369,11 @@ class NodeParameters:
 
     # Rules
 
-    def _require_undeclared_allowed(self, name: str) -> None:
+    def __require_undeclared_allowed(self, name: str) -> None:
         if not self._allow_undeclared_parameters:
             raise ParameterNotDeclaredException(name)
 
-    def _require_declared(self, parameters: Iterable[AnyParameter]) -> None:
+    def __require_declared(self, parameters: Iterable[AnyParameter]) -> None:
         if not all(isinstance(each, Parameter) for each in parameters):
             raise TypeError(f"parameter must be instance of type '{Parameter!r}'")
         undeclared = [each.name for each in parameters if each.name not in self._parameters]

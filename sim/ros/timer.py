@@ -131,7 +131,7 @@ class Timer(Entity):
             self._canceled = False
             self.nothing_left()
             self.due = self._host.clock.now() + self.period
-            self.node._timer_set(self)
+            self.node._agenda.timer_set(self)
 
     def is_canceled(self) -> bool:
         """Whether it was cancelled."""
@@ -166,7 +166,7 @@ class Timer(Entity):
         self.due = next_due(self.due, self.period, now)
         self._last_call = now
         self.nothing_left()
-        self.node._timer_set(self)
+        self.node._agenda.timer_set(self)
         return Taken(info, 0, late, 0)
 
     def invoke(self, taken: Taken) -> Any:

@@ -51,7 +51,7 @@ def wait_for_message(
     deadline = None if time_to_wait < 0 else host.clock.now() + int(time_to_wait * 1e9)
     with host.lock:
         awaited = _AwaitedMessage(node, msg_type, topic, as_profile(qos_profile))
-        node._add(awaited)
+        node._agenda.add(awaited)
         host.network.join_subscription(awaited)
     node.context.on_shutdown(awaited.arrived.set)
     try:

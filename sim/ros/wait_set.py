@@ -25,7 +25,7 @@ def snapshot(nodes: Iterable[Node], now: int) -> deque[Entity]:
     ready: deque[Entity] = deque()
     waitables: list[Entity] = []
     for node in nodes:
-        pending = node._collect_due(now)
+        pending = node._agenda.collect_due(now)
         if pending:
             let_in = [
                 each for each in pending if not each.handed_out and each.callback_group.can_execute(each)

@@ -59,7 +59,7 @@ def test_a_group_knows_its_members_and_holds_them_weakly() -> None:
         assert not group.has_entity(other)
         (reference,) = group.entities
         node.destroy_timer(mine)
-        node._timer_queue.clear()
+        node._agenda._timer_queue.clear()
         del mine
         gc.collect()
         assert reference() is None

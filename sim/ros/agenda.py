@@ -1,0 +1,142 @@
+"""A node's agenda: its entities, which of them have something to take, and when its timers fall due.
+
+It is an object of its own so that a program's node, which inherits from ``Node``, cannot overwrite any of it
+with attributes of the same names.
+"""
+
+from __future__ import annotations
+
+import weakref
+from heapq import heappop, heappush
+from typing import TYPE_CHECKING, TypeVar
+
+from sim.ros.host import Host, WaitsExplained
+from sim.trace.events import Reason
+
+if TYPE_CHECKING:
+    from sim.ros.entity import Entity
+    from sim.ros.executors import Executor
+    from sim.ros.logging import RcutilsLogger
+    from sim.ros.probe import Probe
+    from sim.ros.timer import Timer
+
+EntityT = TypeVar("EntityT", bound="Entity")
+
+
+class Agenda(WaitsExplained):
+    """What an executor has to know of a node. Used with the host's lock held."""
+
+    def __init__(self, host: Host, probe: Probe, logger: RcutilsLogger) -> None:
+        self.host = host
+        self.entities: list[Entity] = []
+        self.warnings: list[str] = []
+        self._probe = probe
+        self._logger = logger
+        self._orders = 0
+        self._pending: dict[Entity, None] = {}
+        self._timer_queue: list[tuple[int, int, Timer]] = []
+        self._executor: weakref.ref[Executor] | None = None
+        host.explain_waits_of(self)
+
+    @property
+    def executor(self) -> Executor | None:
+        """The executor that serves the node, if any."""
+        return None if self._executor is None else self._executor()
+
+    @executor.setter
+    def executor(self, executor: Executor | None) -> None:
+        self._executor = None if executor is None else weakref.ref(executor)
+
+    def next_order(self) -> int:
+        """The place of another entity in the order of creation."""
+        self._orders += 1
+        return self._orders
+
+    def add(self, entity: Entity) -> None:
+        """Take in an entity."""
+        self.entities.append(entity)
+        self._probe.entity_made(entity)
+        self.wake_executor()
+
+    def remove(self, entity: Entity) -> bool:
+        """Let an entity go; whether it was there."""
+        with self.host.lock:
+            if entity not in self.entities:
+                return False
+            self.entities.remove(entity)
+            entity.destroyed = True
+            entity.nothing_left()
+            self._probe.entity_gone(entity)
+            self.wake_executor()
+        return True
+
+    def of(self, kind: type[EntityT]) -> tuple[EntityT, ...]:
+        """The entities of a kind, oldest first."""
+        return tuple(each for each in tuple(self.entities) if isinstance(each, kind))
+
+    def entity_ready(self, entity: Entity) -> None:
+        """An entity has something to take."""
+        self._pending[entity] = None
+        executor = self.executor
+        if executor is not None:
+            executor._entity_ready(entity)
+
+    def entity_idle(self, entity: Entity) -> None:
+        """An entity has nothing more to take."""
+        self._pending.pop(entity, None)
+        self._probe.wait_ended(entity)
+
+    def timer_set(self, timer: Timer) -> None:
+        """A timer has another due time."""
+        heappush(self._timer_queue, (timer.due, timer.order, timer))
+        executor = self.executor
+        if executor is not None:
+            executor._timer_set(timer)
+
+    def collect_due(self, now: int) -> dict[Entity, None]:
+        """Everything that has something to take, once the timers that are due are among it."""
+        while (due := self.next_due()) is not None and due <= now:
+            timer = heappop(self._timer_queue)[2]
+            timer.pending = True
+            timer.ready_since = due
+            self._pending[timer] = None
+        return self._pending
+
+    def next_due(self) -> int | None:
+        """When the next timer that is not due yet falls due; None without one."""
+        queue = self._timer_queue
+        while queue:
+            due, _, timer = queue[0]
+            if timer.due == due and not (timer.pending or timer.is_canceled() or timer.destroyed):
+                return due
+            heappop(queue)
+        return None
+
+    def wake_executor(self) -> None:
+        """Have the executor look again at what is ready."""
+        executor = self.executor
+        if executor is not None:
+            executor.wake()
+
+    def warn_when_spinning(self, text: str) -> None:
+        """Log a warning when the executor next looks at what is ready."""
+        self.warnings.append(text)
+        self.wake_executor()
+
+    def speak_warnings(self) -> None:
+        """Log the warnings that wait for it."""
+        warnings, self.warnings = self.warnings, []
+        for text in warnings:
+            self._logger.warning(text)
+
+    def explain_waits(self) -> int | None:
+        """Record which callbacks wait, and why; returns when the next timer falls due."""
+        if not self._probe.visible:
+            return None
+        executor = self.executor
+        for entity in self.collect_due(self.host.clock.now()):
+            if executor is None:
+                self._probe.waits(entity, Reason.NOBODY_SPINS, None, workers_busy=False)
+            else:
+                executor._explain_wait(entity)
+        return self.next_due()
