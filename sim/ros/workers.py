@@ -17,7 +17,8 @@ from sim.ros.entity import Entity, Taken
 from sim.ros.task import Task
 
 if TYPE_CHECKING:
-    from sim.ros.executors import MultiThreadedExecutor, Work
+    from sim.ros.executor import Work
+    from sim.ros.executors import MultiThreadedExecutor
 
 Begun: TypeAlias = "tuple[Entity, Taken] | Task[Any]"
 
