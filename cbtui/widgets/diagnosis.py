@@ -1,6 +1,6 @@
 """What a moment of a run means, in one sentence: who waits longest and why, or that nothing waits."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import Enum, auto
 
 from cbtui.concurrency import Concurrency
@@ -30,10 +30,15 @@ class Weight(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Diagnosis:
-    """A sentence about a moment, and how much it matters."""
+    """A sentence about a moment, and how much it matters.
+
+    One that stays (a notice, how a run ended) is shown whole, on several lines if need be; the others change
+    from moment to moment, and the screen must not jump with them.
+    """
 
     text: str
     weight: Weight
+    stays: bool = field(default=False, compare=False)
 
 
 def verdict(run: LiveRun, playhead: Playhead, concurrency: Concurrency) -> Diagnosis:
@@ -41,7 +46,9 @@ def verdict(run: LiveRun, playhead: Playhead, concurrency: Concurrency) -> Diagn
     timeline = run.timeline
     if playhead.at is None:
         if run.loss is not None:
-            return Diagnosis(f"engine lost: {run.loss.rstrip('.')}; press r to run again", Weight.TROUBLE)
+            return Diagnosis(
+                f"engine lost: {run.loss.rstrip('.')}; press r to run again", Weight.TROUBLE, stays=True
+            )
         if run.state is State.ENDED:
             return _of_the_end(timeline)
     return diagnose(timeline, playhead.now(timeline.end), concurrency)
@@ -52,14 +59,14 @@ def _of_the_end(timeline: Timeline) -> Diagnosis:
     if ended is None:
         return Diagnosis("the run is over; press r to run again", Weight.FINE)
     weight = Weight.TROUBLE if ended.failed else Weight.FINE
-    return Diagnosis(f"the run is over: {ended.reason.rstrip('.')}; press r to run again", weight)
+    return Diagnosis(f"the run is over: {ended.reason.rstrip('.')}; press r to run again", weight, stays=True)
 
 
 def diagnose(timeline: Timeline, at: Nanoseconds, concurrency: Concurrency) -> Diagnosis:
     """Return what matters most at a moment."""
     notice = _latest_notice(timeline, at)
     if notice is not None:
-        return Diagnosis(notice.text, Weight.TROUBLE)
+        return Diagnosis(notice.text, Weight.TROUBLE, stays=True)
     if not timeline.entities:
         return Diagnosis("no callback yet: the node is starting", Weight.FINE)
     moment = timeline.moment(at)

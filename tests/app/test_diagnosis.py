@@ -4,7 +4,7 @@ from cbtui.concurrency import Concurrency
 from cbtui.live_run import LiveRun
 from cbtui.playhead import Playhead
 from cbtui.widgets.diagnosis import Diagnosis, Weight, call_note, diagnose, executor_label, verdict
-from cbtui.widgets.diagnosis_line import diagnosis_row
+from cbtui.widgets.diagnosis_line import diagnosis_row, diagnosis_rows
 from sim.engine.setup import RunSetup
 from sim.trace.events import Reason, Severity
 from sim.trace.timeline import Timeline
@@ -168,3 +168,16 @@ def test_the_line_is_as_wide_as_the_screen(width: int, note: str) -> None:
 def test_the_note_gives_way_to_the_diagnosis() -> None:
     runs = diagnosis_row(Diagnosis("w" * 70, Weight.TROUBLE), "/motor_power replied success=True", 80)
     assert "motor_power" not in "".join(run.text for run in runs)
+
+
+def test_a_sentence_that_stays_is_shown_whole_on_several_lines() -> None:
+    sentence = "the run is over: " + "word " * 30 + "press r to run again"
+    rows = diagnosis_rows(Diagnosis(sentence, Weight.TROUBLE, stays=True), "a note", 80)
+    shown = ["".join(run.text for run in row) for row in rows]
+    assert len(shown) == 3
+    assert {len(line) for line in shown} == {80}
+    assert " ".join(" ".join(shown).replace("!", " ").split()) == sentence
+
+
+def test_a_sentence_of_the_moment_keeps_to_one_line() -> None:
+    assert len(diagnosis_rows(Diagnosis("word " * 60, Weight.TROUBLE), "", 80)) == 1
