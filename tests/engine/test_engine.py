@@ -231,8 +231,9 @@ def test_a_paused_run_stands_still_until_it_is_resumed() -> None:
 
 def test_real_time_runs_the_same_program(tmp_path: Path) -> None:
     body = "node.create_timer(0.1, lambda: node.get_logger().info('tick'))"
-    run = run_program(tmp_path, SPIN.format(body=body), seconds=1.05, clock="real")
+    run = run_program(tmp_path, SPIN.format(body=body), seconds=2.05, clock="real")
     assert run.ending.reason == "its time was up"
     times = [at for at, text in run.logs() if text == "tick"]
-    assert 8 <= len(times) <= 10
-    assert all(at >= 0.1 * (index + 1) for index, at in enumerate(times[:5]))
+    assert 5 <= len(times) <= 20
+    assert all(at >= 0.1 * (index + 1) for index, at in enumerate(times))
+    assert times == sorted(times)
