@@ -84,7 +84,7 @@ class Session:
             except msgspec.DecodeError as error:
                 self._ended(f"the engine sent something unreadable: {error}")
                 return
-            finished = finished or isinstance(events[-1], RunEnded)
+            finished = finished or any(isinstance(event, RunEnded) for event in events)
             self._deliver(events)
         self._ended(None if finished or self._stopping else self._epitaph())
 

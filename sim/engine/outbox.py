@@ -8,9 +8,10 @@ from multiprocessing.connection import Connection
 
 from sim.trace.events import AnyEvent, EventsLost, encode
 
+# Kept from before virtual time puts its own in their place.
 _RealThread = threading.Thread
+_real_sleep = time.sleep
 _real_lock = threading.Lock
-_RealEvent = threading.Event
 
 _PERIOD = 0.01
 """Seconds between two batches."""
@@ -36,7 +37,6 @@ class Outbox:
         self._closed = False
         self._lost = 0
         self._lost_told = 0
-        self.last_sent = time.monotonic()
 
     def start(self) -> None:
         """Begin to send."""
@@ -46,14 +46,12 @@ class Outbox:
         """Take an event; nothing once closed."""
         if self._closed:
             return
-        if len(self._waiting) < _BATCH or not self._may_wait:
-            if len(self._waiting) < _BOUND:
-                self._waiting.append(event)
-            else:
-                self._lost += 1
+        if not self._may_wait and len(self._waiting) >= _BOUND:
+            self._lost += 1
             return
         self._waiting.append(event)
-        self.flush()
+        if self._may_wait and len(self._waiting) >= _BATCH:
+            self.flush()
 
     def flush(self) -> None:
         """Send everything that waits. A reader that has gone away is no error: nobody is left to tell."""
@@ -80,6 +78,3 @@ class Outbox:
             _real_sleep(_PERIOD)
             self._before_batch()
             self.flush()
-
-
-_real_sleep = time.sleep

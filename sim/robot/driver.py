@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from sim.robot.arena import ARENA, ROBOT_RADIUS
+from sim.robot.lidar import ANGLE_INCREMENT, ANGLE_MIN, RANGE_MAX, RANGE_MIN
 from sim.robot.world import World
 from sim.ros.context import Context
 from sim.ros.executors import SingleThreadedExecutor
@@ -128,12 +129,12 @@ class Driver:
         world = self._catch_up()
         ranges = world.scan()
         scan = self._laser_scan(
-            angle_min=-math.pi,
-            angle_max=math.pi - math.tau / len(ranges),
-            angle_increment=math.tau / len(ranges),
+            angle_min=ANGLE_MIN,
+            angle_max=ANGLE_MIN + (len(ranges) - 1) * ANGLE_INCREMENT,
+            angle_increment=ANGLE_INCREMENT,
             scan_time=TICK,
-            range_min=0.12,
-            range_max=20.0,
+            range_min=RANGE_MIN,
+            range_max=RANGE_MAX,
             ranges=array.array("f", ranges.tobytes()),
         )
         scan.header.stamp = self._node.get_clock().now().to_msg()

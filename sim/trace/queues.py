@@ -51,10 +51,6 @@ class QueueHistory:
         """How many messages were lost in the window."""
         return max(0, bisect_left(self._lost_at, window.end) - bisect_left(self._lost_at, window.start))
 
-    def lost_until(self, at: Nanoseconds) -> int:
-        """How many messages had been lost by ``at``."""
-        return bisect_right(self._lost_at, at)
-
     def loss_beside(self, at: Nanoseconds, step: int) -> Nanoseconds | None:
         """The first loss after ``at`` (``step`` > 0), or the last one before it."""
         place = bisect_right(self._lost_at, at) if step > 0 else bisect_left(self._lost_at, at) - 1
