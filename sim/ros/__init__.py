@@ -12,6 +12,7 @@ from sim.ros.context import Context
 from sim.ros.executors import Executor, SingleThreadedExecutor
 from sim.ros.node import Node
 from sim.ros.parameter import Parameter
+from sim.ros.process import of_process
 from sim.ros.signals import SignalHandlerOptions, install_signal_handlers
 from sim.ros.task import Future
 from sim.ros.utilities import (
@@ -41,7 +42,12 @@ __all__ = [
     "try_shutdown",
 ]
 
-_global_executors: dict[Context, Executor] = {}
+
+class _GlobalExecutor:
+    """The executor that a process's ``spin`` uses, for its present default context."""
+
+    def __init__(self) -> None:
+        self.executor: Executor | None = None
 
 
 def init(
@@ -101,10 +107,10 @@ def create_node(
 def get_global_executor() -> Executor:
     """The single-threaded executor that ``spin`` uses."""
     context = get_default_context()
-    if context not in _global_executors:
-        _global_executors.clear()
-        _global_executors[context] = SingleThreadedExecutor(context=context)
-    return _global_executors[context]
+    own = of_process(_GlobalExecutor)
+    if own.executor is None or own.executor.context is not context:
+        own.executor = SingleThreadedExecutor(context=context)
+    return own.executor
 
 
 def spin(node: Node, executor: Executor | None = None) -> None:

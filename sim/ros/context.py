@@ -8,19 +8,21 @@ from types import TracebackType
 
 from sim.ros.arguments import Arguments, arguments_of_program
 from sim.ros.exceptions import NotInitializedException
-from sim.ros.host import Host, current_host
+from sim.ros.host import Host
 from sim.ros.probe import Probe
+from sim.ros.process import current_process
 
 
 class Context:
     """One program's stay on the network. Thread-safe.
 
-    ``probe`` defaults to the host's: what the nodes of this context do is on the trace.
+    ``probe`` defaults to the process's, else the host's: what the nodes of this context do is on the trace.
     """
 
     def __init__(self, *, host: Host | None = None, probe: Probe | None = None) -> None:
-        self.host = current_host() if host is None else host
-        self.probe = self.host.probe if probe is None else probe
+        process = current_process()
+        self.host = process.host if host is None else host
+        self.probe = probe or process.probe or self.host.probe
         self.arguments = Arguments()
         self._initialized = False
         self._valid = False

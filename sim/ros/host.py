@@ -5,10 +5,8 @@ on wall time that keeps no trace, so that the model works as a plain library too
 """
 
 import threading
-from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
-from itertools import count
 from weakref import ref
 
 from sim.clock import Clock, RealClock
@@ -24,7 +22,7 @@ class Host:
 
     ``lock`` guards all state of executors, groups and queues; it is never held while something waits or
     while a callback runs. ``threads`` replaces the number of threads of every executor made (None: as the
-    program says). ``pool_numbers`` numbers the thread pools in the order of their making.
+    program says).
     """
 
     clock: Clock
@@ -32,7 +30,6 @@ class Host:
     threads: int | None = None
     lock: AbstractContextManager[bool] = field(default_factory=_RLock)
     network: Network = field(default_factory=Network)
-    pool_numbers: Iterator[int] = field(default_factory=count)
     _waiters: "list[ref[WaitsExplained]]" = field(default_factory=list)
 
     def explain_waits(self) -> int | None:

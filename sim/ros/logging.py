@@ -8,8 +8,8 @@ from enum import IntEnum
 from pathlib import Path
 from typing import Any
 
-from sim.ros.host import current_host
 from sim.ros.log_filters import LogPlace, Place, calling_place
+from sim.ros.process import current_process, of_process
 from sim.trace.events import Severity
 
 
@@ -31,8 +31,14 @@ _SHOWN = {
     LoggingSeverity.ERROR: Severity.ERROR,
     LoggingSeverity.FATAL: Severity.FATAL,
 }
-_levels: dict[str, LoggingSeverity] = {}
-_loggers: dict[str, RcutilsLogger] = {}
+
+
+class _Loggers:
+    """The loggers of a process and the levels that were set."""
+
+    def __init__(self) -> None:
+        self.levels: dict[str, LoggingSeverity] = {}
+        self.by_name: dict[str, RcutilsLogger] = {}
 
 
 def line(severity: Severity, stamp: int, logger: str, text: str) -> str:
@@ -93,9 +99,11 @@ class RcutilsLogger:
             place.require_same(name, level, options)
         if not place.lets_pass():
             return False
-        host = current_host()
-        if host.probe.visible:
-            host.probe.logged(_SHOWN[level], name, str(message))
+        process = current_process()
+        host = process.host
+        probe = process.probe or host.probe
+        if probe.visible:
+            probe.logged(_SHOWN[level], name, str(message))
         else:
             stamp = host.clock.epoch + host.clock.now()
             print(line(_SHOWN[level], stamp, name, str(message)), file=sys.stderr)  # noqa: T201
@@ -134,17 +142,17 @@ def get_logger(name: str) -> RcutilsLogger:
     """
     if not name:
         raise ValueError("Logger name must not be empty.")
-    return _loggers.setdefault(name, RcutilsLogger(name))
+    return of_process(_Loggers).by_name.setdefault(name, RcutilsLogger(name))
 
 
 def set_logger_level(name: str, level: LoggingSeverity | int, detailed_error: bool = False) -> None:  # noqa: ARG001
     """Drop the lines of a logger below ``level``; an empty name means all that have no level."""
-    _levels[name] = LoggingSeverity(level)
+    of_process(_Loggers).levels[name] = LoggingSeverity(level)
 
 
 def get_logger_level(name: str) -> LoggingSeverity:
     """A logger's own level, UNSET if it has none."""
-    return _levels.get(name, LoggingSeverity.UNSET)
+    return of_process(_Loggers).levels.get(name, LoggingSeverity.UNSET)
 
 
 def get_logger_effective_level(name: str) -> LoggingSeverity:
@@ -181,4 +189,4 @@ def initialize() -> None:
 
 def shutdown() -> None:
     """Forget the levels of all loggers."""
-    _levels.clear()
+    of_process(_Loggers).levels.clear()

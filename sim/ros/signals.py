@@ -6,6 +6,8 @@ choice is kept for those who ask for it.
 
 from enum import IntFlag
 
+from sim.ros.process import of_process
+
 
 class SignalHandlerOptions(IntFlag):
     """The signals that rclpy may be asked to handle."""
@@ -16,7 +18,11 @@ class SignalHandlerOptions(IntFlag):
     ALL = 3
 
 
-_chosen = [SignalHandlerOptions.NO]
+class _Choice:
+    """What a process chose."""
+
+    def __init__(self) -> None:
+        self.options = SignalHandlerOptions.NO
 
 
 def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions.ALL) -> None:
@@ -27,14 +33,14 @@ def install_signal_handlers(options: SignalHandlerOptions = SignalHandlerOptions
     """
     if not isinstance(options, SignalHandlerOptions):
         raise TypeError(f"options must be a SignalHandlerOptions, not {options!r}")
-    _chosen[0] = options
+    of_process(_Choice).options = options
 
 
 def uninstall_signal_handlers() -> None:
     """Choose none."""
-    _chosen[0] = SignalHandlerOptions.NO
+    of_process(_Choice).options = SignalHandlerOptions.NO
 
 
 def get_current_signal_handlers_options() -> SignalHandlerOptions:
     """The signals that are chosen."""
-    return _chosen[0]
+    return of_process(_Choice).options

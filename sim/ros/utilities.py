@@ -5,18 +5,23 @@ import sys
 from collections.abc import Sequence
 
 from sim.ros.context import Context
+from sim.ros.process import of_process
 from sim.ros.remapping import is_rule
 
-_default: list[Context] = []
+
+class _Default:
+    """A process's present default context."""
+
+    def __init__(self) -> None:
+        self.context: Context | None = None
 
 
 def get_default_context(*, shutting_down: bool = False) -> Context:
     """The context that functions use when they are given none; a new one once the last has ended."""
-    if not _default:
-        _default.append(Context())
-    if shutting_down:
-        return _default.pop()
-    return _default[0]
+    own = of_process(_Default)
+    context = Context() if own.context is None else own.context
+    own.context = None if shutting_down else context
+    return context
 
 
 def ok(*, context: Context | None = None) -> bool:

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 from sim.clock import Signal
 from sim.ros.entity import Entity, Taken
+from sim.ros.process import current_process
 from sim.ros.task import Task
 
 if TYPE_CHECKING:
@@ -44,7 +45,7 @@ class WorkerPool:
         self._executor = executor
         self._lock = executor._lock
         self._clock = executor._clock
-        self._name = f"ThreadPoolExecutor-{next(executor._host.pool_numbers)}"
+        self._name = f"ThreadPoolExecutor-{next(current_process().pool_numbers)}"
         self._workers: list[Worker] = []
         self._idle: deque[Worker] = deque()
         self._queue: deque[Work] = deque()

@@ -10,8 +10,6 @@ from typing import Any, NamedTuple, TypeVar
 import sim.ros
 from sim.clock import Clock, VirtualClock
 from sim.ros import host as hosts
-from sim.ros import logging as ros_logging
-from sim.ros import utilities
 from sim.ros.context import Context
 from sim.ros.executors import SingleThreadedExecutor
 from sim.ros.host import Host
@@ -222,23 +220,14 @@ def wind_up(clock: VirtualClock) -> None:
 
 @contextmanager
 def installed(host: Host) -> Iterator[None]:
-    """Have the process run on ``host``, with nothing in it of what ran before, and put all back after."""
+    """Have the process run on ``host``, and put all back after."""
     before = hosts._host
-    _forget_last_program()
     hosts.install(host)
     sim.ros.init(args=[])
     try:
         yield
     finally:
         hosts._host = before
-        _forget_last_program()
-
-
-def _forget_last_program() -> None:
-    utilities._default.clear()
-    sim.ros._global_executors.clear()
-    ros_logging._levels.clear()
-    ros_logging._loggers.clear()
 
 
 def _forget(_result: object) -> None:

@@ -1,0 +1,118 @@
+"""What an operating system's process is to rclpy: a program's arguments, and what modules keep globally.
+
+Programs that would be processes of their own on a real machine run here on threads of one process. Each has
+its own default context, global executor, loggers and arguments all the same: whatever rclpy keeps in a
+module is kept by ``of_process`` instead. A thread belongs to the process of the thread that made it.
+"""
+
+from __future__ import annotations
+
+import sys
+import threading
+from collections import UserList
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field
+from itertools import count
+from typing import Any, SupportsIndex, TypeVar
+
+from sim.ros.host import Host, current_host
+from sim.ros.probe import Probe
+
+KeptT = TypeVar("KeptT")
+
+
+@dataclass(eq=False)
+class Process:
+    """One program on the host. Thread-safe.
+
+    ``label`` tells it from others on the screen, empty for the only one. ``arguments`` is what its
+    ``sys.argv`` shows; ``probe`` None stands for the host's. ``pool_numbers`` numbers its thread pools in
+    the order of their making.
+    """
+
+    host: Host
+    label: str = ""
+    arguments: list[str] = field(default_factory=lambda: list(sys.argv))
+    environment: dict[str, str] = field(default_factory=dict)
+    probe: Probe | None = None
+    pool_numbers: Iterator[int] = field(default_factory=count)
+    _kept: dict[Callable[[], Any], Any] = field(default_factory=dict)
+
+    def keep(self, make: Callable[[], KeptT]) -> KeptT:
+        """What ``make`` made for this process, now or when first asked."""
+        if make not in self._kept:
+            with self.host.lock:
+                self._kept.setdefault(make, make())
+        kept: KeptT = self._kept[make]
+        return kept
+
+    def enter(self) -> None:
+        """Have the calling thread, and all that it starts from now on, belong to this process."""
+        _here().ros_process = self
+
+    def start_thread(self, target: Callable[[], None], name: str) -> None:
+        """Run ``target`` on a new thread of this process, on the host's time."""
+
+        def run() -> None:
+            self.enter()
+            target()
+
+        self.host.clock.start_thread(run, name)
+
+
+_main: Process | None = None
+
+
+def current_process() -> Process:
+    """The process that the calling thread belongs to: the host's first unless it was told otherwise."""
+    process: Process | None = getattr(_here(), "ros_process", None)
+    return _main_process() if process is None else process
+
+
+def of_process(make: Callable[[], KeptT]) -> KeptT:
+    """What ``make`` made for the calling thread's process, now or when first asked."""
+    return current_process().keep(make)
+
+
+def _main_process() -> Process:
+    global _main  # noqa: PLW0603 -- goes with the one host
+    host = current_host()
+    if _main is None or _main.host is not host:
+        _main = Process(host)
+    return _main
+
+
+def _here() -> Any:
+    return threading.current_thread()
+
+
+def share_machine() -> None:
+    """Let several processes live in this one: threads inherit theirs, and ``sys.argv`` is each one's own."""
+    make: Any = threading.Thread.__init__
+
+    def make_inheriting(thread: Any, *args: Any, **kwargs: Any) -> None:
+        make(thread, *args, **kwargs)
+        thread.ros_process = getattr(_here(), "ros_process", None)
+
+    thread_class: Any = threading.Thread
+    thread_class.__init__ = make_inheriting
+    sys.argv = _Arguments()  # type: ignore[assignment]
+
+
+class _Arguments(UserList[str]):
+    """The arguments of whichever process asks."""
+
+    def __init__(self) -> None:
+        """Take over nothing: the processes hold the arguments."""
+
+    @property
+    def data(self) -> list[str]:  # type: ignore[override]
+        """The arguments of the calling thread's process."""
+        return current_process().arguments
+
+    def __getitem__(self, index: SupportsIndex | slice) -> Any:
+        return self.data[index]
+
+    def copy(self) -> list[str]:  # type: ignore[override]
+        """A plain list of them."""
+        return list(self.data)
