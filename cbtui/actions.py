@@ -22,6 +22,7 @@ class Scope(StrEnum):
     EVERYWHERE = "Everywhere"
     MENU = "Menu"
     LESSON = "Lesson"
+    PROMPT = "Prompt"
     THREADS = "Choice of threads"
     HELP = "Help"
 
@@ -46,9 +47,9 @@ class Action(NamedTuple):
         return self.series or self.help
 
 
-_WINDOWS = (Scope.THREADS, Scope.HELP)
+_ALONE = (Scope.PROMPT, Scope.THREADS, Scope.HELP)
 
-PANES = ("guide", "code", "robot", "log")
+PANES = ("guide", "code", "robot", "log", "shell")
 """The panes of a lesson, in the order of their keys."""
 
 ACTIONS = (
@@ -88,6 +89,7 @@ ACTIONS = (
         )
         for number, name in enumerate(PANES, start=1)
     ),
+    Action("prompt", "colon", "ros2", "Type a ros2 line; tab completes, up brings lines back", Scope.LESSON),
     Action("earlier", "left", "look back", "Look at an earlier stretch of the run", Scope.LESSON),
     Action("later", "right", "look back", "Look at a later stretch of the run", Scope.LESSON),
     Action("slower", "minus", "speed", "Let virtual time pass more slowly", Scope.LESSON),
@@ -98,6 +100,14 @@ ACTIONS = (
     Action("maximise", "z", "enlarge", "Let one pane fill the screen; press again to go back", Scope.LESSON),
     Action("leave", "q", "menu", "End the run and go back to the menu", Scope.LESSON),
     Action("leave", "q", "quit", "Leave the console", Scope.MENU),
+    Action("submit", "enter", "run", "Carry out the line", Scope.PROMPT),
+    Action("complete", "tab", "complete", "Complete the word at the cursor", Scope.PROMPT),
+    Action("older", "up", "lines before", "Bring back the line before", Scope.PROMPT),
+    Action("newer", "down", "lines before", "Go on to the line after", Scope.PROMPT),
+    Action("interrupt", "ctrl+c", "interrupt", "End the line that goes on", Scope.PROMPT),
+    Action(
+        "leave_prompt", "escape", "other keys", "Go back to the other keys", Scope.PROMPT
+    ),
     *(
         Action(f"choose({number})", str(number), "threads", f"Run with {number} threads", Scope.THREADS)
         for number in range(1, 9)
@@ -111,8 +121,8 @@ ACTIONS = (
 
 
 def actions_of(scope: Scope) -> tuple[Action, ...]:
-    """Return the actions that work on a screen, those of everywhere last; a window has only its own."""
-    scopes = (scope,) if scope in _WINDOWS else (scope, Scope.EVERYWHERE)
+    """Return the actions that work somewhere, those of everywhere last; prompt and windows have their own only."""
+    scopes = (scope,) if scope in _ALONE else (scope, Scope.EVERYWHERE)
     return tuple(action for action in ACTIONS if action.scope in scopes)
 
 
@@ -121,9 +131,13 @@ def bindings_of(*scopes: Scope) -> list[Binding]:
     return [_binding(action) for action in ACTIONS if action.scope in scopes]
 
 
+_PLACES = {Scope.EVERYWHERE: "app", Scope.PROMPT: "focused"}
+"""What implements the actions of a scope, where it is not the screen."""
+
+
 def target_of(action: Action) -> str:
     """Return the action with the place that implements it, as a click or the palette has to name it."""
-    return f"{'app' if action.scope is Scope.EVERYWHERE else 'screen'}.{action.id}"
+    return f"{_PLACES.get(action.scope, 'screen')}.{action.id}"
 
 
 def _binding(action: Action) -> Binding:
@@ -137,7 +151,7 @@ def _binding(action: Action) -> Binding:
     )
 
 
-_KEYS_THAT_WIDGETS_WANT = {"left", "right", "tab"}
+_KEYS_THAT_WIDGETS_WANT = {"left", "right", "tab", "ctrl+c"}
 """Panes scroll with the arrows and pass the focus on with tab: the screen has to be asked first."""
 
 _SIGNS = {
@@ -152,7 +166,9 @@ _SIGNS = {
     "less_than_sign": "<",
     "greater_than_sign": ">",
     "question_mark": "?",
+    "colon": ":",
     "ctrl+p": "^p",
+    "ctrl+c": "^c",
     "escape": "esc",
 }
 _PLAIN_SIGNS = _SIGNS | {

@@ -32,9 +32,9 @@ def _actions_provider() -> "type[Provider]":
 
 
 def _engine_session(setup: "RunSetup", deliver: "Deliver", ended: "Ended") -> "Session":
-    from cbtui.session import Session  # imported when a lesson opens
+    from cbtui.listening import ListeningSession  # imported when a lesson opens
 
-    return Session(setup, deliver, ended)
+    return ListeningSession(setup, deliver, ended)
 
 
 class CbtuiApp(App[None]):

@@ -8,7 +8,7 @@ import math
 import sys
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 if TYPE_CHECKING:
     from lessons.lesson import Lesson
@@ -16,6 +16,25 @@ if TYPE_CHECKING:
 _MAX_THREADS = 64
 _DEFAULT_SECONDS = 60.0
 _CHARSETS = ("braille", "block", "ascii")
+
+
+class _TimedLine(argparse.Action):
+    """Takes a moment in seconds and a ``ros2`` line."""
+
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: Any,
+        option_string: str | None = None,
+    ) -> None:
+        """Add the pair to those given before."""
+        moment, line = values
+        try:
+            pair = (_moment(moment), line)
+        except argparse.ArgumentTypeError as error:
+            raise argparse.ArgumentError(self, str(error)) from None
+        setattr(namespace, self.dest, [*getattr(namespace, self.dest), pair])
 
 
 class _Parser(argparse.ArgumentParser):
@@ -29,6 +48,8 @@ class _Parser(argparse.ArgumentParser):
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code: 0 well, 1 the run failed, 2 the command was wrong."""
     words = list(sys.argv[1:] if argv is None else argv)
+    if words[:1] == ["ros2"]:
+        return _ros2(words[1:])
     split = words.index("--") if "--" in words else len(words)
     options = _parser().parse_args(words[:split])
     options.arguments = words[split + 1 :]
@@ -64,12 +85,15 @@ def _parser() -> argparse.ArgumentParser:
 
     running = commands.add_parser(
         "run",
-        help="run a lesson, or a file of your own, without the console",
-        usage="%(prog)s [options] LESSON|FILE.py [-- ARGUMENTS of the file]",
-        description="Run a lesson or a file headless: its log goes to stderr, a summary to stdout.",
+        help="run a lesson, or files of your own, without the console",
+        usage="%(prog)s [options] LESSON|FILE.py … [-- ARGUMENTS of the files]",
+        description="Run a lesson, or node and launch files, headless: the log goes to stderr, a summary to "
+        "stdout. Several files run at once, each as a process of its own would.",
     )
     _add_run_options(running)
     running.set_defaults(action=_run)
+
+    commands.add_parser("ros2", help="carry out a ros2 line in the run that is going on", add_help=False)
     return parser
 
 
@@ -80,7 +104,12 @@ def _add_console_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _add_run_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("target", metavar="LESSON|FILE.py", help="a lesson's id, see cbtui list, or a file")
+    parser.add_argument(
+        "targets",
+        metavar="LESSON|FILE.py",
+        nargs="+",
+        help="a lesson's id, see cbtui list, or node files or a launch file",
+    )
     parser.add_argument(
         "--for",
         dest="seconds",
@@ -104,6 +133,16 @@ def _add_run_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--call-data", choices=("true", "false"), default="true", help="what the calls send (%(default)s)"
     )
+    parser.add_argument(
+        "--at",
+        dest="lines",
+        metavar=("SECONDS", "LINE"),
+        nargs=2,
+        action=_TimedLine,
+        default=[],
+        help="carry out a ros2 line at that time, such as 2 'ros2 topic list'; may be given again",
+    )
+    parser.add_argument("--no-robot", dest="robot", action="store_false", help="leave out the lessons' robot")
     parser.add_argument(
         "--clock", choices=("virtual", "real"), help="which time it runs on (virtual; a file: real)"
     )
@@ -213,37 +252,54 @@ def _open_console(options: argparse.Namespace) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
-    is_file = _is_file_name(options.target)
+    is_file = _is_file_name(options.targets[0])
     clock = options.clock or ("real" if is_file else "virtual")
     _check_run(options, clock, is_file=is_file)
-    path = _file(options.target) if is_file else None
-    lesson = None if is_file else _lesson(options.target)
+    paths = [_file(name) for name in options.targets] if is_file else []
+    lesson = None if is_file else _lesson(options.targets[0])
 
     import msgspec
 
     from cbtui.headless import run_headless
-    from cbtui.lesson_setup import setup_for, setup_for_file
+    from cbtui.lesson_setup import setup_for, setup_for_files
+    from sim.engine.setup import RobotUse
 
     speed = None if options.speed == math.inf else options.speed
     if lesson is not None:
         program = setup_for(lesson, threads=options.threads, speed=speed)
     else:
-        assert path is not None
-        program = setup_for_file(path, options.arguments, threads=options.threads, speed=speed)
+        program = setup_for_files(paths, options.arguments, threads=options.threads, speed=speed)
+    robot = program.robot if options.robot else RobotUse.NEVER
     return run_headless(
-        msgspec.structs.replace(program, clock=clock),
+        msgspec.structs.replace(program, clock=clock, robot=robot),
         seconds=options.seconds,
         calls=options.calls,
         call_data=options.call_data == "true",
+        lines=options.lines,
         events_path=options.events,
     )
 
 
+def _ros2(words: list[str]) -> int:
+    """Carry out a ros2 line; ``--engine PID`` in front of it chooses among several runs."""
+    process = None
+    if words[:1] == ["--engine"]:
+        if len(words) < 2 or not words[1].isdecimal():
+            _refuse("--engine needs the process number of a cbtui run")
+        process, words = int(words[1]), words[2:]
+    from cbtui.ros2_command import run_line
+
+    return run_line(words, process)
+
+
 def _check_run(options: argparse.Namespace, clock: str, *, is_file: bool) -> None:
     """Refuse what does not fit together."""
-    late = [call for call in options.calls if call >= options.seconds]
-    if late:
-        _refuse(f"a call at {late[0]:g} s comes when the run of {options.seconds:g} s is over; see --for")
+    moments = [("call", at) for at in options.calls] + [("line", at) for at, _ in options.lines]
+    for what, at in moments:
+        if at >= options.seconds:
+            _refuse(f"a {what} at {at:g} s comes when the run of {options.seconds:g} s is over; see --for")
+    if not is_file and len(options.targets) > 1:
+        _refuse("one lesson runs at a time; several targets must all be files")
     if clock == "real" and options.speed != math.inf:
         _refuse("--speed needs the virtual clock; leave it out, or add --clock virtual")
     if options.arguments and not is_file:

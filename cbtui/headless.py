@@ -3,18 +3,18 @@
 import sys
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
+from operator import itemgetter
 from pathlib import Path
 from queue import Queue
 from typing import BinaryIO, TypeAlias
 
 import msgspec
 
-from cbtui.session import Session
-from cbtui.theme import Charset
-from cbtui.widgets.cells import visible
+from cbtui.listening import ListeningSession
+from cbtui.program_log import ProgramLog
 from sim.engine.commands import Stop
-from sim.engine.setup import RunSetup, TimedCall
-from sim.trace.events import AnyEvent, Logged, Notice, Printed, RunStarted
+from sim.engine.setup import RunSetup, TimedCall, TimedLine
+from sim.trace.events import AnyEvent
 from sim.trace.jsonl import JsonLines
 from sim.trace.summary import summarise
 from sim.trace.summary_text import plain_text
@@ -28,16 +28,24 @@ News: TypeAlias = "list[AnyEvent] | str | None"
 
 
 def run_headless(
-    program: RunSetup, *, seconds: float, calls: Sequence[float], call_data: bool, events_path: str | None
+    program: RunSetup,
+    *,
+    seconds: float,
+    calls: Sequence[float],
+    call_data: bool,
+    lines: Sequence[tuple[float, str]],
+    events_path: str | None,
 ) -> int:
     """Run a program to its end; returns the exit code: 0 well, 1 it failed, 2 the events file cannot be.
 
-    ``seconds`` is how long the run lasts in its own time, ``calls`` when its SetBool service is called.
+    ``seconds`` is how long the run lasts in its own time, ``calls`` when its SetBool service is called,
+    ``lines`` which ``ros2`` lines are carried out when.
     """
     setup = msgspec.structs.replace(
         program,
         until=round(seconds * _SECOND),
         calls=tuple(TimedCall(round(at * _SECOND), call_data) for at in sorted(calls)),
+        lines=tuple(TimedLine(round(at * _SECOND), text) for at, text in sorted(lines, key=itemgetter(0))),
     )
     with ExitStack() as files:
         try:
@@ -57,11 +65,11 @@ class _Headless:
 
     def __init__(self, setup: RunSetup, events_file: BinaryIO | None) -> None:
         self._news: Queue[News] = Queue(_BATCHES)
-        self._session = Session(setup, self._news.put, self._news.put)
+        self._session = ListeningSession(setup, self._news.put, self._news.put)
         self._timeline = Timeline()
         self._file = events_file
         self._lines = JsonLines()
-        self._log = _LogPrinter()
+        self._log = ProgramLog()
 
     def run(self) -> int:
         """Run to the end, whatever ends it, and print the summary."""
@@ -102,29 +110,3 @@ class _Headless:
             sys.stderr.write(f"cbtui: {ended.reason}\n")
             return 1
         return 0
-
-
-class _LogPrinter:
-    """Prints what the program logs as ROS does, and what it prints where it printed it."""
-
-    def __init__(self) -> None:
-        self._epoch = 0
-
-    def print(self, events: list[AnyEvent]) -> None:
-        """Print the lines among the events; control characters are shown, not obeyed."""
-        for event in events:
-            match event:
-                case Logged(t=t, severity=severity, logger=logger, text=text):
-                    seconds, nanoseconds = divmod(self._epoch + t, _SECOND)
-                    _write(f"[{severity}] [{seconds}.{nanoseconds:09d}] [{logger}]: {text}", error=True)
-                case Printed(text=text, error=error):
-                    _write(text, error=error)
-                case Notice(severity=severity, text=text):
-                    _write(f"cbtui: {text}", error=True)
-                case RunStarted(epoch=epoch):
-                    self._epoch = epoch
-
-
-def _write(line: str, *, error: bool) -> None:
-    stream = sys.stderr if error else sys.stdout
-    stream.write("\n".join(visible(part, Charset.BRAILLE) for part in line.split("\n")) + "\n")

@@ -3,8 +3,12 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from lessons.catalogue import ROOT
 from lessons.lesson import Lesson
-from sim.engine.setup import RunSetup, ServiceChoice
+from sim.engine.setup import ProgramSetup, RobotUse, RunSetup, ServiceChoice, TimedLine
+
+_LESSON_PACKAGES = tuple(str(path) for path in sorted(ROOT.glob("unit*")))
+"""Folders in which the packages of the lessons lie."""
 
 
 def setup_for(lesson: Lesson, *, threads: int | None = None, speed: float | None = 1.0) -> RunSetup:
@@ -15,23 +19,46 @@ def setup_for(lesson: Lesson, *, threads: int | None = None, speed: float | None
     """
     return RunSetup(
         title=lesson.id,
-        node_path=str(lesson.node_path),
-        arguments=tuple(lesson.arguments_with(threads)),
+        programs=(ProgramSetup(str(lesson.node_path), tuple(lesson.arguments_with(threads))),),
         service=ServiceChoice(lesson.service.name, lesson.service.type),
+        packages=_LESSON_PACKAGES,
         speed=speed,
         threads=threads,
     )
 
 
-def setup_for_file(
-    path: Path, arguments: Sequence[str] = (), *, threads: int | None = None, speed: float | None = 1.0
+def setup_for_files(
+    paths: Sequence[Path],
+    arguments: Sequence[str] = (),
+    *,
+    threads: int | None = None,
+    speed: float | None = 1.0,
 ) -> RunSetup:
-    """Return what an engine needs to run a program file, on wall time as it would run elsewhere."""
+    """Return what an engine needs to run program files, on wall time as they would run elsewhere.
+
+    Every file gets the same ``arguments``.
+    """
     return RunSetup(
-        title=path.name,
-        node_path=str(path.resolve()),
-        arguments=tuple(arguments),
+        title=" ".join(path.name for path in paths),
+        programs=tuple(ProgramSetup(str(path.resolve()), tuple(arguments)) for path in paths),
         clock="real",
+        packages=_LESSON_PACKAGES,
+        robot=RobotUse.WHEN_USED,
         speed=speed,
         threads=threads,
+    )
+
+
+def setup_for_line(text: str, folder: Path) -> RunSetup:
+    """Return what an engine needs to carry out a ``ros2`` line with nothing else running.
+
+    Packages are looked for around ``folder`` and among the lessons.
+    """
+    return RunSetup(
+        title=text,
+        programs=(),
+        clock="real",
+        lines=(TimedLine(0, text),),
+        packages=(str(folder), *_LESSON_PACKAGES),
+        robot=RobotUse.WHEN_USED,
     )

@@ -2,9 +2,20 @@
 
 from collections.abc import Callable
 from enum import Enum, auto
+from itertools import count
 from typing import Protocol, TypeAlias
 
-from sim.engine.commands import CallService, Command, Pause, ResetWorld, Resume, SetSpeed
+from sim.engine.commands import (
+    CallService,
+    Command,
+    CompleteLine,
+    InterruptLine,
+    Pause,
+    ResetWorld,
+    Resume,
+    RunLine,
+    SetSpeed,
+)
 from sim.engine.setup import RunSetup
 from sim.trace.events import AnyEvent
 from sim.trace.timeline import Timeline
@@ -52,6 +63,8 @@ class LiveRun:
         self.loss: str | None = None
         self.paused = False
         self._over = False
+        self._numbers = count(len(setup.lines) + 1)
+        self._line = 0
         self._started = False
         self._session = open_session(setup, deliver, ended)
 
@@ -102,6 +115,19 @@ class LiveRun:
         """Call the SetBool service that the run was set up with, or else the program's first."""
         service = self.setup.service
         self._session.send(CallService(None if service is None else service.name, data))
+
+    def give_line(self, text: str) -> None:
+        """Have a ``ros2`` line carried out."""
+        self._line = next(self._numbers)
+        self._session.send(RunLine(self._line, text))
+
+    def interrupt_line(self) -> None:
+        """End the line that was given last, as Ctrl-C would."""
+        self._session.send(InterruptLine(self._line))
+
+    def complete_line(self, text: str, cursor: int) -> None:
+        """Ask what could stand at a place of a line; the answer comes with the trace."""
+        self._session.send(CompleteLine(next(self._numbers), text, cursor))
 
     def pause(self) -> None:
         """Stop time."""

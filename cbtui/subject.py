@@ -7,7 +7,7 @@ from typing import TypeAlias
 
 import msgspec
 
-from cbtui.lesson_setup import setup_for, setup_for_file
+from cbtui.lesson_setup import setup_for, setup_for_files
 from lessons.lesson import Lesson
 from sim.engine.setup import RunSetup
 
@@ -61,7 +61,7 @@ def of_file(path: Path, arguments: Sequence[str], clock: str) -> Subject:
 
     def set_up(threads: int | None, speed: float | None) -> RunSetup:
         return msgspec.structs.replace(
-            setup_for_file(path, arguments, threads=threads, speed=speed), clock=clock
+            setup_for_files([path], arguments, threads=threads, speed=speed), clock=clock
         )
 
     return Subject(

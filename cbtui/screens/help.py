@@ -14,7 +14,7 @@ from cbtui.screens.sized import SizedModal
 from cbtui.theme import Charset
 from cbtui.widgets.key_bar import KeyBar
 
-_SHOWN = (Scope.LESSON, Scope.MENU, Scope.EVERYWHERE)
+_SHOWN = (Scope.LESSON, Scope.PROMPT, Scope.MENU, Scope.EVERYWHERE)
 
 
 class HelpScreen(SizedModal[None]):

@@ -29,6 +29,7 @@ from cbtui.widgets.guide import Guide
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.log import LogView
+from cbtui.widgets.shell import Prompt, ShellOutput, ShellView
 from cbtui.widgets.status_line import StatusLine, status_of
 from cbtui.widgets.tabs import Tabs, title_of
 from lessons.lesson import Lesson
@@ -165,7 +166,7 @@ class LessonScreen(SizedScreen[None]):
         timeline = self._run.timeline
         now = self._playhead.now(timeline.end)
         match self._widget(name):
-            case CodeView() | LogView() as view:
+            case CodeView() | LogView() | ShellView() as view:
                 view.show(timeline, now)
             case ArenaMap() as robot:
                 robot.now, robot.timeline = now, timeline
@@ -206,7 +207,7 @@ class LessonScreen(SizedScreen[None]):
         robot.can_focus = True
         guide = Guide(self._subject.guide, id="guide")
         code = CodeView(self._subject.node_path, id="code")
-        for pane in (guide, code, robot, LogView(id="log")):
+        for pane in (guide, code, robot, LogView(id="log"), ShellView(id="shell")):
             assert pane.id is not None
             pane.border_title = title_of(pane.id)
             pane.add_class("pane")
@@ -221,11 +222,17 @@ class LessonScreen(SizedScreen[None]):
         self._pane = pane
         for name in PANES:
             self._widget(name).set_class(name == pane, "-current", update=False)
+        self._widget("log").set_class(pane == "shell", "-behind", update=False)
         self.update_node_styles(animate=False)
         self.query_one(Tabs).current = pane
-        if not self._widget(pane).has_focus:
-            self._widget(pane).focus()
+        place = self._focus_of(pane)
+        if not self._widget(pane).has_focus_within:
+            place.focus()
         self._stale = True
+
+    def _focus_of(self, pane: str) -> Widget:
+        """What of a pane takes the keys."""
+        return self.query_one(ShellOutput) if pane == "shell" else self._widget(pane)
 
     @on(Tabs.Picked)
     def _pick(self, message: Tabs.Picked) -> None:
@@ -233,8 +240,25 @@ class LessonScreen(SizedScreen[None]):
 
     def on_descendant_focus(self, event: DescendantFocus) -> None:
         """Make the pane current that the person clicked on."""
-        if event.widget.id in PANES and event.widget.id != self._pane:
-            self._show(event.widget.id)
+        ids = (widget.id for widget in event.widget.ancestors_with_self)
+        pane = next((each for each in ids if each in PANES), None)
+        if pane is not None and pane != self._pane:
+            self._show(pane)
+        self.query_one(KeyBar).show(Scope.PROMPT if isinstance(self.focused, Prompt) else Scope.LESSON)
+
+    # the prompt
+
+    @on(Prompt.Given)
+    def _give_line(self, message: Prompt.Given) -> None:
+        self._run.give_line(message.text)
+
+    @on(Prompt.Interrupted)
+    def _interrupt_line(self) -> None:
+        self._run.interrupt_line()
+
+    @on(Prompt.CompletionWanted)
+    def _complete_line(self, message: Prompt.CompletionWanted) -> None:
+        self._run.complete_line(message.text, message.cursor)
 
     # actions
 
@@ -242,7 +266,11 @@ class LessonScreen(SizedScreen[None]):
         """Offer what has a meaning now."""
         run, playhead = self._run, self._playhead
         paced = run.alive and run.virtual
+        typing = isinstance(self.focused, Prompt)
         meaningless = {
+            "earlier": typing,
+            "next_pane": typing,
+            "prompt": not run.alive,
             "call_service": not run.alive,
             "call_service_off": not run.alive,
             "pause": not paced or run.paused,
@@ -252,7 +280,7 @@ class LessonScreen(SizedScreen[None]):
             "slower": not paced or run.speed == SPEEDS[0],
             "faster": not paced or run.speed == SPEEDS[-1],
             "live": playhead.at is None,
-            "later": playhead.at is None,
+            "later": playhead.at is None or typing,
             "zoom_in": playhead.span == SPANS[0],
             "zoom_out": playhead.span == SPANS[-1],
             "next_lesson": self._subject.following is None,
@@ -329,6 +357,11 @@ class LessonScreen(SizedScreen[None]):
     def _move(self, playhead: Playhead) -> None:
         self._playhead = playhead
         self._stale = True
+
+    def action_prompt(self) -> None:
+        """Let the person type a ros2 line."""
+        self._show("shell")
+        self.query_one(ShellView).focus_prompt()
 
     def action_show_pane(self, pane: str) -> None:
         """Go to a pane."""

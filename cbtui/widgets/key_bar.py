@@ -13,7 +13,7 @@ from cbtui.widgets.painted import Painted
 _KEY = Ink(Role.STRONG)
 _LABEL = Ink(Role.FAINT)
 _GAP = "  "
-_ALWAYS = ("leave", "close", "help")
+_ALWAYS = ("leave", "leave_prompt", "close", "help")
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +37,11 @@ class KeyBar(Painted):
         super().__init__()
         self._scope = scope
         self._charset = charset
+
+    def show(self, scope: Scope) -> None:
+        """Show the keys of another scope."""
+        self._scope = scope
+        self.changed()
 
     def rows(self, size: Size) -> Sequence[Sequence[Run]]:
         """Paint the keys."""

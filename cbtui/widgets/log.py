@@ -5,12 +5,11 @@ from typing import ClassVar
 from rich.cells import cell_len
 from rich.segment import Segment
 from rich.style import Style
-from textual.geometry import Size
 from textual.strip import Strip
 
 from cbtui.theme import Charset, Ink, Role
 from cbtui.widgets.cells import fit, visible
-from cbtui.widgets.inked import Inked
+from cbtui.widgets.following import Following
 from cbtui.widgets.lanes.bars import short_thread
 from sim.trace.events import Logged, Printed, Severity
 from sim.trace.model import Nanoseconds
@@ -32,7 +31,7 @@ _STYLES = {
 }
 
 
-class LogView(Inked):
+class LogView(Following):
     """The log up to a moment. It stays at the end unless the person scrolls away from there."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {*_STYLES.values()}
@@ -40,10 +39,7 @@ class LogView(Inked):
     def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
         super().__init__(id=id)
         self._timeline = Timeline()
-        self._count = 0
-        self._widest = 0
         self._measured = 0
-        self._follows = True
 
     def show(self, timeline: Timeline, now: Nanoseconds) -> None:
         """Show the log of a timeline up to a moment."""
@@ -53,19 +49,11 @@ class LogView(Inked):
         count = timeline.logs_until(now)
         if count == self._count and self._measured == len(timeline.logs):
             return
-        self._count = count
-        self._measure()
-        self._fit_size()
-        self.refresh()
+        self.grow(count, self._measure())
 
-    def on_resize(self) -> None:
-        """Stay at the end."""
-        self._fit_size()
-
-    def watch_scroll_y(self, old_value: float, new_value: float) -> None:
-        """Follow the log's end if that is where the person has scrolled to."""
-        super().watch_scroll_y(old_value, new_value)
-        self._follows = new_value >= self.max_scroll_y
+    def beside(self) -> int:
+        """Columns for thread and group, where there is room."""
+        return _COLUMNS if self.scrollable_content_region.width >= COLUMNS_FROM else 0
 
     def render_line(self, y: int) -> Strip:
         """Return one line of the view."""
@@ -81,23 +69,11 @@ class LogView(Inked):
         shown = text.crop(left, left + room).adjust_cell_length(room, self.in_class(""))
         return Strip([*shown, *columns], width)
 
-    def _measure(self) -> None:
-        """Find the widest line; each is measured once."""
+    def _measure(self) -> int:
+        """How wide the widest line is; each is measured once."""
         new = self._timeline.logs[self._measured :]
-        self._widest = max([self._widest, *(cell_len(line_of(event)) for event in new)])
         self._measured += len(new)
-
-    def _fit_size(self) -> None:
-        columns = _COLUMNS if self.scrollable_content_region.width >= COLUMNS_FROM else 0
-        follows = self._follows
-        size = Size(self._widest + columns, self._count)
-        if size != self.virtual_size:
-            # Assigning it would lay out the whole screen anew for every line.
-            self.set_reactive(LogView.virtual_size, size)
-            self._scroll_update(size)
-        if follows:
-            self.scroll_to(y=self.max_scroll_y, animate=False, immediate=True, force=True)
-            self._follows = True
+        return max([self._widest, *(cell_len(line_of(event)) for event in new)])
 
     def _columns(self, event: Logged | Printed) -> list[Segment]:
         if isinstance(event, Printed):

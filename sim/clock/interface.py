@@ -40,5 +40,11 @@ class Clock(Protocol):
     def start_thread(self, target: Callable[[], None], name: str) -> None:
         """Run ``target`` on a new daemon thread called ``name`` that lives on this clock's time."""
 
+    def interrupt(self, thread: int) -> None:
+        """Raise KeyboardInterrupt in a thread (its ``get_ident``) once it waits or goes on, as Ctrl-C would.
+
+        Any thread may call it; nothing happens if that thread has ended.
+        """
+
     def call_at(self, time: int, action: Callable[[], None]) -> None:
         """Run ``action`` at ``time`` nanoseconds, on whichever thread is at hand; it must not wait."""

@@ -1,5 +1,6 @@
 """Wall time: callbacks take what they take, and threads run at once where the machine lets them."""
 
+import ctypes
 import threading
 import time
 from collections.abc import Callable
@@ -59,6 +60,12 @@ class RealClock:
     def start_thread(self, target: Callable[[], None], name: str) -> None:
         """Start an ordinary daemon thread."""
         _Thread(target=target, name=name, daemon=True).start()
+
+    def interrupt(self, thread: int) -> None:
+        """Have the interpreter raise it there; a sleep or a wait for a lock is finished first."""
+        ctypes.pythonapi.PyThreadState_SetAsyncExc(
+            ctypes.c_ulong(thread), ctypes.py_object(KeyboardInterrupt)
+        )
 
     def call_at(self, time: int, action: Callable[[], None]) -> None:
         """Run ``action`` on a timer thread of its own once ``time`` has come."""

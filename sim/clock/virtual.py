@@ -35,13 +35,24 @@ _LAG_FORGIVEN = 250_000_000
 class VirtualThread:
     """A thread that lives on virtual time: it runs while it has the baton and stands at its gate else."""
 
-    __slots__ = ("current_wait", "gate", "ident", "interrupted", "is_main", "name", "waiting", "woken")
+    __slots__ = (
+        "current_wait",
+        "gate",
+        "ident",
+        "interrupted",
+        "is_main",
+        "knocked",
+        "name",
+        "waiting",
+        "woken",
+    )
 
     def __init__(self, name: str) -> None:
         self.name = name
         self.is_main = False
         self.ident = 0
         self.interrupted = False
+        self.knocked = False
         self.gate = _allocate_lock()
         self.gate.acquire()
         self.waiting = False
@@ -162,19 +173,22 @@ class VirtualClock:
         """Hand the baton on until unparked or until ``deadline``; True if unparked.
 
         Raises:
-            KeyboardInterrupt: the run was stopped and this is its main thread. Raised once, as by Ctrl-C;
-                later waits of the main thread let the others end and return at once.
+            KeyboardInterrupt: the thread was interrupted, or the run was stopped and this is its main thread.
+                Raised once, as by Ctrl-C; later waits of the main thread of a stopped run let the others end
+                and return at once.
             Stopped: the run was stopped, and this is another thread.
         """
         me = self.current
         if self._stopped():
             return self._wind_up(me)
+        self._raise_knock(me)
         me.waiting = True
         me.woken = False
         me.current_wait = next(self._order)
         if deadline is not None:
             heappush(self._deadlines, (deadline, me.current_wait, me))
         self._hand_on(me)
+        self._raise_knock(me)
         return self._wind_up(me) if self._stopped() else me.woken
 
     def unpark(self, thread: VirtualThread) -> None:
@@ -192,6 +206,20 @@ class VirtualClock:
                 self._bell.release()
             except RuntimeError:  # another thread rang it between the question and the answer
                 return
+
+    def interrupt(self, thread: int) -> None:
+        """Raise KeyboardInterrupt out of a thread's wait, its present or its next one."""
+
+        def knock() -> None:
+            for each in self._threads:
+                if each.ident == thread:
+                    each.knocked = True
+                    self.unpark(each)
+
+        if self.owns_current_thread():
+            knock()
+        else:
+            self.inject(knock)
 
     def set_speed(self, speed: float | None) -> None:
         """Pass ``speed`` virtual seconds per real second, None: all it can. Call it through ``inject``."""
@@ -215,6 +243,11 @@ class VirtualClock:
 
     def _stopped(self) -> bool:
         return self._stopping
+
+    def _raise_knock(self, me: VirtualThread) -> None:
+        if me.knocked:
+            me.knocked = False
+            raise KeyboardInterrupt
 
     def _wind_up(self, me: VirtualThread) -> bool:
         if not me.is_main:

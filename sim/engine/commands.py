@@ -26,6 +26,27 @@ class CallService(msgspec.Struct, frozen=True, tag="call"):
     data: bool
 
 
+class RunLine(msgspec.Struct, frozen=True, tag="line"):
+    """Carry out a ``ros2`` line; ``line`` is a number of the sender's choice that no other line has."""
+
+    line: int
+    text: str
+
+
+class InterruptLine(msgspec.Struct, frozen=True, tag="interrupt_line"):
+    """End a ``ros2`` line that goes on, as Ctrl-C would."""
+
+    line: int
+
+
+class CompleteLine(msgspec.Struct, frozen=True, tag="complete"):
+    """Tell what could stand at ``cursor`` (characters from the beginning) of a ``ros2`` line."""
+
+    line: int
+    text: str
+    cursor: int
+
+
 class ResetWorld(msgspec.Struct, frozen=True, tag="reset_world"):
     """Put the robot back to its start, as a call of ``/reset_world`` would."""
 
@@ -34,7 +55,9 @@ class Stop(msgspec.Struct, frozen=True, tag="stop"):
     """End the run."""
 
 
-Command: TypeAlias = Pause | Resume | SetSpeed | CallService | ResetWorld | Stop
+Command: TypeAlias = (
+    Pause | Resume | SetSpeed | CallService | RunLine | InterruptLine | CompleteLine | ResetWorld | Stop
+)
 
 _encoder = msgspec.msgpack.Encoder()
 _decoder: msgspec.msgpack.Decoder[Command] = msgspec.msgpack.Decoder(Command)

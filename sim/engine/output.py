@@ -1,18 +1,16 @@
-"""What the program prints: every line becomes an event, so that it cannot spoil the screen."""
+"""What programs print: every line becomes an event, so that it cannot spoil the screen."""
 
 import io
 from collections.abc import Callable
+
+from sim.ros.process import Process, current_process
 
 _LONGEST = 4096
 """Characters of a line; a longer one is cut into several."""
 
 
-class LineSink(io.TextIOBase):
-    """A text stream that hands on whole lines."""
-
-    def __init__(self, take: Callable[[str], None]) -> None:
-        self._take = take
-        self._rest = ""
+class _TextStream(io.TextIOBase):
+    """What programs ask of a stream besides writing to it."""
 
     def writable(self) -> bool:
         """Whether it can be written to: always."""
@@ -22,6 +20,14 @@ class LineSink(io.TextIOBase):
     def encoding(self) -> str:  # type: ignore[override]
         """What a real stream would encode to."""
         return "utf-8"
+
+
+class LineSink(_TextStream):
+    """A text stream that hands on whole lines."""
+
+    def __init__(self, take: Callable[[str], None]) -> None:
+        self._take = take
+        self._rest = ""
 
     def write(self, text: str) -> int:
         """Take text; complete lines are handed on."""
@@ -38,3 +44,25 @@ class LineSink(io.TextIOBase):
         if self._rest:
             rest, self._rest = self._rest, ""
             self._take(rest)
+
+
+class ProcessStream(_TextStream):
+    """Standard output or error of whichever process writes; their lines do not mix.
+
+    ``take`` gets the process that wrote a line, and the line.
+    """
+
+    def __init__(self, take: Callable[[Process, str], None]) -> None:
+        self._take = take
+
+    def write(self, text: str) -> int:
+        """Take text of the calling thread's process."""
+        return current_process().keep(self._sink).write(text)
+
+    def finish(self) -> None:
+        """Hand on the last line of the calling thread's process."""
+        current_process().keep(self._sink).finish()
+
+    def _sink(self) -> LineSink:
+        process = current_process()
+        return LineSink(lambda line: self._take(process, line))

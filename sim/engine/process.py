@@ -11,22 +11,28 @@ import sys
 import threading
 import time
 from multiprocessing.connection import Connection
+from pathlib import Path
 
 import msgspec
 
 from sim.clock import Clock, RealClock, VirtualClock
 from sim.clock.stdlib import live_on
 from sim.engine import commands
+from sim.engine.lines import Lines
 from sim.engine.outbox import Outbox
-from sim.engine.output import LineSink
-from sim.engine.program import Outcome, run_program
+from sim.engine.output import ProcessStream
+from sim.engine.program import Outcome, script
+from sim.engine.programs import Programs
 from sim.engine.requests import Requests
+from sim.engine.robot import provide_robot
 from sim.engine.setup import RunSetup
+from sim.engine.starting import Starter, is_launch_file
 from sim.engine.watchdog import Watchdog
 from sim.robot.bullet import WorldUnavailable
 from sim.ros import importing
 from sim.ros.host import Host, install
 from sim.ros.probe import Probe
+from sim.ros.process import Process, current_process, share_machine
 from sim.trace.events import CommandGiven, Notice, Printed, RunEnded, RunStarted, Severity
 
 _GRACE = 0.5
@@ -48,6 +54,9 @@ class Engine:
         )
         self._host = Host(self._clock, Probe(self._clock, self._outbox.record), threads=setup.threads)
         self._requests = Requests(self._host, self._outbox.record)
+        self._programs = Programs(self._host, self._outbox.record)
+        self._starter = Starter(self._programs, self._setup)
+        self._lines = Lines(self._host, self._outbox.record, self._starter, self._programs.look)
         self._over = False
         self._grace_begins = threading.Lock()
         self._grace_begins.acquire()
@@ -61,25 +70,45 @@ class Engine:
         self._redirect_output()
         install(self._host)
         importing.install()
-        if self._setup.robot:
-            self._start_robot()
+        self._starter.add_own_interfaces()
+        share_machine()
+        provide_robot(self._setup.robot, self._host, self._outbox.record, self._fail)
         if self._virtual is not None:
             self._virtual.before_jump = self._host.explain_waits
             Watchdog(self._virtual, self._outbox.record, self._give_up).start()
             live_on(self._virtual)
             random.seed(0)
         self._schedule()
-        outcome = run_program(self._setup.node_path, self._setup.arguments)
-        self._end(outcome)
+        self._end(self._run_programs())
 
-    def _start_robot(self) -> None:
-        from sim.robot.driver import Driver
+    def _run_programs(self) -> Outcome:
+        """Run all programs to their ends; how that went."""
+        if len(self._setup.programs) == 1 and not is_launch_file(self._setup.programs[0].path):
+            (only,) = self._setup.programs
+            return self._programs.run_only(script(only.path, only.arguments))
+        for place, program in enumerate(self._setup.programs, start=1):
+            if is_launch_file(program.path):
+                self._starter.launch(None, program.path, program.arguments, _nobody_waits)
+            else:
+                label = f"{Path(program.path).stem}-{place}"
+                self._programs.start(script(program.path, program.arguments), label, _nobody_waits)
+        try:
+            self._programs.wait_until(lambda: not (self._programs.any_run or self._lines.any_left))
+        except KeyboardInterrupt:
+            self._lines.interrupt_all()
+            self._programs.interrupt_all()
+            self._programs.wait_until(lambda: not self._programs.any_run)
+            return Outcome("it was stopped", failed=False)
+        return self._programs.joint_outcome()
 
-        Driver(self._host, self._outbox.record).start()
+    def _fail(self, sentence: str) -> None:
+        self._finish_run(sentence, failed=True)
+        self._interrupt()
 
     def _schedule(self) -> None:
         for call in self._setup.calls:
             self._clock.call_at(call.at, lambda data=call.data: self._call_service(data))  # type: ignore[misc]
+        self._lines.schedule(self._setup.lines)
         if self._setup.until is not None:
             self._clock.call_at(self._setup.until, self._time_is_up)
 
@@ -109,6 +138,7 @@ class Engine:
     def _leave_after_grace(self) -> None:
         self._grace_begins.acquire()
         _real_sleep(_GRACE)
+        self._starter.close()
         os._exit(0)
 
     def _give_up(self, sentence: str) -> None:
@@ -117,18 +147,29 @@ class Engine:
             os._exit(1)
 
     def _end(self, outcome: Outcome) -> None:
-        for stream in (sys.stdout, sys.stderr):
-            if isinstance(stream, LineSink):
-                stream.finish()
         self._finish_run(outcome.sentence, failed=outcome.failed)
+        self._starter.close()
         os._exit(0)
 
     def _redirect_output(self) -> None:
-        def take(error: bool) -> LineSink:
-            return LineSink(lambda text: self._outbox.record(Printed(self._clock.now(), text, error)))
+        def stream(error: bool) -> ProcessStream:
+            def take(process: Process, text: str) -> None:
+                if error or process.shows_stdout:
+                    self._outbox.record(Printed(self._clock.now(), text, error, process.number))
+                else:
+                    process.keep(self._tell_of_hidden_output)
 
-        sys.stdout = take(False)
-        sys.stderr = take(True)
+            return ProcessStream(take)
+
+        sys.stdout = stream(error=False)
+        sys.stderr = stream(error=True)
+
+    def _tell_of_hidden_output(self) -> None:
+        text = (
+            f"{current_process().label} prints to stdout, which ros2 launch only shows with output='screen'; "
+            "its log goes to stderr and is shown"
+        )
+        self._outbox.record(Notice(self._clock.now(), Severity.INFO, text))
 
     def _look_at_waits_of_real_time(self) -> None:
         if self._virtual is None and not self._over:
@@ -154,6 +195,12 @@ class Engine:
         match command:
             case commands.CallService(name=name, data=data):
                 self._requests.set_bool(name, data)
+            case commands.RunLine(line=line, text=text):
+                self._lines.begin(line, text)
+            case commands.InterruptLine(line=line):
+                self._lines.interrupt(line)
+            case commands.CompleteLine(line=line, text=text, cursor=cursor):
+                self._lines.complete(line, text, cursor)
             case commands.ResetWorld():
                 self._requests.reset_world()
             case commands.Stop():
@@ -180,12 +227,15 @@ class Engine:
         self._outbox.record(CommandGiven(self._clock.now(), text))
 
 
+def _nobody_waits(_end: object) -> None:
+    """Take the end of a program that nobody is told of."""
+
+
 def run(packed_setup: bytes, pipe: Connection) -> None:
     """Be the engine process of one run."""
     setup = msgspec.msgpack.decode(packed_setup, type=RunSetup)
-    if setup.clock == "virtual":
-        # Ctrl-C in the terminal reaches every process of it; the console decides what it means.
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
+    # Ctrl-C in the terminal reaches every process of its group; the console decides what it means.
+    os.setpgid(0, 0)
     engine = Engine(setup, pipe)
     try:
         engine.run()

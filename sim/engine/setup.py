@@ -1,6 +1,17 @@
-"""What a run is set up with: the program, its clock, its robot and the inputs it is to get."""
+"""What a run is set up with: its programs, its clock, its robot and the inputs it is to get."""
+
+from enum import StrEnum
 
 import msgspec
+
+
+class RobotUse(StrEnum):
+    """When the lessons' robot is there."""
+
+    ALWAYS = "always"
+    WHEN_USED = "when used"
+    """From the moment at which something uses one of its topics or services."""
+    NEVER = "never"
 
 
 class ServiceChoice(msgspec.Struct, frozen=True):
@@ -17,22 +28,39 @@ class TimedCall(msgspec.Struct, frozen=True):
     data: bool
 
 
+class TimedLine(msgspec.Struct, frozen=True):
+    """A ``ros2`` line to be carried out at ``at`` nanoseconds."""
+
+    at: int
+    text: str
+
+
+class ProgramSetup(msgspec.Struct, frozen=True):
+    """A Python file to run, a node's or a launch file, with its command-line arguments."""
+
+    path: str
+    arguments: tuple[str, ...] = ()
+
+
 class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
-    """All that an engine needs to know to run one program.
+    """All that an engine needs to know to run some programs.
 
     ``speed`` is virtual seconds per real second, None for as fast as it can; the real clock ignores it.
     ``until`` is nanoseconds of run time after which the run ends, None for no end. ``threads`` replaces
-    the number of threads of the program's executor, None leaves the program's own. ``service`` None means
-    the program's first SetBool service.
+    the number of threads of the programs' executors, None leaves their own. ``service`` None means the
+    first SetBool service that a program offers. ``lines`` get the numbers 1, 2, … on the trace.
+    ``packages`` are folders in which packages are looked for, after those around the programs. A run
+    without programs ends with its lines.
     """
 
     title: str
-    node_path: str
-    arguments: tuple[str, ...] = ()
+    programs: tuple[ProgramSetup, ...]
     service: ServiceChoice | None = None
     clock: str = "virtual"
     speed: float | None = 1.0
     until: int | None = None
     threads: int | None = None
     calls: tuple[TimedCall, ...] = ()
-    robot: bool = True
+    lines: tuple[TimedLine, ...] = ()
+    packages: tuple[str, ...] = ()
+    robot: RobotUse = RobotUse.ALWAYS

@@ -34,17 +34,15 @@ _SENSOR_QOS = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 
 
 class Driver:
-    """Drives a robot until the host's time ends. ``record`` takes what the trace is to know of the robot."""
+    """Drives a robot until the host's time ends. ``record`` takes what the trace is to know of the robot.
 
-    def __init__(self, host: Host, record: Callable[[AnyEvent], None]) -> None:
-        """Build the world.
+    ``world`` builds the robot's world once the driver runs, on its thread: that takes a while.
+    """
 
-        Raises:
-            WorldUnavailable: PyBullet cannot be used here; the text says what to do.
-        """
+    def __init__(self, host: Host, record: Callable[[AnyEvent], None], world: Callable[[], World]) -> None:
         self._host = host
         self._record = record
-        self._world = World()
+        self._build_world = world
         self._context = Context(host=host, probe=PublishingProbe(host.clock, host.probe))
         self._context.init([])
         self._node = Node("robot_driver", context=self._context)
@@ -54,7 +52,7 @@ class Driver:
         self._warned = False
 
     def start(self) -> None:
-        """Begin to drive, on a thread of the host's clock."""
+        """Offer the topics and services, and begin to drive on a thread of the host's clock."""
         self._offer()
         self._record(
             ArenaShown(
@@ -76,6 +74,7 @@ class Driver:
 
     def _drive(self) -> None:
         clock = self._host.clock
+        self._world = self._build_world()
         executor = SingleThreadedExecutor(context=self._context)
         clock.sleep(_LATENCY)
         self._node.create_timer(TICK, self._publish_odometry)

@@ -6,26 +6,22 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Self
 
+from sim.ros import utilities
 from sim.ros.context import Context
 from sim.ros.executors import Executor, SingleThreadedExecutor
 from sim.ros.node import Node
 from sim.ros.parameter import Parameter
 from sim.ros.process import of_process
-from sim.ros.signals import SignalHandlerOptions, install_signal_handlers
+from sim.ros.signals import SignalHandlerOptions, install_signal_handlers, uninstall_signal_handlers
 from sim.ros.task import Future
-from sim.ros.utilities import (
-    get_default_context,
-    get_rmw_implementation_identifier,
-    ok,
-    shutdown,
-    try_shutdown,
-)
+from sim.ros.utilities import get_default_context, get_rmw_implementation_identifier, ok
 
 __all__ = [
     "Context",
     "Future",
+    "InitContextManager",
     "Node",
     "Parameter",
     "SignalHandlerOptions",
@@ -56,7 +52,7 @@ def init(
     context: Context | None = None,
     domain_id: int | None = None,
     signal_handler_options: SignalHandlerOptions | None = None,
-) -> Context:
+) -> InitContextManager:
     """Begin; ``args`` None means the program's own arguments.
 
     ``signal_handler_options`` None means all for the default context, none for another.
@@ -69,9 +65,44 @@ def init(
     chosen = default if context is None else context
     if signal_handler_options is None:
         signal_handler_options = SignalHandlerOptions.ALL if chosen is default else SignalHandlerOptions.NO
-    install_signal_handlers(signal_handler_options)
     chosen.init(args, domain_id=domain_id)
-    return chosen
+    install_signal_handlers(signal_handler_options)
+    return InitContextManager(chosen)
+
+
+class InitContextManager:
+    """What ``init`` returns; ``with rclpy.init():`` ends the context at the block's end."""
+
+    def __init__(self, context: Context) -> None:
+        self.context = context
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        is_default = self.context is get_default_context()
+        try_shutdown(context=None if is_default else self.context)
+
+
+def shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
+    """End the context; signals are handled no more, by default if it is the default context.
+
+    Raises:
+        RuntimeError: it has not begun.
+    """
+    utilities.shutdown(context=context)
+    _forget_signals(context, uninstall_handlers)
+
+
+def try_shutdown(*, context: Context | None = None, uninstall_handlers: bool | None = None) -> None:
+    """Do as ``shutdown``, if the context has begun and not ended."""
+    utilities.try_shutdown(context=context)
+    _forget_signals(context, uninstall_handlers)
+
+
+def _forget_signals(context: Context | None, wanted: bool | None) -> None:
+    if wanted or (wanted is None and context is None):
+        uninstall_signal_handlers()
 
 
 def create_node(

@@ -1,5 +1,11 @@
-"""The errors that programs import from rclpy's compiled part."""
+"""What programs import from rclpy's compiled part."""
 
+from sim.ros.bare_entities import BareClient as Client
+from sim.ros.bare_entities import BareGuardCondition as GuardCondition
+from sim.ros.bare_entities import BareService as Service
+from sim.ros.bare_entities import BareSubscription as Subscription
+from sim.ros.bare_entities import BareTimer as Timer
+from sim.ros.clock import ClockEvent
 from sim.ros.exceptions import (
     InvalidHandle,
     NodeNameNonExistentError,
@@ -9,9 +15,15 @@ from sim.ros.exceptions import (
 )
 
 __all__ = [
+    "Client",
+    "ClockEvent",
+    "GuardCondition",
     "InvalidHandle",
     "NodeNameNonExistentError",
     "RCLError",
     "RCLInvalidROSArgsError",
+    "Service",
+    "Subscription",
+    "Timer",
     "UnknownROSArgsError",
 ]

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from sim.ros.logging import RcutilsLogger
     from sim.ros.probe import Probe
     from sim.ros.timer import Timer
+    from sim.ros.waitable_entity import WaitableEntity
 
 EntityT = TypeVar("EntityT", bound="Entity")
 
@@ -29,6 +30,8 @@ class Agenda(WaitsExplained):
     def __init__(self, host: Host, probe: Probe, logger: RcutilsLogger) -> None:
         self.host = host
         self.entities: list[Entity] = []
+        self.asked: list[WaitableEntity] = []
+        """The waitables that a program wrote: an executor asks them whether they are ready."""
         self.warnings: list[str] = []
         self._probe = probe
         self._logger = logger
@@ -55,6 +58,8 @@ class Agenda(WaitsExplained):
     def add(self, entity: Entity) -> None:
         """Take in an entity."""
         self.entities.append(entity)
+        if entity.traced and entity.shown_callback() is not None:
+            entity.node.context.process.callbacks += 1
         self._probe.entity_made(entity)
         self.wake_executor()
 
@@ -69,6 +74,34 @@ class Agenda(WaitsExplained):
             self._probe.entity_gone(entity)
             self.wake_executor()
         return True
+
+    def add_asked(self, entity: WaitableEntity) -> None:
+        """Take in a waitable that has to be asked."""
+        with self.host.lock:
+            self.asked.append(entity)
+            self._tell_of_asked()
+            self.add(entity)
+
+    def remove_asked(self, entity: WaitableEntity) -> None:
+        """Let a waitable go that had to be asked."""
+        with self.host.lock:
+            self.asked.remove(entity)
+            self._tell_of_asked()
+            self.remove(entity)
+
+    def _tell_of_asked(self) -> None:
+        executor = self.executor
+        if executor is not None:
+            executor._waitables_changed()
+
+    def found(self, entity: WaitableEntity, *, ready: bool, now: int) -> None:
+        """An executor that looks at what is ready has asked a waitable."""
+        if not ready:
+            entity.nothing_left()
+        elif not (entity.pending or entity.destroyed):
+            entity.pending = True
+            entity.ready_since = now
+            self._pending[entity] = None
 
     def of(self, kind: type[EntityT]) -> tuple[EntityT, ...]:
         """The entities of a kind, oldest first."""

@@ -10,16 +10,19 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 
 from sim.ros.exceptions import RCLError, RCLInvalidROSArgsError, UnknownROSArgsError
-from sim.ros.logging import LoggingSeverity, get_logger, set_logger_level
+from sim.ros.logging import LoggingSeverity, get_logger, send_to, set_logger_level
 from sim.ros.parameter_yaml import NodeParameters, ParameterYamlError, PlainValue, read_file, read_value
 from sim.ros.remapping import RemapRule, RemapRuleError, is_rule, parse_rule
 
 _BEGIN = "--ros-args"
 _END = "--"
-_SWITCHES = frozenset(
-    f"--{deed}-{what}-logs" for deed in ("enable", "disable") for what in ("rosout", "stdout", "external-lib")
-)
-_UNSUPPORTED = frozenset(("--disable-stdout-logs", "--log-config-file", "--log-file-name"))
+_SWITCHES = {
+    f"--{deed}-{what}-logs": (what, deed == "enable")
+    for deed in ("enable", "disable")
+    for what in ("rosout", "stdout", "external-lib")
+}
+"""The switches of logging; no log file is written here, so the one for the library that would is moot."""
+_UNSUPPORTED = frozenset(("--log-config-file", "--log-file-name"))
 _PARAMETER = re.compile(r"(?:([\w~/*]+):)?([\w.~/-]+):=(.*)", re.DOTALL)
 _LEVELS = {level.name: level for level in LoggingSeverity}
 _EVERY_NODE = "/**"
@@ -37,6 +40,8 @@ class Arguments:
     parameters: NodeParameters = field(default_factory=dict)
     log_levels: dict[str, LoggingSeverity] = field(default_factory=dict)
     """Levels by logger; that of the empty name is the default."""
+    log_outputs: dict[str, bool] = field(default_factory=dict)
+    """Whether log lines go to ``rosout`` and to ``stdout``, as far as that is told."""
     unknown: list[str] = field(default_factory=list)
 
     def require_all_known(self) -> None:
@@ -44,8 +49,9 @@ class Arguments:
         if self.unknown:
             raise UnknownROSArgsError(f"Found unknown ROS arguments: {self.unknown}")
 
-    def set_log_levels(self) -> None:
-        """Give the loggers the levels that were asked for."""
+    def configure_logging(self) -> None:
+        """Give the loggers the levels that were asked for, and send their lines where they are wanted."""
+        send_to(console=self.log_outputs.get("stdout"), rosout=self.log_outputs.get("rosout"))
         for name, level in self.log_levels.items():
             set_logger_level(name, level)
 
@@ -77,7 +83,10 @@ def arguments_of_program(args: Sequence[str]) -> Arguments:
 
     Raises:
         RCLError, UnknownROSArgsError: a ROS argument cannot be read, or is none.
+        UnicodeEncodeError: an argument is no UTF-8.
     """
+    for each in args:
+        each.encode()
     try:
         found = parse_arguments(args)
     except ArgumentsError as error:
@@ -139,6 +148,8 @@ def _read_ros(argument: str, waiting: Iterator[str], found: Arguments) -> None:
     if argument in _UNSUPPORTED:
         raise NotImplementedError(f"the ROS argument {argument} is not supported")
     if argument in _SWITCHES:
+        what, wanted = _SWITCHES[argument]
+        found.log_outputs[what] = wanted
         return
     flag = _FLAGS.get(argument)
     if flag is None:

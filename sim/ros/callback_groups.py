@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import weakref
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeAlias
 
+from sim.ros.entity import Entity
 from sim.trace.events import GroupKind
 
 if TYPE_CHECKING:
-    from sim.ros.entity import Entity
     from sim.ros.node import Node
+    from sim.ros.waitable import Waitable
+
+Member: TypeAlias = "Entity | Waitable[Any]"
 
 
 class CallbackGroup(ABC):
@@ -25,13 +28,14 @@ class CallbackGroup(ABC):
 
     def __init__(self) -> None:
         super().__init__()
-        self.entities: dict[weakref.ref[Entity], None] = {}
+        self.entities: dict[weakref.ref[Member], None] = {}
         self._nodes: list[weakref.ref[Node]] = []
 
-    def add_entity(self, entity: Entity) -> None:
+    def add_entity(self, entity: Member) -> None:
         """Make an entity a member."""
         self.entities[weakref.ref(entity)] = None
-        if all(node() is not entity.node for node in self._nodes):
+        # A program's waitable may have no node, or one of another kind; the entity that stands for it has.
+        if isinstance(entity, Entity) and all(node() is not entity.node for node in self._nodes):
             self._nodes.append(weakref.ref(entity.node))
 
     def other_nodes(self, than: Node) -> list[Node]:
@@ -40,7 +44,7 @@ class CallbackGroup(ABC):
             return []
         return [node for each in self._nodes if (node := each()) is not None and node is not than]
 
-    def has_entity(self, entity: Entity) -> bool:
+    def has_entity(self, entity: Member) -> bool:
         """Whether an entity is a member."""
         return weakref.ref(entity) in self.entities
 

@@ -5,13 +5,15 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
+
+import msgspec
 
 from sim.ros.entity import Entity, Taken
 from sim.ros.interfaces import copy_message
 from sim.ros.network import Request
 from sim.ros.qos import QoSProfile
-from sim.ros.service_introspection import ServiceIntrospectionState, require_off
+from sim.ros.service_introspection import ServiceIntrospection, ServiceIntrospectionState, reconfigured
 from sim.ros.task import Future
 from sim.trace.events import EntityKind
 
@@ -24,7 +26,7 @@ _POLL = 0.25
 """Seconds between two looks of ``wait_for_service``, as in rclpy."""
 
 
-class Reply(NamedTuple):
+class Reply(msgspec.Struct, frozen=True):
     """An answer that came in."""
 
     call: int
@@ -58,6 +60,7 @@ class Client(Entity):
         self.depth = qos_profile.queue_length or 0
         self._host = node.context.host
         self._probe = node.context.probe
+        self._introspection: ServiceIntrospection | None = None
         self._pending_requests: dict[int, Future[Any]] = {}
         self._queue: deque[Reply] = deque()
 
@@ -72,8 +75,16 @@ class Client(Entity):
         service_event_qos_profile: QoSProfile,
         introspection_state: ServiceIntrospectionState,
     ) -> None:
-        """Nothing for OFF; raises NotImplementedError for the rest."""
-        require_off("Client", introspection_state)
+        """Have every request sent and response taken told on ``<service>/_service_event``, or no more."""
+        self._introspection = reconfigured(
+            self._introspection, self, clock, service_event_qos_profile, introspection_state
+        )
+
+    def stop_introspection(self) -> None:
+        """Tell nothing any more. With the host's lock held."""
+        if self._introspection is not None:
+            self._introspection.stop()
+            self._introspection = None
 
     def call(self, request: Any, timeout_sec: float | None = None) -> Any:
         """Call and wait on this thread for the reply, which another thread has to take.
@@ -90,7 +101,8 @@ class Client(Entity):
         deadline = None if timeout_sec is None else self._host.clock.now() + int(timeout_sec * 1e9)
         self._probe.call_blocked(call, self.name)
         try:
-            if not future.done() and not arrived.wait(deadline):
+            if not future._settled() and not arrived.wait(deadline):
+                self.remove_pending_request(future)
                 return None
         finally:
             self._probe.call_unblocked(call)
@@ -115,9 +127,11 @@ class Client(Entity):
             future.add_done_callback(self.remove_pending_request)
             self._probe.service_called(call, self.name, copy)
             outgoing = Request(
-                copy, call, self._host.clock.now(), lambda response: self._arrive(call, response)
+                copy, call, self._host.clock.now(), lambda response: self._arrive(call, response), self
             )
-            self._host.network.send_request(self.name, self.srv_type, outgoing)
+            if self._introspection is not None:
+                self._introspection.request_sent(self, call, copy)
+            self.node.context.network.send_request(self.name, self.srv_type, outgoing)
         return call, future
 
     def remove_pending_request(self, future: Future[Any]) -> None:
@@ -130,7 +144,7 @@ class Client(Entity):
     def service_is_ready(self) -> bool:
         """Whether somebody offers the service."""
         with self._host.lock:
-            return self._host.network.has_service(self.name, self.srv_type)
+            return self.node.context.network.has_service(self.name, self.srv_type)
 
     def wait_for_service(self, timeout_sec: float | None = None) -> bool:
         """Wait until somebody offers the service; False when ``timeout_sec`` seconds were not enough.
@@ -146,9 +160,10 @@ class Client(Entity):
     def _arrive(self, call: int, response: Any) -> None:
         if self.destroyed:
             return
-        self._queue.append(Reply(call, response, self._host.clock.now()))
+        now = self._host.clock.now()
+        self._queue.append(Reply(call, response, now))
         self._probe.ready(self, len(self._queue), call)
-        self.become_ready(self._host.clock.now())
+        self.become_ready(now)
 
     def shown_callback(self) -> Callable[..., Any] | None:
         """None: the reply goes to a future."""
@@ -163,6 +178,8 @@ class Client(Entity):
             self.ready_since = now
         else:
             self.nothing_left()
+        if self._introspection is not None:
+            self._introspection.response_received(self, reply.call, reply.data)
         return Taken(reply, reply.call, now - reply.sent, len(self._queue))
 
     def invoke(self, taken: Taken) -> Any:

@@ -4,21 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, Self, cast
+from weakref import WeakValueDictionary
 
-from sim.ros.clock_jumps import ClockChange, JumpHandle, JumpThreshold, TimeJump
+from sim.ros.clock_jumps import SOURCE_CHANGES, ClockChange, JumpHandle, JumpThreshold, TimeJump
 from sim.ros.clock_type import ClockType
 from sim.ros.duration import Duration
 from sim.ros.exceptions import NotInitializedException
+from sim.ros.handle import Handle
 from sim.ros.host import Host, current_host
 from sim.ros.time import Time
 
 if TYPE_CHECKING:
     from sim.clock import Signal
     from sim.ros.context import Context
+    from sim.ros.timer import Timer
 
 __all__ = [
     "Clock",
     "ClockChange",
+    "ClockEvent",
     "ClockType",
     "JumpHandle",
     "JumpThreshold",
@@ -42,20 +46,29 @@ class Clock:
         made._clock_type = clock_type
         made._host = current_host()
         made._jump_handles = []
-        made._sleepers = []
-        made._watched = set()
         return cast("Self", made)
 
     _clock_type: ClockType
     _host: Host
     _jump_handles: list[JumpHandle]
-    _sleepers: list[Signal]
-    _watched: set[Context]
 
     @property
     def clock_type(self) -> ClockType:
         """The kind of this clock."""
         return self._clock_type
+
+    @property
+    def handle(self) -> Handle:
+        """What ClockEvent wants of it."""
+        return Handle(self)
+
+    @property
+    def destroyed(self) -> bool:
+        """Never, as its handle asks."""
+        return False
+
+    def destroy(self) -> None:
+        """Leave it to whoever uses it still."""
 
     def now(self) -> Time:
         """The time it is."""
@@ -97,52 +110,51 @@ class Clock:
             raise NotInitializedException
         if until.clock_type != self._clock_type:
             raise ValueError("until's clock type does not match this clock's type")
-        if chosen not in self._watched:
-            self._watched.add(chosen)
-            chosen.on_shutdown(self._wake_sleepers)
+        event = ClockEvent()
+        chosen._wake_at_end(event.set)
         changes: list[TimeJump] = []
-        threshold = JumpThreshold(min_forward=None, min_backward=None, on_clock_change=True)
-        with self.create_jump_callback(threshold, post_callback=changes.append):
-            while chosen.ok() and not changes and self.now() < until:
-                self._sleep_towards(until)
+
+        def on_jump(jump: TimeJump) -> None:
+            if jump.clock_change in SOURCE_CHANGES:
+                changes.append(jump)
+            if changes or self.now() >= until:
+                event.set()
+
+        threshold = JumpThreshold(
+            min_forward=Duration(nanoseconds=1), min_backward=None, on_clock_change=True
+        )
+        with self.create_jump_callback(threshold, post_callback=on_jump):
+            if self.now() < until and chosen.ok():
+                event.wait_until(self, until)
         return chosen.ok() and not changes
 
     def sleep_for(self, rel_time: Duration, context: Context | None = None) -> bool:
         """Sleep for a length of time of this clock; otherwise as ``sleep_until``."""
         return self.sleep_until(self.now() + rel_time, context)
 
-    def _sleep_towards(self, until: Time) -> None:
-        """Sleep until a time, or until the sleepers are woken."""
-        with self._host.lock:
-            signal = self._host.clock.signal()
-            self._sleepers.append(signal)
-            deadline = self._deadline(until)
-        try:
-            signal.wait(deadline)
-        finally:
-            self._sleepers.remove(signal)
-
     def _deadline(self, until: Time) -> int | None:
+        """When on the run's clock a time comes; None: that depends on who sets this clock."""
         return self._host.clock.now() + (until - self.now()).nanoseconds
-
-    def _wake_sleepers(self) -> None:
-        with self._host.lock:
-            for each in self._sleepers:
-                each.set()
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}(clock_type={self._clock_type.name})"
 
 
 class ROSClock(Clock):
-    """The clock that nodes use by default. A program may set its time; timers do not follow that."""
+    """The clock that nodes use by default.
+
+    While ROS time is active, its time is the one last set, 0 at first, and its timers follow that.
+    """
 
     _override = Time(clock_type=ClockType.ROS_TIME)
     _active = False
+    _timers: WeakValueDictionary[int, Timer]
 
     def __new__(cls, *, clock_type: ClockType = ClockType.ROS_TIME) -> Self:  # noqa: ARG004
         """Make it, a clock of ROS time whatever it is told, as rclpy's."""
-        return super().__new__(cls, clock_type=ClockType.ROS_TIME)
+        made = super().__new__(cls, clock_type=ClockType.ROS_TIME)
+        made._timers = WeakValueDictionary()
+        return made
 
     @property
     def ros_time_is_active(self) -> bool:
@@ -161,29 +173,90 @@ class ROSClock(Clock):
         """
         if not isinstance(time, Time):
             raise TypeError(f"Time must be specified as rclpy.time.Time. Received type: {type(time)}")
-        self._jump(self._active, Time(nanoseconds=time.nanoseconds, clock_type=ClockType.ROS_TIME))
+        override = Time(nanoseconds=time.nanoseconds, clock_type=ClockType.ROS_TIME)
+        if self._active:
+            self._jump(TimeJump(ClockChange.ROS_TIME_NO_CHANGE, override - self._override), True, override)
+        else:
+            self._override = override
 
     def _set_ros_time_is_active(self, enabled: bool) -> None:
-        self._jump(enabled, self._override)
+        if enabled != self._active:
+            change = ClockChange.ROS_TIME_ACTIVATED if enabled else ClockChange.ROS_TIME_DEACTIVATED
+            self._jump(TimeJump(change, Duration()), enabled, self._override)
 
-    def _jump(self, active: bool, override: Time) -> None:
-        before = self.now()
-        if active == self._active:
-            change = ClockChange.ROS_TIME_NO_CHANGE
-            after = override if active else before
-        else:
-            change = ClockChange.ROS_TIME_ACTIVATED if active else ClockChange.ROS_TIME_DEACTIVATED
-            after = override if active else super().now()
-        jump = TimeJump(change, after - before)
+    def _drive(self, timer: Timer) -> None:
+        """Have a new timer follow this clock."""
+        with self._host.lock:
+            self._timers[id(timer)] = timer
+            if self._active:
+                timer._begin_on_ros_time()
+
+    def _jump(self, jump: TimeJump, active: bool, override: Time) -> None:
         told = [each for each in self._jump_handles if each.threshold.met_by(jump)]
         for each in told:
             if each.pre_callback is not None:
                 each.pre_callback()
-        self._active, self._override = active, override
+        with self._host.lock:
+            timers = [each for each in self._timers.values() if not each.destroyed]
+            credits_ = [each._time_credit() for each in timers] if active != self._active else []
+            self._active, self._override = active, override
+            match jump.clock_change:
+                case ClockChange.ROS_TIME_ACTIVATED:
+                    for timer, credit in zip(timers, credits_, strict=True):
+                        timer._follow_ros_time(credit)
+                case ClockChange.ROS_TIME_DEACTIVATED:
+                    for timer, credit in zip(timers, credits_, strict=True):
+                        timer._follow_system_time(credit)
+                case _:
+                    for timer in timers:
+                        timer._ros_time_set()
         for each in told:
             if each.post_callback is not None:
                 each.post_callback(jump)
-        self._wake_sleepers()
 
     def _deadline(self, until: Time) -> int | None:
         return None if self._active else super()._deadline(until)
+
+
+class ClockEvent:
+    """A flag that threads wait for until a clock shows a time. Thread-safe."""
+
+    def __init__(self) -> None:
+        self._host = current_host()
+        self._set = False
+        self._waiters: list[Signal] = []
+
+    def is_set(self) -> bool:
+        """Whether it is set."""
+        return self._set
+
+    def set(self) -> None:
+        """Set it: whoever waits goes on."""
+        with self._host.lock:
+            self._set = True
+            for each in self._waiters:
+                each.set()
+
+    def clear(self) -> None:
+        """Take it back."""
+        self._set = False
+
+    def wait_until(self, clock: Clock | Handle, until: Time) -> None:
+        """Wait until it is set, or ``clock`` shows ``until``.
+
+        A time of active ROS time ends no wait: whoever sets that time has to set the flag.
+        """
+        with self._host.lock:
+            if self._set:
+                return
+            signal = self._host.clock.signal()
+            self._waiters.append(signal)
+            owner: Clock = clock.owner if isinstance(clock, Handle) else clock
+            deadline = owner._deadline(until)
+        try:
+            signal.wait(deadline)
+        finally:
+            with self._host.lock:
+                self._waiters.remove(signal)
+
+    wait_until_steady = wait_until_system = wait_until_ros = wait_until

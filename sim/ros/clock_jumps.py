@@ -21,6 +21,10 @@ class ClockChange(IntEnum):
     SYSTEM_TIME_NO_CHANGE = 4
 
 
+SOURCE_CHANGES = frozenset((ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED))
+"""The jumps at which the beginning of time changes too."""
+
+
 class JumpThreshold:
     """Which jumps a program wants to hear of: at least so far forward or back, or a change of the source.
 
@@ -47,7 +51,7 @@ class JumpThreshold:
 
     def met_by(self, jump: TimeJump) -> bool:
         """Whether a jump is wanted."""
-        if jump.clock_change in {ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED}:
+        if jump.clock_change in SOURCE_CHANGES:
             return self.on_clock_change
         forward, backward = self.min_forward, self.min_backward
         return (forward is not None and jump.delta >= forward) or (
@@ -56,7 +60,7 @@ class JumpThreshold:
 
 
 class TimeJump:
-    """A jump: how far, and whether the source changed."""
+    """A jump: how far (0 when the source changed), and whether the source changed."""
 
     def __init__(self, clock_change: ClockChange, delta: Duration) -> None:
         self._clock_change = clock_change

@@ -69,7 +69,11 @@ class Duration:
 
     @classmethod
     def from_msg(cls, msg: Any) -> Duration:
-        """From a builtin_interfaces/msg/Duration."""
+        """From a builtin_interfaces/msg/Duration; TypeError for anything else."""
+        from sim.ros.interfaces import message
+
+        if not isinstance(msg, message("builtin_interfaces", "Duration")):
+            raise TypeError("Must pass a builtin_interfaces.msg.Duration object")
         return cls(seconds=msg.sec, nanoseconds=msg.nanosec)
 
 

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
+from types import GenericAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+import msgspec
 
 from sim.ros.handle import Handle
 from sim.trace.events import EntityKind, Reason
@@ -13,7 +16,7 @@ if TYPE_CHECKING:
     from sim.ros.node import Node
 
 
-class Taken(NamedTuple):
+class Taken(msgspec.Struct, frozen=True, gc=False):
     """What one take brought: the data for the callback, and what the trace tells of it."""
 
     data: Any
@@ -36,6 +39,8 @@ class Entity:
 
     traced: ClassVar[bool] = True
     """Whether the trace shows it."""
+
+    __class_getitem__: ClassVar[Any] = classmethod(GenericAlias)
 
     def __init__(self, node: Node, name: str, callback_group: CallbackGroup) -> None:
         self.node = node

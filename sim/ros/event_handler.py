@@ -1,13 +1,13 @@
-"""Events of publishers and subscriptions: a match made or lost, or refused for its quality or type.
+"""Events of publishers and subscriptions: matches made, lost or refused, deadlines missed, liveliness lost.
 
-Deadlines and liveliness are not watched, and asking for their events is an error. No message is ever lost on
-the way, so the event that tells of it never comes; a full queue that drops its oldest is not meant by it.
+No message is ever lost on the way, so the event that tells of it never comes; a full queue that drops its
+oldest is not meant by it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
@@ -74,6 +74,44 @@ class IncompatibleTypeInfo:
     total_count_change: int = 0
 
 
+@dataclass(slots=True)
+class DeadlineMissedInfo:
+    """How many deadlines passed without a message."""
+
+    total_count: int = 0
+    total_count_change: int = 0
+
+
+@dataclass(slots=True)
+class LivelinessLostInfo:
+    """How often a publisher did not say in time that it lives."""
+
+    total_count: int = 0
+    total_count_change: int = 0
+
+
+@dataclass(slots=True)
+class LivelinessChangedInfo:
+    """How many publishers of a topic are alive, and how many are not."""
+
+    alive_count: int = 0
+    not_alive_count: int = 0
+    alive_count_change: int = 0
+    not_alive_count_change: int = 0
+
+
+@dataclass(slots=True)
+class MessageLostInfo:
+    """How many messages were lost on the way."""
+
+    total_count: int = 0
+    total_count_change: int = 0
+
+
+QoSRequestedDeadlineMissedInfo = QoSOfferedDeadlineMissedInfo = DeadlineMissedInfo
+QoSLivelinessLostInfo = LivelinessLostInfo
+QoSLivelinessChangedInfo = LivelinessChangedInfo
+QoSMessageLostInfo = MessageLostInfo
 QoSPublisherMatchedInfo = QoSSubscriptionMatchedInfo = MatchedInfo
 QoSOfferedIncompatibleQoSInfo = QoSRequestedIncompatibleQoSInfo = IncompatibleQoSInfo
 
@@ -105,9 +143,9 @@ class EventHandler(Entity):
             return None
         late = now - self.ready_since
         info = replace(self.info)
-        for name in ("total_count_change", "current_count_change"):
-            if hasattr(self.info, name):
-                setattr(self.info, name, 0)
+        for each in fields(self.info):
+            if each.name.endswith("_change"):
+                setattr(self.info, each.name, 0)
         self.nothing_left()
         return Taken(info, 0, late, 0)
 
@@ -146,7 +184,7 @@ class PublisherEventCallbacks(EventCallbacks):
 
 
 class SubscriptionEventCallbacks(EventCallbacks):
-    """What a program wants to hear of a subscription; ``message_lost`` is never called."""
+    """What a program wants to hear of a subscription; ``message_lost`` is never called, for none is lost."""
 
     def __init__(self, *, message_lost: EventCallback | None = None, **callbacks: Any) -> None:
         super().__init__(**callbacks)
@@ -154,19 +192,12 @@ class SubscriptionEventCallbacks(EventCallbacks):
 
 
 class EndpointEvents:
-    """The events of one publisher or subscription. All is called with the host's lock held.
-
-    Raises:
-        NotImplementedError: for callbacks about deadlines and liveliness.
-    """
+    """The matches of one publisher or subscription. All is called with the host's lock held."""
 
     def __init__(
         self, node: Node, topic: str, callback_group: CallbackGroup, callbacks: EventCallbacks | None
     ) -> None:
         wanted = EventCallbacks() if callbacks is None else callbacks
-        for name in ("deadline", "liveliness"):
-            if getattr(wanted, name) is not None:
-                raise NotImplementedError(f"{type(wanted).__name__}({name}=...) is not supported")
         self.handlers: list[EventHandler] = []
         self._node = node
         self._warns = wanted.use_default_callbacks
@@ -175,13 +206,17 @@ class EndpointEvents:
             if callback is None:
                 return None
             made = EventHandler(node, topic, callback, callback_group, info)
-            self.handlers.append(made)
-            node._agenda.add(made)
+            self.add(made)
             return made
 
         self._incompatible_qos = handler(wanted.incompatible_qos, IncompatibleQoSInfo())
         self._incompatible_type = handler(wanted.incompatible_type, IncompatibleTypeInfo())
         self._matched = handler(wanted.matched, MatchedInfo())
+
+    def add(self, handler: EventHandler) -> None:
+        """One handler more."""
+        self.handlers.append(handler)
+        self._node._agenda.add(handler)
 
     def match_made(self) -> None:
         """One match more."""

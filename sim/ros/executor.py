@@ -10,15 +10,18 @@ import inspect
 from collections import deque
 from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager
+from threading import get_ident
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from sim.clock import Stopped
 from sim.ros.context import Context
 from sim.ros.entity import Entity, Taken
+from sim.ros.handlers import Handler
 from sim.ros.task import Future, Task
 from sim.ros.utilities import get_default_context, timeout_sec_to_nsec
 from sim.ros.wait_set import WaitSet
+from sim.ros.waitable_entity import WaitableEntity, ask_waitables
 from sim.trace.events import Reason
 
 if TYPE_CHECKING:
@@ -26,6 +29,10 @@ if TYPE_CHECKING:
     from sim.ros.timer import Timer
 
 Work: TypeAlias = "Entity | Task[Any]"
+"""What a cycle yields."""
+Begun: TypeAlias = "tuple[Entity, Taken] | Task[Any]"
+"""A callback that its group has let in and that has what it needs to run."""
+FoundT = TypeVar("FoundT")
 
 
 class ExternalShutdownException(Exception):
@@ -49,8 +56,19 @@ def never() -> bool:
     return False
 
 
+class TimeoutObject:
+    """Seconds that are left of a timeout; changing them does not make it another one."""
+
+    def __init__(self, timeout: float) -> None:
+        self.timeout = timeout
+
+
+Timeout: TypeAlias = "float | TimeoutObject | None"
+"""Seconds; None or negative ones stand for ever."""
+
+
 class Executor:
-    """Base of all executors; a program may write its own kind by ``_spin_once_impl``."""
+    """Base of all executors; a program may write its own kind by ``_spin_once_impl`` or ``spin_once``."""
 
     threads = 1
     """How many callbacks can run at once."""
@@ -62,6 +80,9 @@ class Executor:
         self._clock = self._host.clock
         self._probe = self._context.probe
         self._nodes: list[Node] = []
+        self._nodes_in_view = self._nodes
+        self._last_wanted: tuple[Any, ...] = ()
+        self._chooses_entities = type(self).can_execute is not Executor.can_execute
         self._wait_set = WaitSet()
         self._tasks: deque[Task[Any]] = deque()
         self._due_tasks: deque[Task[Any]] = deque()
@@ -69,14 +90,17 @@ class Executor:
         self._foreign_awaits: list[Task[Any]] = []
         self._coroutines: dict[Task[Any], Entity] = {}
         self._signal = self._clock.signal()
+        self._asks_waitables = False
+        self._waitables_due: int | None = None
         self._waits_until: int | None = None
         self._waiting = False
         self._spinning = False
         self._is_shutdown = False
         self._running: list[Entity] = []
+        self._task_threads: list[int] = []
         self._at_work = 0
         self._idle_signals: list[Any] = []
-        self._context.on_shutdown(self.wake)
+        self._context._wake_at_end(self.wake)
         self._probe.executor_made(type(self).__name__, self.threads)
 
     # Public
@@ -93,6 +117,7 @@ class Executor:
                 return False
             self._nodes.append(node)
             node.executor = self
+            self._waitables_changed()
             self.wake()
             return True
 
@@ -102,6 +127,7 @@ class Executor:
             if node in self._nodes:
                 self._nodes.remove(node)
                 node.executor = None
+                self._waitables_changed()
                 self.wake()
 
     def get_nodes(self) -> list[Node]:
@@ -111,11 +137,7 @@ class Executor:
     def wake(self) -> None:
         """Have it look again at what is ready."""
         with self._lock:
-            if self._foreign_awaits:
-                self._tasks.extend(self._foreign_awaits)
-                self._foreign_awaits.clear()
-            if self._waiting:
-                self._signal.set()
+            self._wake()
 
     def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task[Any]:
         """Run a function or coroutine soon, before whatever else is ready."""
@@ -124,11 +146,14 @@ class Executor:
         return task
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Yield nothing more and wait for what runs; False if ``timeout_sec`` seconds were not enough."""
+        """Yield nothing more and wait for what runs; False if ``timeout_sec`` seconds were not enough.
+
+        A callback that shuts its own executor down waits for nothing.
+        """
         with self._lock:
             self._is_shutdown = True
             self.wake()
-        if not self._wait_for_the_running(timeout_sec_to_nsec(timeout_sec)):
+        if not self._runs_here() and not self._wait_for_the_running(timeout_sec_to_nsec(timeout_sec)):
             return False
         for node in self.get_nodes():
             self.remove_node(node)
@@ -156,26 +181,35 @@ class Executor:
             future._set_executor(self)
             future.add_done_callback(lambda _: self.wake())
             nanoseconds = timeout_sec_to_nsec(timeout_sec)
-            end = None if nanoseconds < 0 else self._clock.now() + nanoseconds
-            while self._context.ok() and not future.done() and not self._is_shutdown:
-                left = None if end is None else max(end - self._clock.now(), 0) / 1e9
-                self._spin_once_impl(left, future.done)
-                if end is not None and self._clock.now() >= end:
+            if nanoseconds < 0:
+                while self._context.ok() and not future._settled() and not self._is_shutdown:
+                    self._spin_once_impl(timeout_sec, future._settled)
+                return
+            end = self._clock.now() + nanoseconds
+            left = TimeoutObject(nanoseconds / 1e9)
+            while self._context.ok() and not future._settled() and not self._is_shutdown:
+                self._spin_once_impl(left, future._settled)
+                now = self._clock.now()
+                if now >= end:
                     return
+                left.timeout = (end - now) / 1e9
 
     def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
         """Run one callback, unless the future is done first."""
         with self._enter_spin():
             future._set_executor(self)
             future.add_done_callback(lambda _: self.wake())
-            self._spin_once_impl(timeout_sec, future.done)
+            self._spin_once_impl(timeout_sec, future._settled)
 
     # Waiting for work
 
     def _spin_once_impl(
-        self, timeout_sec: float | None = None, wait_condition: Callable[[], bool] = never
+        self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never
     ) -> None:
-        raise NotImplementedError
+        if type(self).spin_once is Executor.spin_once:
+            raise NotImplementedError
+        # Programs written for Humble say by this method how to spin.
+        self.spin_once(_seconds(timeout_sec))
 
     @contextmanager
     def _enter_spin(self) -> Generator[None, None, None]:
@@ -183,21 +217,55 @@ class Executor:
             if self._spinning:
                 raise RuntimeError("Executor is already spinning")
             self._spinning = True
+            self._context.process.spins += 1
         try:
             yield
         finally:
             self._spinning = False
 
-    def _await_work(self, timeout_sec: float | None, condition: Callable[[], bool]) -> Work:
-        """Wait for the next thing to run, marked as handed out.
+    def _want(
+        self, timeout_sec: Timeout, nodes: Iterable[Node] | None, condition: Callable[[], bool]
+    ) -> None:
+        """Tell what is waited for next; if that is not what was last, the rest of the snapshot is let go."""
+        wanted = (timeout_sec, nodes, condition)
+        if wanted == self._last_wanted:
+            return
+        with self._lock:
+            self._last_wanted = wanted
+            self._nodes_in_view = self._nodes if nodes is None else self._chosen(nodes)
+            self._tasks.extendleft(reversed(self._due_tasks))
+            self._due_tasks.clear()
+            self._wait_set.clear()
+            self._looked = True
+            self._wake()
+
+    def _chosen(self, nodes: Iterable[Node]) -> list[Node]:
+        chosen = list(nodes)
+        for node in chosen:
+            if node.executor is not self:
+                raise NotImplementedError(
+                    "wait_for_ready_callbacks(nodes=...) with a node that was not added is not supported"
+                )
+        return chosen
+
+    def _await_work(
+        self,
+        timeout_sec: Timeout,
+        condition: Callable[[], bool],
+        on_found: Callable[[Work, int], FoundT],
+    ) -> FoundT:
+        """Wait for the next thing to run, marked as handed out, and return what ``on_found`` makes of it.
+
+        ``on_found`` gets the time too and is called with the lock still held.
 
         Raises:
             ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException:
                 there is none for that reason.
         """
-        nanoseconds = timeout_sec_to_nsec(timeout_sec)
+        nanoseconds = -1 if timeout_sec is None else timeout_sec_to_nsec(_seconds(timeout_sec))
         deadline = None if nanoseconds < 0 else self._clock.now() + nanoseconds
         while True:
+            asked = self._asks_waitables and self._about_to_look() and self._ask_waitables()
             with self._lock:
                 self._waiting = False
                 if not self._context.ok():
@@ -209,57 +277,120 @@ class Executor:
                 now = self._clock.now()
                 work = self._next_work(now)
                 if work is not None:
-                    return work
+                    return on_found(work, now)
                 if deadline is not None and now >= deadline:
+                    self._wake()
                     raise TimeoutException
-                until = _earliest((deadline, *(node._agenda.next_due() for node in self._nodes)))
+                if self._asks_waitables and not asked and self._about_to_look():
+                    continue
+                dues = (node._agenda.next_due() for node in self._nodes_in_view)
+                until = _earliest((deadline, self._waitables_due, *dues))
                 self._waits_until = until
                 self._waiting = True
             self._signal.wait(until)
 
     def _next_work(self, now: int) -> Work | None:
         """Yield the next of this cycle, of a new one once it is served to its end. With the lock held."""
-        work = self._next_of_cycle(now)
-        if work is None and self._may_begin_cycle():
-            self._due_tasks, self._tasks = self._tasks, self._due_tasks
-            self._looked = False
+        if not self._cycle_served():
             work = self._next_of_cycle(now)
-        return work
+            if work is not None:
+                return work
+        if not self._may_begin_cycle():
+            return None
+        self._due_tasks, self._tasks = self._tasks, self._due_tasks
+        if self._nodes_in_view is not self._nodes:
+            self._put_tasks_off()
+        self._looked = False
+        return self._next_of_cycle(now)
+
+    def _put_tasks_off(self) -> None:
+        """Leave the callbacks of nodes that are out of view for another cycle."""
+        in_view: deque[Task[Any]] = deque()
+        for task in self._due_tasks:
+            entity = self._entity_of(task)
+            is_seen = entity is None or entity.node in self._nodes_in_view
+            (in_view if is_seen else self._tasks).append(task)
+        self._due_tasks = in_view
+
+    def _entity_of(self, task: Task[Any]) -> Entity | None:
+        return task.entity if isinstance(task, Handler) else self._coroutines.get(task)
+
+    def _cycle_served(self) -> bool:
+        return self._looked and self._wait_set.exhausted and not self._due_tasks
 
     def _next_of_cycle(self, now: int) -> Work | None:
         if self._due_tasks:
             return self._due_tasks.popleft()
         if not self._looked:
             self._looked = True
-            for node in self._nodes:
+            for node in self._nodes_in_view:
                 if node._agenda.warnings:
                     node._agenda.speak_warnings()
-            self._wait_set.look(self._nodes, now)
+            self._wait_set.look(self._nodes_in_view, now)
+            if self._chooses_entities:
+                self._wait_set.keep(self.can_execute)
         return self._wait_set.next(now)
 
     def _may_begin_cycle(self) -> bool:
         return True
 
+    def _about_to_look(self) -> bool:
+        """Whether the next thing to do is to take a new snapshot."""
+        return not self._due_tasks and self._wait_set.exhausted and not (self._looked and self._tasks)
+
+    def _ask_waitables(self) -> bool:
+        """Ask a program's waitables, for a cycle that is about to begin; True."""
+        with self._lock:
+            # What becomes ready while they are asked has to end the waiting that may follow.
+            self._waiting = True
+            self._waits_until = None
+        self._waitables_due = ask_waitables(self, tuple(self._nodes_in_view))
+        return True
+
+    def _waitables_changed(self) -> None:
+        """Nodes or a program's waitables came or went. With the lock held."""
+        self._asks_waitables = any(node._agenda.asked for node in self._nodes)
+        self._waitables_due = None
+        self.wake()
+
     # Being told; with the host's lock held
 
     def _entity_ready(self, entity: Entity) -> None:
         if self._waiting and not entity.handed_out and entity.callback_group.can_execute(entity):
-            self._signal.set()
+            self._work_came()
 
     def _timer_set(self, timer: Timer) -> None:
+        if not self._waiting:
+            return
         if timer.due <= self._clock.now():
             self._entity_ready(timer)
-        elif self._waiting and (self._waits_until is None or timer.due < self._waits_until):
+        elif self._waits_until is None or timer.due < self._waits_until:
             self._signal.set()
+
+    def _wake(self) -> None:
+        self._recall_foreign_awaits()
+        if self._waiting:
+            self._signal.set()
+
+    def _recall_foreign_awaits(self) -> None:
+        if self._foreign_awaits:
+            self._tasks.extend(self._foreign_awaits)
+            self._foreign_awaits.clear()
+
+    def _work_came(self) -> None:
+        """There is something to run now, while the thread that spins waits."""
+        self._signal.set()
 
     def _look_again(self) -> None:
         """Something may be ready that was not; whoever calls this does not look for it."""
-        self.wake()
+        self._wake()
 
     def _resume(self, task: Task[Any]) -> None:
         with self._lock:
             self._tasks.append(task)
-            self.wake()
+            self._recall_foreign_awaits()
+            if self._waiting:
+                self._work_came()
 
     def _resume_at_wake_up(self, task: Task[Any]) -> None:
         with self._lock:
@@ -267,13 +398,20 @@ class Executor:
 
     # Running
 
-    def _begin(self, entity: Entity) -> Taken | None:
+    def _begin(self, work: Work, now: int) -> Begun | None:
         """Enter the group and take what is there; None: refused, or nothing there. With the lock held."""
+        if isinstance(work, Task):
+            self._at_work += 1
+            return work
+        taken = self._enter(work, now)
+        return None if taken is None else (work, taken)
+
+    def _enter(self, entity: Entity, now: int) -> Taken | None:
         entity.handed_out = False
         if self._is_shutdown or entity.destroyed or not entity.callback_group.beginning_execution(entity):
             self.wake()
             return None
-        taken = entity.take(self._clock.now())
+        taken = entity.take(now)
         if taken is None:
             entity.callback_group.ending_execution(entity)
             self.wake()
@@ -283,18 +421,24 @@ class Executor:
         if entity.wait_shown is not None:
             self._probe.wait_ended(entity)
         if entity.pending and entity.callback_group.can_execute(entity):
-            self.wake()
+            self._wake()
         return taken
 
-    def _run(self, entity: Entity, taken: Taken) -> None:
-        """Run a callback that has begun, on this thread; what it raises is raised."""
+    def _run(self, begun: Begun) -> None:
+        """Run what has begun, on this thread; what it raises is raised."""
+        if isinstance(begun, Task):
+            self._run_task(begun)
+        else:
+            self._run_callback(*begun)
+
+    def _run_callback(self, entity: Entity, taken: Taken) -> None:
         outer = self._probe.callback_started(entity, taken.message, taken.age, taken.left)
         try:
             outcome = entity.invoke(taken)
         except BaseException as error:
             self._fail(entity, error, outer)
             raise
-        if inspect.iscoroutine(outcome):
+        if outcome is not None and inspect.iscoroutine(outcome):
             task: Task[Any] = Task(outcome, executor=self)
             self._coroutines[task] = entity
             self._step(task, entity, outer)
@@ -302,28 +446,27 @@ class Executor:
             self._end(entity, outer)
 
     def _run_task(self, task: Task[Any]) -> None:
-        """Run a task as far as it gets; what it raises is raised."""
+        """Run a task as far as it gets."""
         entity = self._coroutines.get(task)
         if entity is None:
-            with self._lock:
-                self._at_work += 1
+            self._task_threads.append(get_ident())
             try:
                 task()
             finally:
                 with self._lock:
+                    self._task_threads.remove(get_ident())
                     self._leave()
-            error = task.exception() if task.done() else None
+            error = task.exception() if task._settled() else None
             if error is not None:
                 raise error
         else:
             with self._lock:
                 self._running.append(entity)
-                self._at_work += 1
             self._step(task, entity, self._probe.callback_resumed(entity))
 
     def _step(self, task: Task[Any], entity: Entity, outer: int) -> None:
         awaited = task._advance()
-        if not task.done():
+        if not task._settled():
             with self._lock:
                 self._running.remove(entity)
                 self._probe.callback_suspended(entity, outer)
@@ -369,6 +512,12 @@ class Executor:
             for signal in signals:
                 signal.set()
 
+    def _runs_here(self) -> bool:
+        """Whether the calling thread runs a callback or a task of this executor."""
+        here = self._probe.callback_here()
+        is_callback = here != 0 and any(each.trace_id == here for each in self._running)
+        return is_callback or get_ident() in self._task_threads
+
     def _wait_for_the_running(self, nanoseconds: int) -> bool:
         with self._lock:
             if self._at_work == 0:
@@ -399,32 +548,45 @@ class Executor:
 
     # For executors written by a program
 
+    def can_execute(self, entity: Entity) -> bool:
+        """Whether an entity is waited on: it is not handed out, and its group would let it in.
+
+        A program's own kind of executor may leave more out of a cycle. It is asked with the host's lock held.
+        """
+        return not entity.handed_out and entity.callback_group.can_execute(entity)
+
     def wait_for_ready_callbacks(
         self,
-        timeout_sec: float | None = None,
+        timeout_sec: Timeout = None,
         nodes: Iterable[Node] | None = None,
         condition: Callable[[], bool] = never,
-    ) -> tuple[Task[Any], Entity | None, Node | None]:
-        """Wait for the next callback: a task that runs it when called, its entity and its node.
+    ) -> tuple[Task[Any], Any, Node | None]:
+        """Wait for the next callback, of ``nodes`` or of all: a task that runs it, its entity and its node.
+
+        For a task of ``create_task`` there is neither entity nor node.
 
         Raises:
             ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException:
                 there is none for that reason.
-            NotImplementedError: for a choice of nodes.
+            NotImplementedError: one of ``nodes`` was not added.
         """
-        if nodes is not None:
-            raise NotImplementedError("wait_for_ready_callbacks(nodes=...) is not supported")
-        work = self._await_work(timeout_sec, condition)
-        if isinstance(work, Task):
-            entity = self._coroutines.get(work)
-            return work, entity, None if entity is None else entity.node
-        return Task(self._handle, (work,), executor=self), work, work.node
+        self._want(timeout_sec, nodes, condition)
+        work = self._await_work(timeout_sec, condition, lambda work, _now: work)
+        task = work if isinstance(work, Task) else Handler(work, self)
+        entity = self._entity_of(task)
+        if entity is None:
+            return task, None, None
+        return task, entity.waitable if isinstance(entity, WaitableEntity) else entity, entity.node
 
-    def _handle(self, entity: Entity) -> None:
-        with self._lock:
-            taken = self._begin(entity)
-        if taken is not None:
-            self._run(entity, taken)
+    def _wait_for_ready_callbacks(
+        self,
+        timeout_sec: Timeout = None,
+        nodes: Iterable[Node] | None = None,
+        condition: Callable[[], bool] = never,
+    ) -> Generator[tuple[Task[Any], Any, Node | None], None, None]:
+        """What ``wait_for_ready_callbacks`` returns, time after time."""
+        while True:
+            yield self.wait_for_ready_callbacks(timeout_sec, nodes, condition)
 
     def __enter__(self) -> Executor:
         return self
@@ -433,6 +595,10 @@ class Executor:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.shutdown()
+
+
+def _seconds(timeout: Timeout) -> float | None:
+    return timeout.timeout if isinstance(timeout, TimeoutObject) else timeout
 
 
 def _earliest(times: Iterable[int | None]) -> int | None:

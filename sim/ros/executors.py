@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
 import warnings
-from collections.abc import Callable
-from typing import Self
+from collections.abc import Callable, Generator
+from contextlib import contextmanager, suppress
+from typing import Any, Self
 
 from sim.ros.context import Context
 from sim.ros.executor import (
@@ -12,10 +14,12 @@ from sim.ros.executor import (
     Executor,
     ExternalShutdownException,
     ShutdownException,
+    Timeout,
     TimeoutException,
+    TimeoutObject,
     never,
 )
-from sim.ros.task import Task
+from sim.ros.task import Future
 from sim.ros.utilities import get_available_threads, get_default_context
 from sim.ros.workers import WorkerPool
 
@@ -27,7 +31,16 @@ __all__ = [
     "ShutdownException",
     "SingleThreadedExecutor",
     "TimeoutException",
+    "TimeoutObject",
+    "await_or_execute",
 ]
+
+
+async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
+    """Call a function, or await what a coroutine function returns; gives what comes of it."""
+    if inspect.iscoroutinefunction(callback):
+        return await callback(*args)
+    return callback(*args)
 
 
 class SingleThreadedExecutor(Executor):
@@ -44,16 +57,15 @@ class SingleThreadedExecutor(Executor):
         return super().__new__(cls)
 
     def _spin_once_impl(
-        self, timeout_sec: float | None = None, wait_condition: Callable[[], bool] = never
+        self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never
     ) -> None:
+        self._want(timeout_sec, None, wait_condition)
         try:
-            work = self._await_work(timeout_sec, wait_condition)
+            begun = self._await_work(timeout_sec, wait_condition, self._begin)
         except (ShutdownException, TimeoutException, ConditionReachedException):
             return
-        if isinstance(work, Task):
-            self._run_task(work)
-        else:
-            self._handle(work)
+        if begun is not None:
+            self._run(begun)
 
 
 class MultiThreadedExecutor(Executor):
@@ -77,6 +89,12 @@ class MultiThreadedExecutor(Executor):
             )
         super().__init__(context=chosen)
         self._pool = WorkerPool(self)
+        self._spinning_on = False
+
+    @property
+    def _executor(self) -> WorkerPool:
+        """The pool, by the name that rclpy has for it."""
+        return self._pool
 
     def shutdown(self, timeout_sec: float | None = None) -> bool:
         """Yield nothing more, wait for what runs, and end the workers."""
@@ -90,31 +108,59 @@ class MultiThreadedExecutor(Executor):
         Raises:
             RuntimeError: it is already spinning.
         """
-        self._pool.dispatches_itself = True
-        try:
+        with self._spin_on():
             super().spin()
+
+    def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
+        """Run callbacks until the future is done, for at most ``timeout_sec`` seconds."""
+        with self._spin_on(until=future._settled):
+            super().spin_until_future_complete(future, timeout_sec)
+
+    @contextmanager
+    def _spin_on(self, until: Callable[[], bool] = never) -> Generator[None, None, None]:
+        """Meanwhile workers may look for their next callback themselves, ``until`` a condition holds."""
+        outer = self._spinning_on, self._pool.enough
+        self._set_spinning_on(True, until)
+        try:
+            yield
         finally:
-            self._pool.dispatches_itself = False
+            self._set_spinning_on(*outer)
+
+    def _set_spinning_on(self, spinning_on: bool, enough: Callable[[], bool]) -> None:
+        with self._lock:
+            self._spinning_on = spinning_on
+            self._pool.enough = enough
+            self._waitables_changed()
+
+    def _waitables_changed(self) -> None:
+        """Only the thread that spins can ask waitables, for it holds no lock then."""
+        super()._waitables_changed()
+        self._pool.dispatches_itself = self._spinning_on and not self._asks_waitables
 
     def _spin_once_impl(
-        self, timeout_sec: float | None = None, wait_condition: Callable[[], bool] = never
+        self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never
     ) -> None:
-        try:
-            work = self._await_work(timeout_sec, lambda: wait_condition() or self._pool.error_surfaces)
-        except (ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException):
-            self._pool.raise_surfacing()
-            return
-        with self._lock:
-            self._pool.submit(work)
+        self._want(timeout_sec, None, wait_condition)
+        with suppress(
+            ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException
+        ):
+            self._await_work(
+                timeout_sec, lambda: wait_condition() or self._pool.error_surfaces, self._pool.submit
+            )
         self._pool.raise_surfacing()
 
     def _may_begin_cycle(self) -> bool:
         return self._pool.all_begun()
 
+    def _work_came(self) -> None:
+        """An idle worker looks for it, which saves the way over the thread that spins."""
+        if not self._pool.looks_itself():
+            super()._work_came()
+
     def _look_again(self) -> None:
         """Workers look for themselves while ``spin`` runs."""
         if not self._pool.dispatches_itself:
-            self.wake()
+            self._wake()
 
     def _workers_busy(self) -> bool:
         return self._pool.all_busy()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol, Self
+from typing import Any, Protocol, Self
 
 from sim.ros.exceptions import InvalidHandle
 
@@ -21,12 +21,19 @@ class Destroyable(Protocol):
 class Handle:
     """Stands for what lies below an entity in rclpy; as a context manager it demands that it is alive.
 
+    An entity that is destroyed while it is used counts as alive until it is used no more.
+
     Raises:
         InvalidHandle: on entering, if the entity was destroyed.
     """
 
     def __init__(self, owner: Destroyable) -> None:
         self._owner = owner
+
+    @property
+    def owner(self) -> Any:
+        """What it is the handle of."""
+        return self._owner
 
     @property
     def pointer(self) -> int:
@@ -38,12 +45,18 @@ class Handle:
         self._owner.destroy()
 
     def __enter__(self) -> Self:
-        if self._owner.destroyed:
+        uses = self._uses()
+        if self._owner.destroyed and uses == 0:
             raise InvalidHandle("cannot use Destroyable because destruction was requested")
+        vars(self._owner)["_handle_uses"] = uses + 1
         return self
 
     def __exit__(self, *_error: object) -> None:
-        """Leave the entity as it is."""
+        vars(self._owner)["_handle_uses"] = self._uses() - 1
+
+    def _uses(self) -> int:
+        uses: int = vars(self._owner).get("_handle_uses", 0)
+        return uses
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Handle) and self._owner is other._owner

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 from sim.ros.service import Service
 
 if TYPE_CHECKING:
+    from sim.ros.callback_groups import CallbackGroup
     from sim.ros.node import Node
     from sim.ros.qos import QoSProfile
 
@@ -19,12 +20,18 @@ class HiddenService(Service):
 
 
 def offer_hidden(
-    node: Node, srv_type: Any, srv_name: str, callback: Callable[[Any, Any], Any], qos_profile: QoSProfile
+    node: Node,
+    srv_type: Any,
+    srv_name: str,
+    callback: Callable[[Any, Any], Any],
+    qos_profile: QoSProfile,
+    callback_group: CallbackGroup | None = None,
 ) -> HiddenService:
-    """Have a node offer a hidden service, in its default group."""
+    """Have a node offer a hidden service, by default in its default group."""
+    group = node.default_callback_group if callback_group is None else callback_group
     name = node.resolve_service_name(srv_name)
     with node.context.host.lock:
-        service = HiddenService(node, srv_type, name, callback, node.default_callback_group, qos_profile)
+        service = HiddenService(node, srv_type, name, callback, group, qos_profile)
         node._agenda.add(service)
-        node.context.host.network.join_service(service)
+        node.context.network.join_service(service)
     return service

@@ -5,15 +5,36 @@ on wall time that keeps no trace, so that the model works as a plain library too
 """
 
 import threading
+import time
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from weakref import ref
 
 from sim.clock import Clock, RealClock
+from sim.ros.domain import domain_of_machine
 from sim.ros.network import Network
 from sim.ros.probe import Probe, SilentProbe
 
+# Kept from before sim.clock.stdlib puts the virtual ones in their place.
 _RLock = threading.RLock
+_sleep = time.sleep
+
+_ASIDE = 50e-6
+"""Seconds for which a thread that finds the host's lock taken stands aside."""
+
+
+class HostLock(type(_RLock())):  # type: ignore[misc]
+    """A lock that is never queued up for: whoever finds it taken stands aside and tries again.
+
+    Its holder is then a thread that the interpreter has switched away from in the middle of a few quick
+    lines. Threads that queued up for the lock would from then on hand it to each other at every use, each
+    time with a switch between threads.
+    """
+
+    def __enter__(self) -> bool:
+        while not self.acquire(False):
+            _sleep(_ASIDE)
+        return True
 
 
 @dataclass(eq=False)
@@ -22,15 +43,28 @@ class Host:
 
     ``lock`` guards all state of executors, groups and queues; it is never held while something waits or
     while a callback runs. ``threads`` replaces the number of threads of every executor made (None: as the
-    program says).
+    program says). ``default_domain`` is that of whatever is no program. ``takes_signals`` tells that the
+    whole process is the program's, so that rclpy's signal handlers may be installed in it.
     """
 
     clock: Clock
     probe: Probe
     threads: int | None = None
-    lock: AbstractContextManager[bool] = field(default_factory=_RLock)
-    network: Network = field(default_factory=Network)
+    lock: AbstractContextManager[bool] = field(default_factory=HostLock)
+    default_domain: int = field(default_factory=domain_of_machine)
+    takes_signals: bool = False
+    _networks: dict[int, Network] = field(default_factory=dict)
     _waiters: "list[ref[WaitsExplained]]" = field(default_factory=list)
+
+    @property
+    def network(self) -> Network:
+        """The network of the default domain."""
+        return self.network_of(self.default_domain)
+
+    def network_of(self, domain: int) -> Network:
+        """The network of a domain."""
+        with self.lock:
+            return self._networks.setdefault(domain, Network())
 
     def explain_waits(self) -> int | None:
         """Put on the trace which callbacks wait now, and why; call it before time passes.
@@ -69,7 +103,7 @@ def current_host() -> Host:
     with _making:
         if _host is None:
             clock = RealClock()
-            _host = Host(clock=clock, probe=SilentProbe(clock))
+            _host = Host(clock=clock, probe=SilentProbe(clock), takes_signals=True)
         return _host
 
 

@@ -3,26 +3,29 @@
 from __future__ import annotations
 
 import os
-import sys
-from enum import IntEnum
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
+from sim.ros.log_console import LogConsole
 from sim.ros.log_filters import LogPlace, Place, calling_place
+from sim.ros.log_record import LogRecord
+from sim.ros.logging_severity import LoggingSeverity
 from sim.ros.process import current_process, of_process
 from sim.trace.events import Severity
 
-
-class LoggingSeverity(IntEnum):
-    """How grave a line is."""
-
-    UNSET = 0
-    DEBUG = 10
-    INFO = 20
-    WARN = 30
-    ERROR = 40
-    FATAL = 50
-
+__all__ = [
+    "LoggingSeverity",
+    "RcutilsLogger",
+    "clear_config",
+    "get_logger",
+    "get_logger_effective_level",
+    "get_logger_level",
+    "get_logging_directory",
+    "get_logging_severity_from_string",
+    "initialize",
+    "set_logger_level",
+    "shutdown",
+]
 
 _SHOWN = {
     LoggingSeverity.DEBUG: Severity.DEBUG,
@@ -33,25 +36,39 @@ _SHOWN = {
 }
 
 
-class _Loggers:
-    """The loggers of a process and the levels that were set."""
+class Rosout(Protocol):
+    """What takes the lines of a node's logger to ``/rosout``."""
+
+    def log(self, record: LogRecord) -> None:
+        """Publish a line."""
+
+
+class Loggers:
+    """What a process keeps of its loggers: their levels, and where their lines go."""
 
     def __init__(self) -> None:
         self.levels: dict[str, LoggingSeverity] = {}
-        self.by_name: dict[str, RcutilsLogger] = {}
+        self.rosout: dict[str, Rosout] = {}
+        self.rosout_enabled = True
+        self.console_enabled = True
 
 
-def line(severity: Severity, stamp: int, logger: str, text: str) -> str:
-    """A log line as ROS prints it; ``stamp`` is nanoseconds since 1970."""
-    seconds, nanoseconds = divmod(stamp, 1_000_000_000)
-    return f"[{severity}] [{seconds}.{nanoseconds:09d}] [{logger}]: {text}"
+class _Console(LogConsole):
+    """The terminal as the environment of a process wants it."""
+
+    def __init__(self) -> None:
+        super().__init__(os.environ | current_process().environment)
 
 
 class RcutilsLogger:
-    """A named logger. Lines below its level are dropped; without a level of its own, its parent's counts."""
+    """A named logger. Lines below its level are dropped; without a level of its own, its parent's counts.
 
-    def __init__(self, name: str = "") -> None:
+    The lines of a node's logger, and of loggers made by ``get_child`` from that, go to ``/rosout`` too.
+    """
+
+    def __init__(self, name: str = "", *, rosout_name: str | None = None) -> None:
         self.name = name
+        self._rosout_name = name if rosout_name is None else rosout_name
         self._places: dict[Place, LogPlace] = {}
 
     def get_child(self, name: str) -> RcutilsLogger:
@@ -62,7 +79,9 @@ class RcutilsLogger:
         """
         if not name:
             raise ValueError("Child logger name must not be empty.")
-        return get_logger(f"{self.name}.{name}" if self.name else name)
+        return RcutilsLogger(
+            f"{self.name}.{name}" if self.name else name, rosout_name=self._rosout_name or name
+        )
 
     def set_level(self, level: LoggingSeverity | int) -> None:
         """Drop lines below ``level``."""
@@ -99,15 +118,21 @@ class RcutilsLogger:
             place.require_same(name, level, options)
         if not place.lets_pass():
             return False
-        process = current_process()
-        host = process.host
-        probe = process.probe or host.probe
-        if probe.visible:
-            probe.logged(_SHOWN[level], name, str(message))
-        else:
-            stamp = host.clock.epoch + host.clock.now()
-            print(line(_SHOWN[level], stamp, name, str(message)), file=sys.stderr)  # noqa: T201
+        self._write(LogRecord(level, name, str(message), _stamp(), where))
         return True
+
+    def _write(self, record: LogRecord) -> None:
+        process = current_process()
+        loggers = process.keep(Loggers)
+        if loggers.console_enabled:
+            probe = process.probe or process.host.probe
+            if probe.visible:
+                probe.logged(_SHOWN[record.severity], record.logger, record.text)
+            else:
+                process.keep(_Console).write(record)
+        rosout = loggers.rosout.get(self._rosout_name)
+        if rosout is not None:
+            rosout.log(record)
 
     def debug(self, message: object, **options: Any) -> bool:
         """Write a DEBUG line."""
@@ -135,24 +160,25 @@ class RcutilsLogger:
 
 
 def get_logger(name: str) -> RcutilsLogger:
-    """The logger of that name; the same object each time.
+    """A logger of that name.
 
     Raises:
         ValueError: the name is empty.
     """
     if not name:
         raise ValueError("Logger name must not be empty.")
-    return of_process(_Loggers).by_name.setdefault(name, RcutilsLogger(name))
+    return RcutilsLogger(name)
 
 
 def set_logger_level(name: str, level: LoggingSeverity | int, detailed_error: bool = False) -> None:  # noqa: ARG001
     """Drop the lines of a logger below ``level``; an empty name means all that have no level."""
-    of_process(_Loggers).levels[name] = LoggingSeverity(level)
+    of_process(Loggers).levels[name] = LoggingSeverity(level)
 
 
 def get_logger_level(name: str) -> LoggingSeverity:
-    """A logger's own level, UNSET if it has none."""
-    return of_process(_Loggers).levels.get(name, LoggingSeverity.UNSET)
+    """A logger's own level, UNSET if it has none; of the empty name, the level of all that have none."""
+    default = LoggingSeverity.UNSET if name else LoggingSeverity.INFO
+    return of_process(Loggers).levels.get(name, default)
 
 
 def get_logger_effective_level(name: str) -> LoggingSeverity:
@@ -189,4 +215,26 @@ def initialize() -> None:
 
 def shutdown() -> None:
     """Forget the levels of all loggers."""
-    of_process(_Loggers).levels.clear()
+    of_process(Loggers).levels.clear()
+
+
+def clear_config() -> None:
+    """Forget the levels of all loggers."""
+    shutdown()
+
+
+def send_to(*, console: bool | None, rosout: bool | None) -> None:
+    """Have lines go, or not go, to the console and to ``/rosout``; None: as before."""
+    loggers = of_process(Loggers)
+    if console is not None:
+        loggers.console_enabled = console
+    if rosout is not None:
+        loggers.rosout_enabled = rosout
+
+
+def _stamp() -> int:
+    clock = current_process().host.clock
+    return clock.epoch + clock.now()
+
+
+_root_logger = RcutilsLogger()

@@ -22,7 +22,8 @@ class Problem(NamedTuple):
 
 
 def node_name_problem(name: str) -> Problem | None:
-    """The first problem of a node's name."""
+    """The first problem of a node's name; TypeError for what is no text, here as below."""
+    _require_text(name)
     if not name:
         return Problem("node name must not be empty", 0)
     if (wrong := re.search(r"[^A-Za-z0-9_]", name)) is not None:
@@ -37,6 +38,7 @@ def node_name_problem(name: str) -> Problem | None:
 
 def namespace_problem(namespace: str) -> Problem | None:
     """The first problem of a namespace."""
+    _require_text(namespace)
     if namespace == "/":
         return None
     if namespace.endswith("/") and namespace.startswith("/"):
@@ -50,6 +52,7 @@ def namespace_problem(namespace: str) -> Problem | None:
 
 def full_topic_name_problem(name: str) -> Problem | None:
     """The first problem of a topic's or service's full name."""
+    _require_text(name)
     if name.endswith("/") and name.startswith("/"):
         return Problem("topic name must not end with a '/'", len(name) - 1)
     if (found := _absolute_problem(name, "topic name")) is not None:
@@ -76,11 +79,17 @@ def _absolute_problem(name: str, what: str) -> Problem | None:
 
 def topic_name_problem(name: str) -> Problem | None:
     """The first problem of a topic's or service's name as a program writes it, such as ``~/x``."""
+    _require_text(name)
     if not name:
         return Problem("topic name must not be empty string", 0)
     if name.endswith("/"):
         return Problem("topic name must not end with a forward slash", len(name) - 1)
     return _character_problem(name) or _token_problem(name)
+
+
+def _require_text(name: object) -> None:
+    if not isinstance(name, str):
+        raise TypeError(f"a name must be a str, not {name!r}")
 
 
 def _character_problem(name: str) -> Problem | None:

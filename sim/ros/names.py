@@ -24,11 +24,10 @@ _NameError = type[InvalidTopicNameException] | type[InvalidServiceNameException]
 
 
 class UnknownSubstitutionError(ValueError):
-    """A name in curly braces stands for nothing; ``index`` is where it begins."""
+    """A name in curly braces stands for nothing."""
 
-    def __init__(self, name: str, index: int) -> None:
+    def __init__(self, name: str) -> None:
         super().__init__(f"unknown substitution '{{{name}}}'")
-        self.index = index
 
 
 def expand_topic(name: str, node_name: str, namespace: str) -> str:
@@ -36,6 +35,7 @@ def expand_topic(name: str, node_name: str, namespace: str) -> str:
 
     Raises:
         InvalidTopicNameException: the name breaks the rules.
+        UnknownSubstitutionError: it has one.
     """
     return _expand(name, node_name, namespace, InvalidTopicNameException)
 
@@ -45,6 +45,7 @@ def expand_service(name: str, node_name: str, namespace: str) -> str:
 
     Raises:
         InvalidServiceNameException: the name breaks the rules.
+        UnknownSubstitutionError: it has one.
     """
     return _expand(name, node_name, namespace, InvalidServiceNameException)
 
@@ -59,7 +60,7 @@ def full_name(name: str, node_name: str, namespace: str) -> str:
 
     def value(match: re.Match[str]) -> str:
         if match[1] not in known:
-            raise UnknownSubstitutionError(match[1], match.start())
+            raise UnknownSubstitutionError(match[1])
         return known[match[1]]
 
     substituted = _SUBSTITUTION.sub(value, name)
@@ -72,10 +73,7 @@ def full_name(name: str, node_name: str, namespace: str) -> str:
 def _expand(name: str, node_name: str, namespace: str, error: _NameError) -> str:
     if (problem := topic_name_problem(name)) is not None:
         raise error(name, *problem)
-    try:
-        full = full_name(name, node_name, namespace)
-    except UnknownSubstitutionError as unknown:
-        raise error(name, str(unknown), unknown.index) from None
+    full = full_name(name, node_name, namespace)
     if (problem := full_topic_name_problem(full)) is not None:
         raise error(full, *problem)
     return full

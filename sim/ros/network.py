@@ -6,27 +6,32 @@ Delivery takes no time. Everything here is called with the host's lock held.
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
+
+import msgspec
 
 from sim.ros.qos import mismatches
 
 if TYPE_CHECKING:
+    from sim.ros.client import Client
     from sim.ros.node import Node
     from sim.ros.publisher import Publisher
     from sim.ros.service import Service
     from sim.ros.subscription import Subscription
 
 
-@dataclass(frozen=True, slots=True)
-class Request:
-    """A service request on its way; ``answer`` takes the response to whoever asked."""
+class Request(msgspec.Struct, frozen=True):
+    """A service request on its way; ``answer`` takes the response to whoever asked.
+
+    ``client`` asked, unless it was the learner at the console.
+    """
 
     data: Any
     call: int
     sent: int
     answer: Callable[[Any], None]
+    client: Client | None = None
 
 
 class Network:
@@ -37,6 +42,18 @@ class Network:
         self._publishers: defaultdict[str, list[Publisher]] = defaultdict(list)
         self._subscriptions: defaultdict[str, list[Subscription]] = defaultdict(list)
         self._services: defaultdict[str, list[Service]] = defaultdict(list)
+        self._awaited: dict[str, Callable[[], None]] = {}
+
+    def when_wanted(self, names: Iterable[str], action: Callable[[], None]) -> None:
+        """Call ``action`` once, as soon as something wants a topic or service of one of these names."""
+        self._awaited = dict.fromkeys(names, action)
+
+    def want(self, name: str) -> None:
+        """Something is about to use a topic or service, or asks who offers it."""
+        action = self._awaited.get(name)
+        if action is not None:
+            self._awaited.clear()
+            action()
 
     def nodes(self) -> tuple[Node, ...]:
         """The nodes, oldest first."""
@@ -52,10 +69,12 @@ class Network:
 
     def publishers(self, topic: str) -> tuple[Publisher, ...]:
         """The publishers on a topic."""
+        self.want(topic)
         return tuple(self._publishers.get(topic, ()))
 
     def subscriptions(self, topic: str) -> tuple[Subscription, ...]:
         """The subscriptions to a topic."""
+        self.want(topic)
         return tuple(self._subscriptions.get(topic, ()))
 
     def services(self, srv_type: type) -> tuple[Service, ...]:
@@ -68,12 +87,14 @@ class Network:
 
     def join_publisher(self, publisher: Publisher) -> None:
         """A publisher came up: it is matched with every subscription that can hear it."""
+        self.want(publisher.topic_name)
         self._publishers[publisher.topic_name].append(publisher)
         for subscription in self._subscriptions.get(publisher.topic_name, ()):
             self._match(publisher, subscription)
 
     def join_subscription(self, subscription: Subscription) -> None:
         """A subscription came up: matched, and given what transient-local publishers have kept."""
+        self.want(subscription.name)
         self._subscriptions[subscription.name].append(subscription)
         for publisher in self._publishers.get(subscription.name, ()):
             if self._match(publisher, subscription):
@@ -106,6 +127,7 @@ class Network:
         return True
 
     def _server(self, name: str, srv_type: type) -> Service | None:
+        self.want(name)
         return next((each for each in self._services.get(name, ()) if each.srv_type is srv_type), None)
 
     def _match(self, publisher: Publisher, subscription: Subscription) -> bool:

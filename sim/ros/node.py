@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
+from sim.ros import rcl_interfaces
 from sim.ros.agenda import Agenda
 from sim.ros.arguments import arguments_of_node, parameters_for
 from sim.ros.callback_groups import (
@@ -31,6 +32,7 @@ from sim.ros.publisher import Publisher
 from sim.ros.qos import QoSProfile, as_profile, qos_profile_services_default
 from sim.ros.qos_overriding_options import QoSOverridingOptions, overridden
 from sim.ros.remapping import Remapping
+from sim.ros.rosout import RosoutPublisher, offer_rosout, withdraw_rosout
 from sim.ros.service import Service
 from sim.ros.subscription import Subscription
 from sim.ros.time_source import TimeSource
@@ -38,17 +40,43 @@ from sim.ros.timer import Rate, Timer
 from sim.ros.type_description_service import TypeDescriptionService
 from sim.ros.type_support import check_is_valid_msg_type, check_is_valid_srv_type
 from sim.ros.utilities import get_default_context
+from sim.ros.waitable import Waitable
+from sim.ros.waitable_entity import WaitableEntity
+from sim.trace.events import EntityKind
 
 if TYPE_CHECKING:
     from sim.ros.executors import Executor
+
+HIDDEN_NODE_PREFIX = "_"
+
+_MESSAGES_TOO = frozenset(
+    (
+        "FloatingPointRange",
+        "IntegerRange",
+        "ListParametersResult",
+        "ParameterDescriptor",
+        "ParameterEvent",
+        "ParameterType",
+        "ParameterValue",
+        "SetParametersResult",
+    )
+)
+"""Messages that programs also import from here, as rclpy's module uses them."""
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Any:
+        if name in _MESSAGES_TOO:
+            return getattr(rcl_interfaces, name)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 class Node(NodeParameters, GraphQueries):
     """A node of the ROS graph.
 
     ``cli_args`` are arguments for this node alone and count before the program's, which are left out
-    without ``use_global_arguments``. ``parameter_overrides`` count before both. ``enable_rosout`` makes no
-    difference: log lines are on the trace or on stderr, not on a topic.
+    without ``use_global_arguments``. ``parameter_overrides`` count before both. Without
+    ``enable_rosout`` its log lines do not go to ``/rosout``.
 
     Raises:
         NotInitializedException: ``rclpy.init()`` has not been called.
@@ -83,6 +111,7 @@ class Node(NodeParameters, GraphQueries):
             self, [*overrides, *(parameter_overrides or ())], allow_undeclared=allow_undeclared_parameters
         )
         self._publishers: list[Publisher] = []
+        self._rosout_publisher: RosoutPublisher | None = None
         self.destroyed = False
         self._clock = ROSClock()
         self._logger = get_logger(self._node_names.logger_name)
@@ -91,11 +120,14 @@ class Node(NodeParameters, GraphQueries):
         self._default_callback_group = MutuallyExclusiveCallbackGroup()
         self._rate_group = ReentrantCallbackGroup()
         with self._agenda.host.lock:
-            self._agenda.host.network.join_node(self)
+            self._context.network.join_node(self)
+        if enable_rosout:
+            self._rosout_publisher = offer_rosout(self)
         self._parameter_event_publisher = parameter_event_publisher(self)
         if automatically_declare_parameters_from_overrides:
             self._declare_parameter_overrides()
         self._time_source = TimeSource(node=self)
+        self._time_source.attach_clock(self._clock)
         if start_parameter_services:
             self._parameter_service = ParameterService(self)
         if enable_logger_service:
@@ -147,14 +179,25 @@ class Node(NodeParameters, GraphQueries):
         return self._clock
 
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
-        """The full name of a topic as this node means it; remapped, unless ``only_expand``."""
-        return self._node_names.expanded_topic(topic) if only_expand else self._node_names.topic(topic)
+        """The full name of a topic as this node means it; remapped, unless ``only_expand``.
+
+        Raises:
+            InvalidTopicNameException, ValueError: the name breaks the rules, or a substitution is unknown.
+            InvalidHandle: the node was destroyed.
+        """
+        with self.handle:
+            return self._node_names.expanded_topic(topic) if only_expand else self._node_names.topic(topic)
 
     def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
-        """The full name of a service as this node means it; remapped, unless ``only_expand``."""
-        return (
-            self._node_names.expanded_service(service) if only_expand else self._node_names.service(service)
-        )
+        """The full name of a service as this node means it; remapped, unless ``only_expand``.
+
+        Raises:
+            InvalidServiceNameException, ValueError: the name breaks the rules, or a substitution is unknown.
+            InvalidHandle: the node was destroyed.
+        """
+        with self.handle:
+            names = self._node_names
+            return names.expanded_service(service) if only_expand else names.service(service)
 
     @property
     def executor(self) -> Executor | None:
@@ -205,6 +248,31 @@ class Node(NodeParameters, GraphQueries):
         """Its guard conditions, oldest first."""
         yield from self._agenda.of(GuardCondition)
 
+    @property
+    def waitables(self) -> Iterator[Any]:
+        """Its waitables, oldest first: the program's own, and what tells of events and serves actions."""
+        for each in tuple(self._agenda.entities):
+            if each.kind is EntityKind.WAITABLE:
+                yield each.waitable if isinstance(each, WaitableEntity) else each
+
+    def add_waitable(self, waitable: Waitable[Any]) -> None:
+        """Have a waitable served."""
+        with self._agenda.host.lock:
+            self._agenda.add_asked(WaitableEntity(self, waitable))
+
+    def remove_waitable(self, waitable: Waitable[Any]) -> None:
+        """Serve a waitable no more.
+
+        Raises:
+            ValueError: it was not added.
+        """
+        with self._agenda.host.lock:
+            for each in self._agenda.asked:
+                if each.waitable is waitable:
+                    self._agenda.remove_asked(each)
+                    return
+        raise ValueError("the waitable was not added to this node")
+
     # Making entities
 
     def create_publisher(
@@ -223,11 +291,10 @@ class Node(NodeParameters, GraphQueries):
         Raises:
             InvalidTopicNameException: the topic's name breaks the rules.
             AttributeError, RuntimeError: ``msg_type`` is no message class.
-            NotImplementedError: for callbacks about deadlines and liveliness.
         """
         profile, name = as_profile(qos_profile), self.resolve_topic_name(topic)
         if qos_overriding_options is not None:
-            profile = overridden("publisher", self, name, profile, qos_overriding_options)
+            profile = overridden(Publisher, self, name, profile, qos_overriding_options)
         check_is_valid_msg_type(msg_type)
         publisher = publisher_class(
             self, msg_type, topic, profile, event_callbacks=event_callbacks, callback_group=callback_group
@@ -254,11 +321,10 @@ class Node(NodeParameters, GraphQueries):
         Raises:
             InvalidTopicNameException: the topic's name breaks the rules.
             AttributeError, RuntimeError: ``msg_type`` is no message class, or the callback takes too much.
-            NotImplementedError: for callbacks about deadlines and liveliness.
         """
         name, profile = self.resolve_topic_name(topic), as_profile(qos_profile)
         if qos_overriding_options is not None:
-            profile = overridden("subscription", self, name, profile, qos_overriding_options)
+            profile = overridden(Subscription, self, name, profile, qos_overriding_options)
         check_is_valid_msg_type(msg_type)
         with self._agenda.host.lock:
             group = self._chosen_group(callback_group)
@@ -274,7 +340,7 @@ class Node(NodeParameters, GraphQueries):
                 event_callbacks=event_callbacks,
             )
             self._agenda.add(subscription)
-            self._agenda.host.network.join_subscription(subscription)
+            self._context.network.join_subscription(subscription)
         return subscription
 
     def create_timer(
@@ -321,7 +387,7 @@ class Node(NodeParameters, GraphQueries):
             group = self._chosen_group(callback_group)
             service = Service(self, srv_type, name, callback, group, qos_profile, srv_name=srv_name)
             self._agenda.add(service)
-            self._agenda.host.network.join_service(service)
+            self._context.network.join_service(service)
         return service
 
     def create_client(
@@ -337,6 +403,7 @@ class Node(NodeParameters, GraphQueries):
         name = self.resolve_service_name(srv_name)
         with self._agenda.host.lock:
             group = self._chosen_group(callback_group)
+            self._context.network.want(name)
             client = Client(self, srv_type, name, qos_profile, group, srv_name=srv_name)
             self._agenda.add(client)
         return client
@@ -368,7 +435,7 @@ class Node(NodeParameters, GraphQueries):
         with self._agenda.host.lock:
             if not self._agenda.remove(subscription):
                 return False
-            self._agenda.host.network.leave_subscription(subscription)
+            self._context.network.leave_subscription(subscription)
             subscription.events.destroy()
         return True
 
@@ -377,12 +444,15 @@ class Node(NodeParameters, GraphQueries):
         with self._agenda.host.lock:
             if not self._agenda.remove(service):
                 return False
-            self._agenda.host.network.leave_service(service)
+            self._context.network.leave_service(service)
+            service.stop_introspection()
         return True
 
     def destroy_client(self, client: Client) -> bool:
         """Remove a client; whether it was this node's."""
-        return self._agenda.remove(client)
+        with self._agenda.host.lock:
+            client.stop_introspection()
+            return self._agenda.remove(client)
 
     def destroy_timer(self, timer: Timer) -> bool:
         """Remove a timer; whether it was this node's."""
@@ -408,7 +478,8 @@ class Node(NodeParameters, GraphQueries):
                 self.destroy_publisher(publisher)
             for entity in tuple(self._agenda.entities):
                 entity.destroy()
-            self._agenda.host.network.leave_node(self)
+            withdraw_rosout(self, self._rosout_publisher)
+            self._context.network.leave_node(self)
 
     def _tell_parameter_change(self, change: ParameterChange) -> None:
         publish_change(self._parameter_event_publisher, change)

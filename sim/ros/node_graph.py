@@ -13,9 +13,11 @@ from sim.ros.exceptions import NodeNameNonExistentError
 from sim.ros.expand_topic_name import expand_topic_name
 from sim.ros.interfaces import type_name
 from sim.ros.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
+from sim.ros.type_description import type_hash
 from sim.ros.validate_full_topic_name import validate_full_topic_name
 
 if TYPE_CHECKING:
+    from sim.ros.context import Context
     from sim.ros.node import Node
     from sim.ros.publisher import Publisher
     from sim.ros.subscription import Subscription
@@ -26,6 +28,12 @@ _POLL = 100_000_000
 """Nanoseconds between two looks of ``wait_for_node``."""
 
 
+def publishers_of(node: Node) -> tuple[Publisher, ...]:
+    """The publishers of a node, among them the one for ``/rosout``, which its ``publishers`` do not name."""
+    rosout = node._rosout_publisher
+    return (*(() if rosout is None else (rosout,)), *node.publishers)
+
+
 class GraphQueries:
     """The questions about the graph; a node answers them for its whole network.
 
@@ -33,6 +41,11 @@ class GraphQueries:
     """
 
     _agenda: Agenda
+
+    @property
+    @abstractmethod
+    def context(self) -> Context:
+        """The node's context."""
 
     @abstractmethod
     def get_name(self) -> str:
@@ -75,7 +88,7 @@ class GraphQueries:
         """All topics with their types."""
         ends: list[Publisher | Subscription] = []
         for node in self.__nodes():
-            ends += (*node.publishers, *node.subscriptions)
+            ends += (*publishers_of(node), *node.subscriptions)
         return _sorted((each.topic_name, each.msg_type) for each in ends)
 
     def get_service_names_and_types(self) -> NamesAndTypes:
@@ -88,7 +101,7 @@ class GraphQueries:
     ) -> NamesAndTypes:
         """The topics that a node publishes; raises NodeNameNonExistentError without that node."""
         node = self.__node(node_name, node_namespace, "publisher")
-        return _sorted((each.topic_name, each.msg_type) for each in node.publishers)
+        return _sorted((each.topic_name, each.msg_type) for each in publishers_of(node))
 
     def get_subscriber_names_and_types_by_node(
         self, node_name: str, node_namespace: str, no_demangle: bool = False
@@ -112,7 +125,7 @@ class GraphQueries:
     def count_publishers(self, topic_name: str) -> int:
         """How many publishers a topic has."""
         full = self.__full(topic_name, is_service=False)
-        return self.__count(lambda node: (each.topic_name == full for each in node.publishers))
+        return self.__count(lambda node: (each.topic_name == full for each in publishers_of(node)))
 
     def count_subscribers(self, topic_name: str) -> int:
         """How many subscriptions a topic has."""
@@ -134,7 +147,7 @@ class GraphQueries:
     ) -> list[TopicEndpointInfo]:
         """The publishers of a topic."""
         full = topic_name if no_mangle else self.__full(topic_name, is_service=False)
-        every = chain.from_iterable(node.publishers for node in self.__nodes())
+        every = chain.from_iterable(publishers_of(node) for node in self.__nodes())
         kind = TopicEndpointTypeEnum.PUBLISHER
         return [_info(each, kind) for each in every if each.topic_name == full]
 
@@ -149,7 +162,7 @@ class GraphQueries:
 
     def __nodes(self) -> tuple[Node, ...]:
         with self._agenda.host.lock:
-            return self._agenda.host.network.nodes()
+            return self.context.network.nodes()
 
     def __node(self, name: str, namespace: str, what: str) -> Node:
         for node in self.__nodes():
@@ -181,6 +194,7 @@ def _info(end: Publisher | Subscription, kind: TopicEndpointTypeEnum) -> TopicEn
         node_name=end.node.get_name(),
         node_namespace=end.node.get_namespace(),
         topic_type=type_name(end.msg_type),
+        topic_type_hash=type_hash(end.msg_type),
         endpoint_type=kind,
         endpoint_gid=list(id(end).to_bytes(16, "little")),
         qos_profile=end.qos_profile,

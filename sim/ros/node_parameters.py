@@ -16,7 +16,7 @@ from sim.ros.exceptions import (
     ParameterUninitializedException,
 )
 from sim.ros.parameter import PARAMETER_SEPARATOR_STRING, Parameter, parameter_value_to_python
-from sim.ros.parameter_checks import WRONG_TYPE, objection
+from sim.ros.parameter_checks import PARAM_REL_TOL, WRONG_TYPE, objection
 from sim.ros.parameter_declaration import read_declaration
 from sim.ros.validate_parameter_name import validate_parameter_name
 
@@ -44,6 +44,8 @@ class ParameterChange:
 
 class NodeParameters:
     """The parameters of a node, by name. Callbacks run on the thread that sets, the newest first."""
+
+    PARAM_REL_TOL = PARAM_REL_TOL
 
     def __init__(self, overrides: Iterable[AnyParameter], *, allow_undeclared: bool) -> None:
         self._parameters: dict[str, AnyParameter] = {}

@@ -7,7 +7,7 @@ from typing import Any
 
 from sim.ros.parameter import Parameter
 
-_TOLERANCE = 1e-6
+PARAM_REL_TOL = 1e-6
 """How far a floating-point value may be from a limit or step, relative to it; as in rclpy."""
 
 WRONG_TYPE = "Wrong parameter type"
@@ -61,4 +61,4 @@ def _outside_float_range(name: str, value: float, limits: Any) -> str:
 
 
 def _close(a: float, b: float) -> bool:
-    return math.isclose(a, b, rel_tol=_TOLERANCE)
+    return math.isclose(a, b, rel_tol=PARAM_REL_TOL)

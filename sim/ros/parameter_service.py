@@ -15,7 +15,10 @@ if TYPE_CHECKING:
 
 
 class ParameterService:
-    """Offers a node's parameters, in the node's default group."""
+    """Offers a node's parameters, in the node's default group.
+
+    One name that cannot be answered leaves the whole answer empty, as in rclpy.
+    """
 
     def __init__(self, node: Node) -> None:
         self._node = node
@@ -37,24 +40,20 @@ class ParameterService:
         return response
 
     def _get(self, request: Any, response: Any) -> Any:
-        response.values = [self._value(name) for name in request.names]
-        return response
-
-    def _value(self, name: str) -> Any:
         try:
-            return self._node.get_parameter(name).get_parameter_value()
-        except (ParameterNotDeclaredException, ParameterUninitializedException):
-            return rcl_interfaces.ParameterValue()
+            response.values = [
+                each.get_parameter_value() for each in self._node.get_parameters(list(request.names))
+            ]
+        except (ParameterNotDeclaredException, ParameterUninitializedException) as error:
+            self._node.get_logger().warning(f"Failed to get parameters: {error}")
+        return response
 
     def _get_types(self, request: Any, response: Any) -> Any:
-        response.types = [self._type(name) for name in request.names]
-        return response
-
-    def _type(self, name: str) -> int:
         try:
-            return self._node.get_parameter_type(name).value
-        except ParameterNotDeclaredException:
-            return Parameter.Type.NOT_SET.value
+            response.types = [each.value for each in self._node.get_parameter_types(list(request.names))]
+        except ParameterNotDeclaredException as error:
+            self._node.get_logger().warning(f"Failed to get parameter types: {error}")
+        return response
 
     def _list(self, request: Any, response: Any) -> Any:
         response.result = self._node.list_parameters(list(request.prefixes), request.depth)

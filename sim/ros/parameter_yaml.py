@@ -10,6 +10,9 @@ import re
 from pathlib import Path
 from typing import Any, TypeAlias
 
+from sim import plain_yaml
+from sim.plain_yaml import YamlError
+
 PlainValue: TypeAlias = "bool | int | float | str | list[bool] | list[int] | list[float] | list[str] | None"
 """What a parameter can be set to in YAML; an empty list has no type and comes as None."""
 
@@ -62,17 +65,10 @@ def read_file(path: str) -> NodeParameters:
 
 
 def _compose(text: str) -> Any:
-    # Loading the library costs as much as half of the rclpy model, and few programs need it.
-    from ruamel.yaml import YAML
-    from ruamel.yaml.error import MarkedYAMLError, YAMLError
-
     try:
-        return YAML(typ="safe", pure=True).compose(text)
-    except MarkedYAMLError as error:
-        line = 1 if error.problem_mark is None else error.problem_mark.line + 1
-        raise ParameterYamlError(f"{error.problem} at line {line}") from None
-    except YAMLError as error:
-        raise ParameterYamlError(" ".join(str(error).split())) from None
+        return plain_yaml.compose(text)
+    except YamlError as error:
+        raise ParameterYamlError(f"{error.problem} at line {error.line}") from None
 
 
 def _collect_nodes(entries: list[tuple[str, Any]], name: str, found: NodeParameters) -> None:
@@ -126,7 +122,7 @@ def _value(node: Any) -> PlainValue:
 
 def _scalar(node: Any) -> bool | int | float | str:
     text: str = node.value
-    if node.style is not None:
+    if node.style:
         return text
     if text in _TRUE or text in _FALSE:
         return text in _TRUE

@@ -13,7 +13,7 @@ from itertools import count
 from typing import TYPE_CHECKING, Any
 
 from sim.trace import events
-from sim.trace.events import AnyEvent, GroupKind, Reason, Severity
+from sim.trace.events import AnyEvent, CallbackEnded, CallbackStarted, GroupKind, Reason, Severity
 
 if TYPE_CHECKING:
     from sim.clock import Clock
@@ -130,17 +130,23 @@ class Probe:
 
     def callback_started(self, entity: "Entity", message: int, age: int, depth: int) -> int:
         """A callback begins on the calling thread; returns what ran there until now."""
-        outer, self._here.entity = self._here.entity, entity.trace_id
+        here = self._here
+        outer, here.entity = here.entity, entity.trace_id
         if entity.traced:
-            thread = self.thread()
-            self._sink(events.CallbackStarted(self._now(), entity.trace_id, thread, message, age, depth))
+            thread = here.thread or self.thread()
+            self._sink(CallbackStarted(self._now(), entity.trace_id, thread, message, age, depth))
         return outer
 
     def callback_ended(self, entity: "Entity", outer: int) -> None:
         """The callback that ran on the calling thread ended; ``outer`` runs there again."""
-        self._here.entity = outer
+        here = self._here
+        here.entity = outer
         if entity.traced:
-            self._sink(events.CallbackEnded(self._now(), entity.trace_id, self.thread()))
+            self._sink(CallbackEnded(self._now(), entity.trace_id, here.thread or self.thread()))
+
+    def callback_here(self) -> int:
+        """The entity whose callback runs on the calling thread; 0 for none."""
+        return self._here.entity
 
     def callback_suspended(self, entity: "Entity", outer: int) -> None:
         """A coroutine callback awaits something and leaves the calling thread."""
@@ -193,8 +199,10 @@ class Probe:
         here = self._here
         if here.thread == 0:
             here.thread = next(self._threads)
-            name = threading.current_thread().name
-            self._sink(events.ThreadAppeared(self._now(), here.thread, name))
+            thread = threading.current_thread()
+            process = getattr(thread, "ros_process", None)
+            number = 0 if process is None else process.number
+            self._sink(events.ThreadAppeared(self._now(), here.thread, thread.name, number))
         return here.thread
 
 

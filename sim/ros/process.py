@@ -7,10 +7,11 @@ module is kept by ``of_process`` instead. A thread belongs to the process of the
 
 from __future__ import annotations
 
+import os
 import sys
 import threading
 from collections import UserList
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, MutableMapping
 from dataclasses import dataclass, field
 from itertools import count
 from typing import Any, SupportsIndex, TypeVar
@@ -25,17 +26,23 @@ KeptT = TypeVar("KeptT")
 class Process:
     """One program on the host. Thread-safe.
 
-    ``label`` tells it from others on the screen, empty for the only one. ``arguments`` is what its
-    ``sys.argv`` shows; ``probe`` None stands for the host's. ``pool_numbers`` numbers its thread pools in
-    the order of their making.
+    ``number`` and ``label`` tell it from others on the trace, 0 and empty for the only one. ``arguments``
+    is what its ``sys.argv`` shows, ``environment`` the variables that differ from the others'. ``probe`` None
+    stands for the host's; ``shows_stdout`` tells whether what it prints is for the person to see.
+    ``pool_numbers`` numbers its thread pools in the order of their making; ``callbacks`` and ``spins`` count
+    the callbacks made and the spins begun so far.
     """
 
     host: Host
+    number: int = 0
     label: str = ""
     arguments: list[str] = field(default_factory=lambda: list(sys.argv))
     environment: dict[str, str] = field(default_factory=dict)
     probe: Probe | None = None
+    shows_stdout: bool = True
     pool_numbers: Iterator[int] = field(default_factory=count)
+    callbacks: int = 0
+    spins: int = 0
     _kept: dict[Callable[[], Any], Any] = field(default_factory=dict)
 
     def keep(self, make: Callable[[], KeptT]) -> KeptT:
@@ -87,7 +94,12 @@ def _here() -> Any:
 
 
 def share_machine() -> None:
-    """Let several processes live in this one: threads inherit theirs, and ``sys.argv`` is each one's own."""
+    """Let several processes live in this one.
+
+    Threads inherit theirs; ``sys.argv`` is each one's own, and ``os.environ`` shows its own variables first.
+    The threads that belong to none keep the present arguments. Call it once, with the host installed.
+    """
+    _main_process()
     make: Any = threading.Thread.__init__
 
     def make_inheriting(thread: Any, *args: Any, **kwargs: Any) -> None:
@@ -97,6 +109,7 @@ def share_machine() -> None:
     thread_class: Any = threading.Thread
     thread_class.__init__ = make_inheriting
     sys.argv = _Arguments()  # type: ignore[assignment]
+    os.environ = _Environment(os.environ)  # type: ignore[assignment]  # noqa: B003 -- nothing is to be cleared
 
 
 class _Arguments(UserList[str]):
@@ -116,3 +129,35 @@ class _Arguments(UserList[str]):
     def copy(self) -> list[str]:  # type: ignore[override]
         """A plain list of them."""
         return list(self.data)
+
+
+class _Environment(MutableMapping[str, str]):
+    """The environment of whichever process asks: the machine's, with the process's own variables over it."""
+
+    def __init__(self, machine: MutableMapping[str, str]) -> None:
+        self._machine = machine
+
+    def _own(self) -> dict[str, str]:
+        return current_process().environment
+
+    def __getitem__(self, name: str) -> str:
+        own = self._own()
+        return own[name] if name in own else self._machine[name]
+
+    def __setitem__(self, name: str, value: str) -> None:
+        self._own().pop(name, None)
+        self._machine[name] = value
+
+    def __delitem__(self, name: str) -> None:
+        if self._own().pop(name, None) is None:
+            del self._machine[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter({**self._machine, **self._own()})
+
+    def __len__(self) -> int:
+        return len({**self._machine, **self._own()})
+
+    def copy(self) -> dict[str, str]:
+        """A plain dictionary of it."""
+        return dict(self)

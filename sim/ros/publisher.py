@@ -3,16 +3,24 @@
 from __future__ import annotations
 
 from collections import deque
-from types import TracebackType
-from typing import TYPE_CHECKING, Any
+from types import GenericAlias, TracebackType
+from typing import TYPE_CHECKING, Any, ClassVar
 
+from sim.ros.delivery import Delivery, ExpiringDelivery
 from sim.ros.duration import Duration
 from sim.ros.event_handler import EndpointEvents, EventCallbacks, EventHandler
 from sim.ros.exceptions import InvalidHandle
 from sim.ros.handle import Handle
 from sim.ros.interfaces import Message, copy_message, from_cdr
 from sim.ros.qos import DurabilityPolicy, QoSProfile
-from sim.ros.subscription import Delivery
+from sim.ros.qos_timing import (
+    FOR_EVER,
+    DeadlineHandler,
+    LivelinessLostHandler,
+    lease_of,
+    limit,
+    publisher_timing,
+)
 
 if TYPE_CHECKING:
     from sim.ros.callback_groups import CallbackGroup
@@ -27,10 +35,9 @@ class Publisher:
     """Sends messages of one type to every matching subscription of a topic. Thread-safe.
 
     ``topic`` is the topic's name as the program wrote it; ``topic_name`` is the full one.
-
-    Raises:
-        NotImplementedError: for callbacks about deadlines and liveliness.
     """
+
+    __class_getitem__: ClassVar[Any] = classmethod(GenericAlias)
 
     def __init__(
         self,
@@ -57,7 +64,28 @@ class Publisher:
         with self._host.lock:
             group = node.default_callback_group if callback_group is None else callback_group
             self.events = EndpointEvents(node, self.topic_name, group, event_callbacks)
-            self._host.network.join_publisher(self)
+            self.lease = lease_of(qos_profile, self._host.clock.now())
+            self._timing = publisher_timing(qos_profile, self.lease, self._watch(group, event_callbacks))
+            self.node.context.network.join_publisher(self)
+
+    def _watch(self, group: CallbackGroup, wanted: EventCallbacks | None) -> DeadlineHandler | None:
+        """Watch what passes with time, as far as there are callbacks; returns who watches deadlines."""
+        if wanted is None:
+            return None
+        node, topic = self.node, self.topic_name
+        if wanted.liveliness is not None:
+            self.events.add(LivelinessLostHandler(node, topic, wanted.liveliness, group, self.lease))
+        if wanted.deadline is None:
+            return None
+        period = limit(self.qos_profile.deadline) or FOR_EVER
+        handler = DeadlineHandler(node, topic, wanted.deadline, group, period)
+        self.events.add(handler)
+        return handler
+
+    @property
+    def lifespan(self) -> int | None:
+        """Nanoseconds after which what was sent expires; None: never."""
+        return limit(self.qos_profile.lifespan)
 
     @property
     def handle(self) -> Handle:
@@ -96,6 +124,8 @@ class Publisher:
             shared = len(reached) > 1 or self._kept is not None
             self._sent += 1
             delivery = Delivery(copy, message, self._host.clock.now(), shared, self._sent)
+            if self._timing is not None:
+                delivery = self._timing.sent(delivery)
             if self._kept is not None:
                 self._kept.append(delivery)
             for subscription in reached:
@@ -114,7 +144,10 @@ class Publisher:
         return True
 
     def assert_liveliness(self) -> None:
-        """Tell that it lives, which nobody watches."""
+        """Tell that it lives, which counts where that has to be done by topic."""
+        if self.lease is not None:
+            with self._host.lock:
+                self.lease.say(self._host.clock.now())
 
     def get_subscription_count(self) -> int:
         """How many subscriptions it reaches."""
@@ -124,7 +157,7 @@ class Publisher:
         """Send to ``subscription`` from now on. With the host's lock held."""
         self._reached = (*self._reached, subscription)
         self.events.match_made()
-        subscription.events.match_made()
+        subscription.found(self)
 
     def forget(self, subscription: Subscription) -> None:
         """Send to ``subscription`` no more. With the host's lock held."""
@@ -135,8 +168,10 @@ class Publisher:
     def catch_up(self, subscription: Subscription) -> None:
         """Give a late subscription what a transient-local publisher kept, if both want that."""
         if self._kept and subscription.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL:
+            now = self._host.clock.now()
             for delivery in self._kept:
-                subscription.deliver(delivery)
+                if not (isinstance(delivery, ExpiringDelivery) and delivery.expires <= now):
+                    subscription.deliver(delivery)
 
     def incompatible_with(self, subscription: Subscription, policy: str) -> None:
         """Both sides tell that they do not match, when their executors next spin."""
@@ -157,10 +192,10 @@ class Publisher:
             if self.destroyed:
                 return
             self.destroyed = True
-            self._host.network.leave_publisher(self)
+            self.node.context.network.leave_publisher(self)
             self.events.destroy()
             for subscription in self._reached:
-                subscription.events.match_lost()
+                subscription.lost(self)
 
     def __enter__(self) -> Publisher:
         return self

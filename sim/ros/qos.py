@@ -33,6 +33,7 @@ __all__ = [
     "QoSPresetProfiles",
     "QoSProfile",
     "QoSReliabilityPolicy",
+    "RmwQoSProfile",
     "ReliabilityPolicy",
     "as_profile",
     "mismatches",
@@ -110,10 +111,28 @@ class QoSProfile:
         values = (f"{each.name}={getattr(self, each.name)}" for each in fields(self))
         return f"{type(self).__name__}({', '.join(values)})"
 
+    def get_c_qos_profile(self) -> RmwQoSProfile:
+        """The same as the layers below rclpy know it."""
+        return RmwQoSProfile({each.name: getattr(self, each.name) for each in fields(self)})
+
     @property
     def queue_length(self) -> int | None:
         """How many messages a queue keeps; None for all of them. A depth of 0 keeps one, as DDS does."""
         return None if self.history == HistoryPolicy.KEEP_ALL else max(self.depth, 1)
+
+
+@dataclass(frozen=True)
+class RmwQoSProfile:
+    """A profile as the layers below rclpy know it; ``QoSProfile(**profile.to_dict())`` makes it one again."""
+
+    settings: dict[str, Any]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The settings, policies as numbers."""
+        return {
+            name: int(value) if isinstance(value, QoSPolicyEnum) else value
+            for name, value in self.settings.items()
+        }
 
 
 def _policy(kind: type[QoSPolicyEnum]) -> Any:

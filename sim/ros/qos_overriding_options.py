@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 from sim.ros import rcl_interfaces
 from sim.ros.duration import Duration
@@ -14,6 +14,8 @@ from sim.ros.qos_policies import QoSPolicyEnum
 
 if TYPE_CHECKING:
     from sim.ros.node import Node
+    from sim.ros.publisher import Publisher
+    from sim.ros.subscription import Subscription
 
 
 class InvalidQosOverridesError(Exception):
@@ -63,7 +65,7 @@ class QoSOverridingOptions:
 
 
 def overridden(
-    entity: Literal["publisher", "subscription"],
+    entity_type: type[Publisher | Subscription],
     node: Node,
     topic: str,
     qos: QoSProfile,
@@ -75,19 +77,33 @@ def overridden(
         InvalidQosOverridesError: the options' callback refuses the outcome.
     """
     changed = replace(qos)
+    _declare_qos_parameters(entity_type, node, topic, changed, options)
+    return changed
+
+
+def _declare_qos_parameters(
+    entity_type: type[Publisher | Subscription],
+    node: Node,
+    topic_name: str,
+    qos: QoSProfile,
+    options: QoSOverridingOptions,
+) -> None:
+    """Declare the parameters and put what they say into ``qos``; under the name that rclpy has for it."""
+    from sim.ros.publisher import Publisher
+
+    entity = "publisher" if issubclass(entity_type, Publisher) else "subscription"
     suffix = f"_{options.entity_id}" if options.entity_id else ""
     for kind in options.policy_kinds:
         policy = kind.name.lower()
-        name = f"qos_overrides.{topic}.{entity}{suffix}.{policy}"
-        value = _declared(node, name, _as_parameter(getattr(qos, policy)))
-        setattr(changed, policy, _as_policy(getattr(qos, policy), value))
+        name = f"qos_overrides.{topic_name}.{entity}{suffix}.{policy}"
+        value = _declared(node, name, _get_qos_policy_parameter(qos, kind))
+        setattr(qos, policy, _as_policy(getattr(qos, policy), value))
     if options.callback is not None:
-        verdict = options.callback(changed)
+        verdict = options.callback(qos)
         if not verdict.successful:
             raise InvalidQosOverridesError(
-                f"{entity} {{{topic}}}: Provided QoS overrides `{changed}`, are not valid: {verdict.reason}"
+                f"{entity} {{{topic_name}}}: Provided QoS overrides `{qos}`, are not valid: {verdict.reason}"
             )
-    return changed
 
 
 def _declared(node: Node, name: str, value: Any) -> Any:
@@ -98,10 +114,15 @@ def _declared(node: Node, name: str, value: Any) -> Any:
         return node.get_parameter(name).value
 
 
-def _as_parameter(policy: Any) -> Any:
+def _get_qos_policy_parameter(qos: QoSProfile, policy_kind: QoSPolicyKind) -> bool | int | str:
+    """The value of a policy as a parameter has it; under the name that rclpy has for it."""
+    policy: Any = getattr(qos, policy_kind.name.lower())
     if isinstance(policy, QoSPolicyEnum):
         return policy.short_key
-    return policy.nanoseconds if isinstance(policy, Duration) else policy
+    if isinstance(policy, Duration):
+        return policy.nanoseconds
+    assert isinstance(policy, bool | int)
+    return policy
 
 
 def _as_policy(former: Any, value: Any) -> Any:

@@ -11,7 +11,7 @@ from sim.ros.entity import Entity, Taken
 from sim.ros.interfaces import copy_message
 from sim.ros.network import Request
 from sim.ros.qos import QoSProfile
-from sim.ros.service_introspection import ServiceIntrospectionState, require_off
+from sim.ros.service_introspection import ServiceIntrospection, ServiceIntrospectionState, reconfigured
 from sim.trace.events import EntityKind
 
 if TYPE_CHECKING:
@@ -47,6 +47,7 @@ class Service(Entity):
         self.qos_profile = qos_profile
         self.depth = qos_profile.queue_length or 0
         self._probe = node.context.probe
+        self._introspection: ServiceIntrospection | None = None
         self._queue: deque[Request] = deque()
 
     @property
@@ -60,8 +61,16 @@ class Service(Entity):
         service_event_qos_profile: QoSProfile,
         introspection_state: ServiceIntrospectionState,
     ) -> None:
-        """Nothing for OFF; raises NotImplementedError for the rest."""
-        require_off("Service", introspection_state)
+        """Have every request taken and response sent told on ``<service>/_service_event``, or no more."""
+        self._introspection = reconfigured(
+            self._introspection, self, clock, service_event_qos_profile, introspection_state
+        )
+
+    def stop_introspection(self) -> None:
+        """Tell nothing any more. With the host's lock held."""
+        if self._introspection is not None:
+            self._introspection.stop()
+            self._introspection = None
 
     def deliver(self, request: Request) -> None:
         """A request arrived; a full queue loses its oldest. With the host's lock held."""
@@ -85,6 +94,8 @@ class Service(Entity):
             self.ready_since = now
         else:
             self.nothing_left()
+        if self._introspection is not None:
+            self._introspection.request_received(request.client, request.call, request.data)
         return Taken(request, request.call, now - request.sent, len(self._queue))
 
     def invoke(self, taken: Taken) -> Any:
@@ -110,6 +121,8 @@ class Service(Entity):
         copy = copy_message(response)
         with self.node.context.host.lock:
             self._probe.service_replied(header.call, self.name, copy)
+            if self._introspection is not None:
+                self._introspection.response_sent(header.client, header.call, copy)
             header.answer(copy)
 
     def destroy(self) -> None:

@@ -4,31 +4,27 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
+from sim.ros.delivery import Delivery
 from sim.ros.entity import Entity, Taken
 from sim.ros.event_handler import EndpointEvents, EventCallbacks, EventHandler
 from sim.ros.interfaces import copy_message, to_cdr
 from sim.ros.message_info import MessageInfo, wants_message_info
 from sim.ros.qos import QoSProfile
+from sim.ros.qos_timing import (
+    FOR_EVER,
+    DeadlineHandler,
+    LivelinessChangedHandler,
+    SubscriptionTiming,
+    limit,
+)
 from sim.trace.events import EntityKind
 
 if TYPE_CHECKING:
     from sim.ros.callback_groups import CallbackGroup
     from sim.ros.node import Node
-
-
-class Delivery(NamedTuple):
-    """A message on its way, the ``number``-th of its publisher.
-
-    ``shared`` tells that other subscriptions get the same object.
-    """
-
-    data: Any
-    message: int
-    published: int
-    shared: bool
-    number: int = 0
+    from sim.ros.publisher import Publisher
 
 
 class Subscription(Entity):
@@ -39,7 +35,6 @@ class Subscription(Entity):
 
     Raises:
         RuntimeError: the callback takes neither a message, nor a message and its info.
-        NotImplementedError: for callbacks about deadlines and liveliness.
     """
 
     kind = EntityKind.SUBSCRIPTION
@@ -70,6 +65,23 @@ class Subscription(Entity):
         self._queue: deque[Delivery] = deque()
         self._received = 0
         self.events = EndpointEvents(node, topic_name, callback_group, event_callbacks)
+        self._deadline: DeadlineHandler | None = None
+        self._liveliness: LivelinessChangedHandler | None = None
+        self._timing: SubscriptionTiming | None = None
+        if event_callbacks is not None:
+            self._watch(event_callbacks)
+
+    def _watch(self, wanted: EventCallbacks) -> None:
+        """Watch what passes with time, as far as callbacks for it are wanted."""
+        node, topic, group = self.node, self.name, self.callback_group
+        if wanted.deadline is not None:
+            period = limit(self.qos_profile.deadline)
+            self._deadline = DeadlineHandler(node, topic, wanted.deadline, group, period or FOR_EVER)
+            self._timing = SubscriptionTiming(self, self._deadline)
+            self.events.add(self._deadline)
+        if wanted.liveliness is not None:
+            self._liveliness = LivelinessChangedHandler(node, topic, wanted.liveliness, group)
+            self.events.add(self._liveliness)
 
     @property
     def callback(self) -> Callable[..., Any]:
@@ -93,7 +105,7 @@ class Subscription(Entity):
 
     def get_publisher_count(self) -> int:
         """How many publishers of this type are on the topic."""
-        network = self.node.context.host.network
+        network = self.node.context.network
         return sum(each.msg_type is self.msg_type for each in network.publishers(self.name))
 
     def deliver(self, delivery: Delivery) -> None:
@@ -103,8 +115,31 @@ class Subscription(Entity):
             lost = queue.popleft()
             self._probe.dropped(self, len(queue), lost.message)
         queue.append(delivery)
+        if self._timing is not None:
+            self._timing.arrived(self._clock.now())
         self._probe.ready(self, len(queue), delivery.message)
         self.become_ready(self._clock.now())
+
+    def found(self, publisher: Publisher) -> None:
+        """A publisher reaches it. With the host's lock held."""
+        self.events.match_made()
+        if self._liveliness is not None:
+            self._liveliness.found(publisher)
+        if self._timing is None and publisher.lifespan is not None:
+            self._timing = SubscriptionTiming(self, None)
+
+    def lost(self, publisher: Publisher) -> None:
+        """A publisher that reached it is gone. With the host's lock held."""
+        self.events.match_lost()
+        if self._liveliness is not None:
+            self._liveliness.gone(publisher)
+
+    def still_ready(self, now: int) -> bool:
+        """Whether it is there, and its messages have not all expired."""
+        if self._timing is not None:
+            self._timing.purge(now)
+            return self.pending and not self.destroyed
+        return not self.destroyed
 
     def shown_callback(self) -> Callable[..., Any]:
         """The callback."""
@@ -112,6 +147,8 @@ class Subscription(Entity):
 
     def take(self, now: int) -> Taken | None:
         """Take the oldest message."""
+        if self._timing is not None:
+            self._timing.purge(now)
         if not self._queue:
             return None
         delivery = self._queue.popleft()

@@ -45,6 +45,11 @@ class Time:
         """The kind of clock that this time belongs to."""
         return self._clock_type
 
+    @property
+    def _time_handle(self) -> Time:
+        """What ClockEvent wants of it: the time itself."""
+        return self
+
     def seconds_nanoseconds(self) -> tuple[int, int]:
         """Whole seconds, and the nanoseconds beyond them."""
         return divmod(self._nanoseconds, _NANOSECONDS)
@@ -112,5 +117,9 @@ class Time:
 
     @classmethod
     def from_msg(cls, msg: Any, clock_type: ClockType = ClockType.ROS_TIME) -> Time:
-        """From a builtin_interfaces/msg/Time."""
+        """From a builtin_interfaces/msg/Time; TypeError for anything else."""
+        from sim.ros.interfaces import message
+
+        if not isinstance(msg, message("builtin_interfaces", "Time")):
+            raise TypeError("Must pass a builtin_interfaces.msg.Time object")
         return cls(seconds=msg.sec, nanoseconds=msg.nanosec, clock_type=clock_type)

@@ -10,10 +10,11 @@ import inspect
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from sim.ros.clock import Clock
+from sim.ros.clock import Clock, ROSClock
 from sim.ros.clock_type import ClockType
 from sim.ros.entity import Entity, Taken
 from sim.ros.exceptions import ROSInterruptException
+from sim.ros.ros_time_schedule import RosTimeSchedule, after_change
 from sim.ros.time import Time
 from sim.trace.events import EntityKind
 
@@ -22,6 +23,10 @@ if TYPE_CHECKING:
     from sim.ros.callback_groups import CallbackGroup
     from sim.ros.context import Context
     from sim.ros.node import Node
+
+
+_NEVER = 1 << 62
+"""The due time, on the run's clock, of a timer that waits for ROS time to be set."""
 
 
 def next_due(due: int, period: int, now: int) -> int:
@@ -95,6 +100,9 @@ class Timer(Entity):
         self._host = node.context.host
         self._last_call = self._host.clock.now()
         self._canceled = True
+        self._ros_schedule: RosTimeSchedule | None = None
+        if isinstance(clock, ROSClock):
+            clock._drive(self)
         if autostart:
             self.reset()
 
@@ -130,6 +138,10 @@ class Timer(Entity):
         with self._host.lock:
             self._canceled = False
             self.nothing_left()
+            if self._ros_schedule is not None:
+                self._ros_schedule.due = self.clock.now().nanoseconds + self.period
+                self._look_at_ros_time()
+                return
             self.due = self._host.clock.now() + self.period
             self.node._agenda.timer_set(self)
 
@@ -143,10 +155,16 @@ class Timer(Entity):
 
     def time_until_next_call(self) -> int | None:
         """Nanoseconds until it is due, negative when late; None while cancelled."""
-        return None if self._canceled else self.due - self._host.clock.now()
+        if self._canceled:
+            return None
+        if self._ros_schedule is not None:
+            return self._ros_schedule.due - self.clock.now().nanoseconds
+        return self.due - self._host.clock.now()
 
     def time_since_last_call(self) -> int:
         """Nanoseconds since the last call, or since it was made."""
+        if self._ros_schedule is not None:
+            return self.clock.now().nanoseconds - self._ros_schedule.last_call
         return self._host.clock.now() - self._last_call
 
     def shown_callback(self) -> Callable[..., Any] | None:
@@ -162,12 +180,78 @@ class Timer(Entity):
         if not self.still_ready(now):
             return None
         late = now - self.due
+        if self._ros_schedule is not None:
+            return Taken(self._take_of_ros_time(self._ros_schedule), 0, late, 0)
         info = None if self._info_parameter is None else self._info(now)
         self.due = next_due(self.due, self.period, now)
         self._last_call = now
         self.nothing_left()
         self.node._agenda.timer_set(self)
         return Taken(info, 0, late, 0)
+
+    # While its clock follows ROS time; with the host's lock held
+
+    def _time_credit(self) -> int:
+        """What is left before the next call, for a change of its clock's source; 0 if that is not known."""
+        schedule = self._ros_schedule
+        if schedule is None:
+            return self.due - self._host.clock.now()
+        now = self.clock.now().nanoseconds
+        return schedule.credit if now == 0 else schedule.due - now
+
+    def _begin_on_ros_time(self) -> None:
+        """It was made while its clock follows ROS time."""
+        now = self.clock.now().nanoseconds
+        self._ros_schedule = RosTimeSchedule(now + self.period, now)
+
+    def _follow_ros_time(self, credit: int) -> None:
+        """The clock follows ROS time from now on."""
+        epoch = self._host.clock.epoch
+        before = RosTimeSchedule(epoch + self.due, epoch + self._last_call)
+        self._ros_schedule = after_change(before, self.clock.now().nanoseconds, self.period, credit)
+        self._look_at_ros_time()
+
+    def _follow_system_time(self, credit: int) -> None:
+        """The clock follows the run's clock again."""
+        schedule, self._ros_schedule = self._ros_schedule, None
+        if schedule is None:
+            return
+        clock = self._host.clock
+        now = clock.now()
+        schedule = after_change(schedule, clock.epoch + now, self.period, credit)
+        self.nothing_left()
+        self.due = max(schedule.due - clock.epoch, now)
+        self._last_call = max(schedule.last_call - clock.epoch, 0)
+        if not self._canceled:
+            self.node._agenda.timer_set(self)
+
+    def _ros_time_set(self) -> None:
+        """The clock was set."""
+        if self._ros_schedule is not None:
+            self._ros_schedule.time_set(self.clock.now().nanoseconds, self.period)
+            self._look_at_ros_time()
+
+    def _look_at_ros_time(self) -> None:
+        """Be ready, or not, as the schedule says."""
+        schedule = self._ros_schedule
+        if schedule is None or self._canceled or schedule.due > self.clock.now().nanoseconds:
+            self.due = _NEVER
+            self.nothing_left()
+        elif not self.pending:
+            self.due = self._host.clock.now()
+            self.become_ready(self.due)
+
+    def _take_of_ros_time(self, schedule: RosTimeSchedule) -> TimerInfo | None:
+        now = self.clock.now().nanoseconds
+        info = None
+        if self._info_parameter is not None:
+            info = TimerInfo(
+                expected_call_time=schedule.due, actual_call_time=now, clock_type=self.clock.clock_type
+            )
+        schedule.called(now, self.period)
+        self.nothing_left()
+        self._look_at_ros_time()
+        return info
 
     def invoke(self, taken: Taken) -> Any:
         """Run the callback."""
@@ -213,7 +297,7 @@ class Rate:
         self._ticked = False
         self._destroyed = False
         self.timer: Timer | None = None
-        context.on_shutdown(self._let_all_go)
+        context._wake_at_end(self._let_all_go)
 
     def tick(self) -> None:
         """The timer's callback: let the sleepers go on."""

@@ -2,9 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Any, TypeVar
 
 from sim.ros.interfaces import Message, ServiceType
+
+Msg = Message
+Srv = ServiceType
+MsgT = TypeVar("MsgT", bound=Message)
+SrvT = TypeVar("SrvT", bound=ServiceType)
+SrvRequestT = TypeVar("SrvRequestT", bound=Message)
+SrvResponseT = TypeVar("SrvResponseT", bound=Message)
+SrvEventT = TypeVar("SrvEventT", bound=Message)
 
 
 class NoTypeSupportImportedException(Exception):

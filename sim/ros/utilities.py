@@ -40,9 +40,7 @@ def shutdown(*, context: Context | None = None) -> None:
 
 def try_shutdown(*, context: Context | None = None) -> None:
     """End the context, if it has begun and not ended."""
-    chosen = get_default_context() if context is None else context
-    if chosen.ok():
-        shutdown(context=context)
+    (get_default_context(shutting_down=True) if context is None else context).try_shutdown()
 
 
 def remove_ros_args(args: Sequence[str] | None = None) -> list[str]:

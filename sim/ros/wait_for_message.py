@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from sim.ros.delivery import Delivery
 from sim.ros.qos import QoSProfile, as_profile
-from sim.ros.subscription import Delivery, Subscription
+from sim.ros.subscription import Subscription
 from sim.ros.type_support import check_is_valid_msg_type
 
 if TYPE_CHECKING:
@@ -27,6 +28,10 @@ class _AwaitedMessage(Subscription):
     def deliver(self, delivery: Delivery) -> None:
         """A message arrived: whoever waits goes on."""
         super().deliver(delivery)
+        self.wake()
+
+    def wake(self) -> None:
+        """Let whoever waits look."""
         self.arrived.set()
 
 
@@ -52,8 +57,8 @@ def wait_for_message(
     with host.lock:
         awaited = _AwaitedMessage(node, msg_type, topic, as_profile(qos_profile))
         node._agenda.add(awaited)
-        host.network.join_subscription(awaited)
-    node.context.on_shutdown(awaited.arrived.set)
+        node.context.network.join_subscription(awaited)
+    node.context._wake_at_end(awaited.wake)
     try:
         awaited.arrived.wait(deadline)
         with host.lock:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -30,7 +30,8 @@ def snapshot(nodes: Iterable[Node], now: int) -> deque[Entity]:
             let_in = [
                 each for each in pending if not each.handed_out and each.callback_group.can_execute(each)
             ]
-            let_in.sort(key=_serving_order)
+            if len(let_in) > 1:
+                let_in.sort(key=_serving_order)
             while let_in and let_in[0].rank < 0:
                 waitables.append(let_in.pop(0))
             ready.extend(let_in)
@@ -52,6 +53,14 @@ class WaitSet:
     def look(self, nodes: Iterable[Node], now: int) -> None:
         """Take a new snapshot."""
         self._snapshot = snapshot(nodes, now)
+
+    def clear(self) -> None:
+        """Let go of what is left of the snapshot."""
+        self._snapshot.clear()
+
+    def keep(self, wanted: Callable[[Entity], bool]) -> None:
+        """Let go of what is not wanted."""
+        self._snapshot = deque(filter(wanted, self._snapshot))
 
     def next(self, now: int) -> Entity | None:
         """Yield the next of the snapshot that still holds, marked as handed out; None: it is exhausted."""

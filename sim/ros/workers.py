@@ -1,37 +1,32 @@
 """The worker threads of a MultiThreadedExecutor, and the queue of callbacks that wait for one.
 
-A yielded callback is given to a free worker, which begins it when it gets to run: if its group has let
-another one in by then, it is not taken. The others wait in the queue, already handed out, in the order in
-which they were yielded. The worker that has been idle longest is asked first, and a new one starts only when
-none is idle. A worker that ends a callback looks for the next one itself, so that a busy executor needs no
-hand-over between threads; unless callbacks given to other workers have yet to begin, for those go first.
+Whatever is yielded goes into one queue and is begun in the order of yielding; if its group has let another
+one in by then, it is not taken. For each a free worker is called, the one that has been idle longest first; a
+new one starts only when none is idle. A worker that ends a callback looks for the next one itself, and takes
+over what the called ones are late for, so that a busy executor needs no hand-over between threads.
 """
 
 from __future__ import annotations
 
 from collections import deque
-from typing import TYPE_CHECKING, Any, TypeAlias
+from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from sim.clock import Signal
-from sim.ros.entity import Entity, Taken
-from sim.ros.process import current_process
-from sim.ros.task import Task
+from sim.ros.executor import Begun, Work, never
 
 if TYPE_CHECKING:
-    from sim.ros.executor import Work
     from sim.ros.executors import MultiThreadedExecutor
-
-Begun: TypeAlias = "tuple[Entity, Taken] | Task[Any]"
 
 
 class Worker:
-    """A thread of the pool; ``job`` is what it was given and has not begun yet."""
+    """A thread of the pool; ``called`` while it is on its way to begin something."""
 
-    __slots__ = ("job", "signal")
+    __slots__ = ("called", "signal")
 
     def __init__(self, signal: Signal) -> None:
         self.signal = signal
-        self.job: Work | None = None
+        self.called = False
 
 
 class WorkerPool:
@@ -39,48 +34,75 @@ class WorkerPool:
 
     def __init__(self, executor: MultiThreadedExecutor) -> None:
         self.dispatches_itself = False
-        """Whether workers may look for their next callback: while ``spin`` runs."""
+        """Whether workers may look for their next callback themselves."""
+        self.enough: Callable[[], bool] = never
+        """Whether they may look no longer."""
         self.error_surfaces = False
         """Whether a callback's exception is due to come out of ``spin``."""
         self._executor = executor
         self._lock = executor._lock
         self._clock = executor._clock
-        self._name = f"ThreadPoolExecutor-{next(current_process().pool_numbers)}"
+        self._name = f"ThreadPoolExecutor-{next(executor._context.process.pool_numbers)}"
         self._workers: list[Worker] = []
         self._idle: deque[Worker] = deque()
         self._queue: deque[Work] = deque()
-        self._given = 0
+        self._coming = 0
+        self._called_at = 0
         self._look_owed = False
         self._errors: list[BaseException] = []
         self._dismissed = False
 
+    @property
+    def _max_workers(self) -> int:
+        """How many workers there can be, as Python's own pools tell it."""
+        return self._executor.threads
+
     def all_busy(self) -> bool:
         """Whether no worker is free and none can be started."""
-        return not self._idle and len(self._workers) >= self._executor.threads
+        if self._idle or self._coming > len(self._queue):
+            return False
+        return len(self._workers) >= self._executor.threads
 
     def all_begun(self) -> bool:
-        """Whether all that workers were given has begun; if not, the executor is woken when it has."""
-        self._look_owed = self._given > 0
+        """Whether all that workers were called for has begun; if not, the executor is woken when it has."""
+        self._look_owed = self._claimed()
         return not self._look_owed
 
-    def submit(self, work: Work) -> None:
-        """Give yielded work to a free worker, or have it wait for one. With the lock held."""
+    def _claimed(self) -> bool:
+        return self._coming > 0 and len(self._queue) > 0
+
+    def submit(self, work: Work, now: int) -> None:
+        """Have yielded work wait for a worker, and call one if one is free. With the lock held."""
+        self._queue.append(work)
+        if len(self._queue) > self._coming:
+            self._call_worker(now)
+        self._surface_errors()
+
+    def looks_itself(self) -> bool:
+        """Whether a worker is on its way that will look for what is ready; an idle one is called."""
+        if not self.dispatches_itself:
+            return False
+        if self._coming <= len(self._queue):
+            if not self._idle or self.enough():
+                return False
+            self._call_worker(self._clock.now())
+        return True
+
+    def _call_worker(self, now: int) -> None:
         if self._idle:
             worker = self._idle.popleft()
-            self._give(worker, work)
+            self._expect(worker, now)
             worker.signal.set()
         elif len(self._workers) < self._executor.threads:
             worker = Worker(self._clock.signal())
             self._workers.append(worker)
-            self._give(worker, work)
+            self._expect(worker, now)
             self._clock.start_thread(lambda: self._work(worker), f"{self._name}_{len(self._workers) - 1}")
-        else:
-            self._queue.append(work)
-        self._surface_errors()
 
-    def _give(self, worker: Worker, work: Work) -> None:
-        worker.job = work
-        self._given += 1
+    def _expect(self, worker: Worker, now: int) -> None:
+        worker.called = True
+        self._coming += 1
+        self._called_at = now
 
     def _surface_errors(self) -> None:
         if self._errors:
@@ -93,56 +115,63 @@ class WorkerPool:
     def _next(self, worker: Worker) -> Begun | None:
         """Wait for the worker's next callback and begin it; None once the pool is dismissed."""
         while True:
-            self._let_given_begin(worker)
             with self._lock:
-                begun = self._begin_given(worker) or self._begin_queued() or self._begin_found()
+                now = self._clock.now()
+                begun = self._begin_claimed(worker, now) or self._begin_queued(now) or self._begin_found(now)
                 if begun is not None:
                     return begun
                 if self._dismissed:
                     return None
-                self._idle.append(worker)
-            worker.signal.wait(None)
+                others_go_first = len(self._queue) > self._coming
+                if not others_go_first:
+                    self._idle.append(worker)
+            if others_go_first:
+                self._clock.sleep(0)
+            else:
+                worker.signal.wait(None)
 
-    def _let_given_begin(self, worker: Worker) -> None:
-        """What was given to other workers was yielded before what waits in the queue, so it goes first."""
-        while worker.job is None and self._queue and self._given:
-            self._clock.sleep(0)
-
-    def _begin(self, work: Work) -> Begun | None:
-        if isinstance(work, Task):
-            return work
-        taken = self._executor._begin(work)
-        return None if taken is None else (work, taken)
-
-    def _begin_given(self, worker: Worker) -> Begun | None:
-        work, worker.job = worker.job, None
-        if work is None:
-            return None
-        self._given -= 1
-        if self._look_owed and self._given == 0:
-            self._executor.wake()
-        return self._begin(work)
-
-    def _begin_queued(self) -> Begun | None:
+    def _begin_claimed(self, worker: Worker, now: int) -> Begun | None:
+        """Begin what this worker was called for, or what others were called for and are late for."""
+        may_take = worker.called or self._others_are_late(now)
+        if worker.called:
+            worker.called = False
+            self._coming -= 1
         begun = None
-        while self._queue and begun is None:
-            begun = self._begin(self._queue.popleft())
-        if begun is not None and self._may_look():
-            self._give_out_ready()
+        while begun is None and may_take and self._queue:
+            work = self._queue.popleft()
+            if self._look_owed and not self._claimed():
+                self._executor.wake()
+            begun = self._executor._begin(work, now)
+            may_take = self._others_are_late(now)
         return begun
 
-    def _begin_found(self) -> Begun | None:
-        """Begin the first of what is ready, and give the rest to others."""
-        own = self._executor._next_work(self._clock.now()) if self._may_look() else None
+    def _others_are_late(self, now: int) -> bool:
+        """Whether time has passed since a worker was called that has not come yet."""
+        return self._coming > 0 and self._called_at < now
+
+    def _begin_queued(self, now: int) -> Begun | None:
+        """Begin what no worker was called for; what they were called for was yielded before it."""
+        begun = None
+        while begun is None and self._queue and self._coming == 0:
+            begun = self._executor._begin(self._queue.popleft(), now)
+        if begun is not None and self._may_look():
+            self._give_out(self._executor._next_work, now)
+        return begun
+
+    def _begin_found(self, now: int) -> Begun | None:
+        """Begin the first of what is ready, and give the rest of its cycle to others."""
+        if len(self._queue) > self._coming or not self._may_look():
+            return None
+        own = self._executor._next_work(now)
         if own is None:
             return None
         self._surface_errors()
-        self._give_out_ready()
-        return self._begin(own)
+        self._give_out(self._executor._next_of_cycle, now)
+        return self._executor._begin(own, now)
 
     def _may_look(self) -> bool:
         """Whether a worker may look for what is ready; else the thread that spins is told to."""
-        if not self.dispatches_itself:
+        if not self.dispatches_itself or self.enough():
             return False
         executor = self._executor
         if self.error_surfaces or executor._is_shutdown or not executor._context.ok():
@@ -150,20 +179,17 @@ class WorkerPool:
             return False
         return True
 
-    def _give_out_ready(self) -> None:
+    def _give_out(self, following: Callable[[int], Work | None], now: int) -> None:
         while not self.error_surfaces:
-            work = self._executor._next_work(self._clock.now())
+            work = following(now)
             if work is None:
                 return
-            self.submit(work)
+            self.submit(work, now)
         self._executor.wake()
 
     def _run(self, begun: Begun) -> None:
         try:
-            if isinstance(begun, Task):
-                self._executor._run_task(begun)
-            else:
-                self._executor._run(*begun)
+            self._executor._run(begun)
         except Exception as error:  # noqa: BLE001 -- kept for the thread that spins
             with self._lock:
                 self._errors.append(error)

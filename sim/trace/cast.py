@@ -9,6 +9,8 @@ from sim.trace.events import (
     GroupId,
     NodeAppeared,
     NodeId,
+    ProcessAppeared,
+    ProcessId,
     ThreadAppeared,
     ThreadId,
 )
@@ -25,6 +27,7 @@ class Cast:
     """Who takes part, each kind in order of appearance; grows by the ``…Appeared`` events."""
 
     def __init__(self) -> None:
+        self.processes: dict[ProcessId, str] = {}
         self.threads: dict[ThreadId, Thread] = {}
         self.executors: dict[ExecutorId, Executor] = {}
         self.nodes: dict[NodeId, str] = {}
@@ -36,9 +39,15 @@ class Cast:
         """The entities of a group; none for one that is not known."""
         return tuple(self._members.get(group, ()))
 
+    def add_process(self, event: ProcessAppeared) -> None:
+        """Take in one of several programs."""
+        self.processes[event.process] = event.label
+
     def add_thread(self, event: ThreadAppeared) -> None:
-        """Take in a thread."""
-        self.threads[event.thread] = Thread(event.thread, event.name, event.t)
+        """Take in a thread; among several programs its name begins with its program's label."""
+        label = self.processes.get(event.process)
+        name = event.name if label is None else f"{label} {event.name}"
+        self.threads[event.thread] = Thread(event.thread, name, event.t)
 
     def add_executor(self, event: ExecutorAppeared) -> None:
         """Take in an executor."""

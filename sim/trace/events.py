@@ -17,6 +17,8 @@ EntityId: TypeAlias = int
 ExecutorId: TypeAlias = int
 MessageId: TypeAlias = int
 CallId: TypeAlias = int
+ProcessId: TypeAlias = int
+LineId: TypeAlias = int
 
 
 class EntityKind(StrEnum):
@@ -80,11 +82,30 @@ class RunEnded(Event, frozen=True, tag="run_end"):
     failed: bool
 
 
+class ProcessAppeared(Event, frozen=True, tag="process"):
+    """One of several programs of the run was started; ``label`` tells it from the others."""
+
+    process: ProcessId
+    label: str
+
+
+class ProcessEnded(Event, frozen=True, tag="process_end"):
+    """One of several programs ended: ``reason`` is a sentence, ``status`` its exit code."""
+
+    process: ProcessId
+    reason: str
+    status: int
+
+
 class ThreadAppeared(Event, frozen=True, tag="thread"):
-    """A thread of the learner's program ran its first callback or was named by its executor."""
+    """A thread of a learner's program ran its first callback or was named by its executor.
+
+    ``name`` is as the lanes show it; ``process`` is 0 where the run has one program only.
+    """
 
     thread: ThreadId
     name: str
+    process: ProcessId = 0
 
 
 class ExecutorAppeared(Event, frozen=True, tag="executor"):
@@ -273,10 +294,11 @@ class Logged(Event, frozen=True, tag="log"):
 
 
 class Printed(Event, frozen=True, tag="print"):
-    """Text that the program wrote to standard output or error, one line at a time."""
+    """Text that a program wrote to standard output or error, one line at a time."""
 
     text: str
     error: bool
+    process: ProcessId = 0
 
 
 class ArenaShown(Event, frozen=True, tag="arena"):
@@ -330,6 +352,36 @@ class CommandGiven(Event, frozen=True, tag="command"):
     text: str
 
 
+class LineGiven(Event, frozen=True, tag="line"):
+    """A ``ros2`` line was given, at the prompt, on the command line or by the run's set-up."""
+
+    line: LineId
+    text: str
+
+
+class LineSaid(Event, frozen=True, tag="line_text"):
+    """A line of text that a ``ros2`` line wrote to standard output, or to standard error."""
+
+    line: LineId
+    text: str
+    error: bool
+
+
+class LineEnded(Event, frozen=True, tag="line_end"):
+    """A ``ros2`` line is done; ``status`` is its exit code."""
+
+    line: LineId
+    status: int
+
+
+class LineCompleted(Event, frozen=True, tag="completion"):
+    """What could stand in a ``ros2`` line from ``start`` to where completion was asked for."""
+
+    line: LineId
+    start: int
+    words: tuple[str, ...]
+
+
 class Notice(Event, frozen=True, tag="notice"):
     """The engine has something to say to the person about the run itself, in one sentence."""
 
@@ -346,6 +398,8 @@ class EventsLost(Event, frozen=True, tag="lost"):
 AnyEvent: TypeAlias = (
     RunStarted
     | RunEnded
+    | ProcessAppeared
+    | ProcessEnded
     | ThreadAppeared
     | ExecutorAppeared
     | NodeAppeared
@@ -373,6 +427,10 @@ AnyEvent: TypeAlias = (
     | Scanned
     | VelocityCommanded
     | CommandGiven
+    | LineGiven
+    | LineSaid
+    | LineEnded
+    | LineCompleted
     | Notice
     | EventsLost
 )

@@ -43,6 +43,8 @@ class JsonLines:
         return {
             ev.RunStarted: _run_started,
             ev.RunEnded: _run_ended,
+            ev.ProcessAppeared: self._process_appeared,
+            ev.ProcessEnded: self._process_ended,
             ev.ThreadAppeared: self._thread_appeared,
             ev.ExecutorAppeared: _executor_appeared,
             ev.NodeAppeared: self._node_appeared,
@@ -64,21 +66,36 @@ class JsonLines:
             ev.CallBlocked: self._call_blocked,
             ev.CallUnblocked: self._call_unblocked,
             ev.Logged: self._logged,
-            ev.Printed: _printed,
+            ev.Printed: self._printed,
             ev.RobotMoved: _robot_moved,
             ev.ArenaShown: _arena_shown,
             ev.Scanned: _scanned,
             ev.VelocityCommanded: _velocity_commanded,
             ev.CommandGiven: _command_given,
+            ev.LineGiven: _line_given,
+            ev.LineSaid: _line_said,
+            ev.LineEnded: _line_ended,
+            ev.LineCompleted: _line_completed,
             ev.Notice: _notice,
             ev.EventsLost: _events_lost,
         }
 
     # the cast
 
+    def _process_appeared(self, event: ev.ProcessAppeared) -> Line:
+        self._cast.add_process(event)
+        return {"process": event.label}
+
+    def _process_ended(self, event: ev.ProcessEnded) -> Line:
+        return {**self._process(event.process), "reason": event.reason, "status": event.status}
+
+    def _process(self, process: ev.ProcessId) -> Line:
+        label = self._cast.processes.get(process)
+        return {} if label is None else {"process": label}
+
     def _thread_appeared(self, event: ev.ThreadAppeared) -> Line:
         self._cast.add_thread(event)
-        return {"thread": event.name}
+        return {**self._process(event.process), "thread": event.name}
 
     def _node_appeared(self, event: ev.NodeAppeared) -> Line:
         self._cast.add_node(event)
@@ -204,6 +221,9 @@ class JsonLines:
         line["severity"] = event.severity.value
         return line
 
+    def _printed(self, event: ev.Printed) -> Line:
+        return {**self._process(event.process), "message": event.text, "error": event.error}
+
     def _by_callback(self, entity: EntityId) -> Line:
         callback = self._callback(entity)
         return {} if callback is None else {"callback": callback}
@@ -227,10 +247,6 @@ def _executor_appeared(event: ev.ExecutorAppeared) -> Line:
 
 def _service_replied(event: ev.ServiceReplied) -> Line:
     return {"entity": event.service, "call": event.call, "response": event.response}
-
-
-def _printed(event: ev.Printed) -> Line:
-    return {"message": event.text, "error": event.error}
 
 
 def _robot_moved(event: ev.RobotMoved) -> Line:
@@ -265,6 +281,22 @@ def _velocity_commanded(event: ev.VelocityCommanded) -> Line:
 
 def _command_given(event: ev.CommandGiven) -> Line:
     return {"message": event.text}
+
+
+def _line_given(event: ev.LineGiven) -> Line:
+    return {"line": event.line, "message": event.text}
+
+
+def _line_said(event: ev.LineSaid) -> Line:
+    return {"line": event.line, "message": event.text, "error": event.error}
+
+
+def _line_ended(event: ev.LineEnded) -> Line:
+    return {"line": event.line, "status": event.status}
+
+
+def _line_completed(event: ev.LineCompleted) -> Line:
+    return {"line": event.line, "start": event.start, "words": event.words}
 
 
 def _notice(event: ev.Notice) -> Line:

@@ -5,7 +5,7 @@ from bisect import bisect_left, bisect_right, insort
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from operator import attrgetter, itemgetter
-from typing import Any
+from typing import Any, TypeAlias
 
 from sim.trace import events as ev
 from sim.trace.calls import Calls
@@ -31,6 +31,8 @@ from sim.trace.queues import QueueHistory, place_of
 from sim.trace.waiting import Waiting
 
 TEXTS_KEPT = 4096
+
+ShellEvent: TypeAlias = ev.LineGiven | ev.LineSaid | ev.LineEnded
 
 
 class Timeline:
@@ -60,6 +62,8 @@ class Timeline:
         self._calls = Calls()
         self._marks: History[Mark] = History(attrgetter("at"))
         self._logs: History[ev.Logged | ev.Printed] = History(attrgetter("t"))
+        self._shell: History[ShellEvent] = History(attrgetter("t"))
+        self.completed: ev.LineCompleted | None = None
         self._notices: History[ev.Notice] = History(attrgetter("t"))
         self._texts: dict[str, str] = {}
         self._robot: History[ev.RobotMoved] = History(attrgetter("t"))
@@ -199,6 +203,11 @@ class Timeline:
         """Log lines and printed lines, in order."""
         return self._logs.items
 
+    @property
+    def shell(self) -> list[ShellEvent]:
+        """The ``ros2`` lines that were given, what they wrote and how they ended, in order."""
+        return self._shell.items
+
     def logs_until(self, at: Nanoseconds) -> int:
         """How many of ``logs`` had been written by ``at``."""
         return self._logs.until(at)
@@ -239,6 +248,8 @@ class Timeline:
         return {
             ev.RunStarted: self._run_started,
             ev.RunEnded: self._run_ended,
+            ev.ProcessAppeared: self._cast.add_process,
+            ev.ProcessEnded: _pass_over,
             ev.ThreadAppeared: self._cast.add_thread,
             ev.ExecutorAppeared: self._cast.add_executor,
             ev.NodeAppeared: self._cast.add_node,
@@ -266,6 +277,10 @@ class Timeline:
             ev.Scanned: self._scanned,
             ev.VelocityCommanded: self._velocities.add,
             ev.CommandGiven: self._command_given,
+            ev.LineGiven: self._line_given,
+            ev.LineSaid: self._shell.add,
+            ev.LineEnded: self._shell.add,
+            ev.LineCompleted: self._line_completed,
             ev.Notice: self._noticed,
             ev.EventsLost: self._events_lost,
         }
@@ -353,6 +368,13 @@ class Timeline:
 
     def _command_given(self, event: ev.CommandGiven) -> None:
         self._marks.add(Mark(event.t, "command", event.text))
+
+    def _line_given(self, event: ev.LineGiven) -> None:
+        self._shell.add(event)
+        self._marks.add(Mark(event.t, "command", event.text))
+
+    def _line_completed(self, event: ev.LineCompleted) -> None:
+        self.completed = event
 
     def _noticed(self, event: ev.Notice) -> None:
         self._notices.add(event)

@@ -10,11 +10,13 @@ from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
 from cbtui.screens.threads import ThreadsScreen
 from cbtui.theme import Charset
+from cbtui.widgets.shell import Prompt
 
 HOMES: dict[Scope, type[DOMNode]] = {
     Scope.EVERYWHERE: CbtuiApp,
     Scope.MENU: MenuScreen,
     Scope.LESSON: LessonScreen,
+    Scope.PROMPT: Prompt,
     Scope.THREADS: ThreadsScreen,
     Scope.HELP: HelpScreen,
 }
@@ -58,7 +60,7 @@ def test_a_window_offers_only_its_own_actions() -> None:
 
 def test_neighbouring_keys_are_written_together() -> None:
     groups = {group[0].label: group for group in together(actions_of(Scope.LESSON), "label")}
-    assert signs_of(groups["pane"], Charset.BRAILLE) == "1-4"
+    assert signs_of(groups["pane"], Charset.BRAILLE) == "1-5"
     assert signs_of(groups["speed"], Charset.BRAILLE) == "- +"
 
 

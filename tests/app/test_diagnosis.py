@@ -5,7 +5,7 @@ from cbtui.live_run import LiveRun
 from cbtui.playhead import Playhead
 from cbtui.widgets.diagnosis import Diagnosis, Weight, call_note, diagnose, executor_label, verdict
 from cbtui.widgets.diagnosis_line import diagnosis_row, diagnosis_rows
-from sim.engine.setup import RunSetup
+from sim.engine.setup import ProgramSetup, RunSetup
 from sim.trace.events import Reason, Severity
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
@@ -31,7 +31,10 @@ def said(run: Run, at: float) -> Diagnosis:
 
 def live_run(run: Run, until: float) -> LiveRun:
     live = LiveRun(
-        RunSetup(title="x", node_path="node.py"), FakeEngines([], 0), lambda _: None, lambda _: None
+        RunSetup(title="x", programs=(ProgramSetup("node.py"),)),
+        FakeEngines([], 0),
+        lambda _: None,
+        lambda _: None,
     )
     live.take(run.until(until))
     return live

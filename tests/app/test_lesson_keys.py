@@ -16,6 +16,7 @@ from cbtui.widgets.code import CodeView
 from cbtui.widgets.guide import Guide
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.log import LogView
+from cbtui.widgets.shell import ShellOutput, ShellView
 from lessons.catalogue import lessons
 from sim.engine.commands import CallService, Pause, ResetWorld, Resume, SetSpeed
 from tests.app.pictures import lines_of, text_of
@@ -24,8 +25,8 @@ from tests.support.console import NARROW, WIDE, RecordedConsole, settle
 from tests.support.runs import dummy_server_run, shared_group_run
 
 EVENTS = shared_group_run().events
-SHOWN = (Scope.LESSON, Scope.MENU, Scope.EVERYWHERE)
-PANES: dict[str, type[Widget]] = {"1": Guide, "2": CodeView, "3": ArenaMap, "4": LogView}
+SHOWN = (Scope.LESSON, Scope.PROMPT, Scope.MENU, Scope.EVERYWHERE)
+PANES: dict[str, type[Widget]] = {"1": Guide, "2": CodeView, "3": ArenaMap, "4": LogView, "5": ShellView}
 
 
 @asynccontextmanager
@@ -202,12 +203,12 @@ async def test_a_narrow_screen_shows_the_pane_of_a_number() -> None:
         for key, shown in zip(PANES, panes, strict=True):
             await press(pilot, key)
             assert [pane for pane in panes if pane.display] == [shown]
-            assert shown.has_focus
+            assert shown.has_focus_within
 
 
 async def test_tab_goes_round_the_panes() -> None:
     async with console() as (app, pilot):
-        for pane in (CodeView, ArenaMap, LogView, Guide):
+        for pane in (CodeView, ArenaMap, LogView, ShellOutput, Guide):
             await press(pilot, "tab")
             assert app.screen.query_one(pane).has_focus
 
@@ -220,9 +221,17 @@ async def test_a_click_on_a_name_shows_its_pane() -> None:
         assert app.screen.query_one(ArenaMap).display
 
 
-async def test_a_wide_screen_shows_every_pane() -> None:
-    async with console(size=WIDE) as (app, _):
-        assert all(app.screen.query_one(pane).display for pane in PANES.values())
+async def test_a_wide_screen_shows_every_pane_but_the_shell_which_takes_the_place_of_the_log() -> None:
+    async with console(size=WIDE) as (app, pilot):
+        shell, log = app.screen.query_one(ShellView), app.screen.query_one(LogView)
+        others = [app.screen.query_one(pane) for pane in PANES.values() if pane not in {ShellView, LogView}]
+        assert all(pane.display for pane in others)
+        assert (log.display, shell.display) == (True, False)
+        await press(pilot, "colon")
+        assert all(pane.display for pane in others)
+        assert (log.display, shell.display) == (False, True)
+        await press(pilot, "escape", "4")
+        assert (log.display, shell.display) == (True, False)
 
 
 @pytest.mark.parametrize("size", [NARROW, WIDE])

@@ -2,12 +2,14 @@ import pytest
 
 from cbtui.live_run import Deliver, Ended, LiveRun, State
 from sim.engine.commands import CallService, Pause, ResetWorld, Resume, SetSpeed
-from sim.engine.setup import RunSetup, ServiceChoice
+from sim.engine.setup import ProgramSetup, RunSetup, ServiceChoice
 from sim.trace.events import AnyEvent, RunEnded, RunStarted
 from tests.support.fake_session import FakeEngines, FakeSession
 
 SETUP = RunSetup(
-    title="x", node_path="node.py", service=ServiceChoice("/motor_power", "std_srvs/srv/SetBool")
+    title="x",
+    programs=(ProgramSetup("node.py"),),
+    service=ServiceChoice("/motor_power", "std_srvs/srv/SetBool"),
 )
 
 

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from cbtui.app import CbtuiApp
 from sim.engine.commands import CallService, Pause
+from sim.engine.setup import ProgramSetup
 from tests.app.pictures import text_of
 from tests.support.console import NARROW, settle
 from tests.support.fake_session import FakeEngines
@@ -18,7 +19,7 @@ async def test_a_file_is_run_with_its_arguments_and_shown_like_a_lesson(tmp_path
     async with app.run_test(size=NARROW) as pilot:
         await settle(pilot)
         setup = engines.latest.setup
-        assert (setup.node_path, setup.arguments, setup.clock) == (str(file), ("-x", "1"), "real")
+        assert (setup.programs, setup.clock) == ((ProgramSetup(str(file), ("-x", "1")),), "real")
         picture = text_of(app)
         assert picture.splitlines()[0].startswith(" my_node.py")
         assert " real " in picture.splitlines()[0]

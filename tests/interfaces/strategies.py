@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from sim.ros.interfaces import Message, message
+from sim.ros.interfaces import Message, message_of_type
 from sim.ros.interfaces.field_types import (
     FLOAT_LIMITS,
     INTEGER_LIMITS,
@@ -17,6 +17,7 @@ from sim.ros.interfaces.field_types import (
     BasicType,
     BoundedSequence,
     BoundedString,
+    BoundedWString,
     ElementType,
     FieldType,
     NamespacedType,
@@ -37,7 +38,7 @@ def _values(of: FieldType) -> st.SearchStrategy[Any]:
     if isinstance(of, Array):
         values = st.lists(_elements(of.value_type), min_size=of.size, max_size=of.size)
         code = typecode(of)
-        return values if code is None else values.map(lambda items: np.array(items, code))
+        return values if code is None else values.map(lambda items: np.array(items, np.dtype(code).name))
     if isinstance(of, BoundedSequence | UnboundedSequence):
         bound = min(of.maximum_size, 4) if isinstance(of, BoundedSequence) else 4
         values = st.lists(_elements(of.value_type), max_size=bound)
@@ -48,10 +49,14 @@ def _values(of: FieldType) -> st.SearchStrategy[Any]:
 
 def _elements(of: ElementType) -> st.SearchStrategy[Any]:
     if isinstance(of, NamespacedType):
-        return messages(message(of.namespaces[0], of.name))
+        return messages(message_of_type("/".join(of.namespaced_name())))
     if isinstance(of, BasicType):
         return _basic(of.typename)
-    return _TEXT.map(lambda text: text[: of.maximum_size]) if isinstance(of, BoundedString) else _TEXT
+    return (
+        _TEXT.map(lambda text: text[: of.maximum_size])
+        if isinstance(of, BoundedString | BoundedWString)
+        else _TEXT
+    )
 
 
 def _basic(typename: str) -> st.SearchStrategy[Any]:

@@ -5,20 +5,36 @@ from __future__ import annotations
 import copy
 import importlib
 import pickle
+import subprocess
 import sys
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
 
-from sim.ros.interfaces import InterfaceFinder, interface_module, message, packages, service
+from sim.ros.interfaces import (
+    InterfaceFinder,
+    add_definitions,
+    find_definition_folders,
+    interface_module,
+    known,
+    message,
+    packages,
+    service,
+)
+from sim.ros.interfaces.folder import DefinitionFolder
+from sim.ros.interfaces.jazzy import JazzyMessages
+from sim.ros.interfaces.registry import Registry
+
+DEFINITIONS = Path(known.__file__).parent / "definitions"
 
 
 @pytest.fixture(autouse=True)
 def finder() -> Iterator[None]:
     """Install the finder for one test and leave the interpreter as it was."""
     before, modules = sys.meta_path[:], sys.modules.copy()
-    sys.meta_path.append(InterfaceFinder())
+    sys.meta_path.insert(0, InterfaceFinder())
     yield
     sys.meta_path[:] = before
     for name in set(sys.modules) - set(modules):
@@ -110,6 +126,33 @@ def test_a_deep_copy_keeps_every_digit() -> None:
 
 
 def test_messages_pickle_without_the_finder() -> None:
-    sys.meta_path.pop()
+    del sys.meta_path[0]
     request = service("std_srvs", "SetBool").Request(data=True)
     assert pickle.loads(pickle.dumps(request)) == request
+
+
+def test_the_first_finder_of_a_process_does_not_ask_itself_without_end() -> None:
+    code = (
+        "import sys\nfrom sim.ros.interfaces import InterfaceFinder\n"
+        "sys.meta_path.insert(0, InterfaceFinder())\nimport wave\nfrom std_msgs.msg import Int32\nInt32()"
+    )
+    subprocess.run([sys.executable, "-c", code], check=True, timeout=60)
+
+
+def test_own_packages_win_over_the_bare_folders_python_sees(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    registry = Registry(DefinitionFolder(DEFINITIONS), JazzyMessages())
+    monkeypatch.setattr(known, "_registry", lambda: registry)
+    folder = tmp_path / "course" / "my_interfaces" / "msg"
+    folder.mkdir(parents=True)
+    (folder / "Num.msg").write_text("int32 n 3\n")
+    (folder / "Bad.msg").write_text("int n\n")
+    for found in find_definition_folders(tmp_path / "course" / "node.py"):
+        add_definitions(found)
+    monkeypatch.syspath_prepend(tmp_path / "course")
+    assert run("from my_interfaces.msg import Num")["Num"]().n == 3
+    with pytest.raises(ImportError, match=r"Bad\.msg:1: there is no type 'int'; did you mean 'int32'\?"):
+        run("from my_interfaces.msg import Bad")
+    for name in [name for name in sys.modules if name.partition(".")[0] == "my_interfaces"]:
+        del sys.modules[name]

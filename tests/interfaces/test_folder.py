@@ -7,10 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.ros.interfaces import DefinitionError, UnknownInterfaceError
+from sim.ros import interfaces
+from sim.ros.interfaces import DefinitionError
 from sim.ros.interfaces.folder import DefinitionFolder
 from sim.ros.interfaces.jazzy import JazzyMessages
 from sim.ros.interfaces.registry import Registry
+
+DEFINITIONS = Path(interfaces.__file__).parent / "definitions"
 
 
 class Workspace:
@@ -25,7 +28,7 @@ class Workspace:
         file.write_text(text)
 
     def registry(self) -> Registry:
-        return Registry(JazzyMessages(), DefinitionFolder(self.root))
+        return Registry(JazzyMessages(), DefinitionFolder(DEFINITIONS), DefinitionFolder(self.root))
 
 
 @pytest.fixture
@@ -35,7 +38,9 @@ def workspace(tmp_path: Path) -> Workspace:
 
 def test_a_message_uses_others_of_its_own_and_of_standard_packages(workspace: Workspace) -> None:
     workspace.write("Wheel.msg", "float64 speed  # m/s\n")
-    workspace.write("Base.msg", "# two wheels\nHeader header\nWheel[2] wheels\ngeometry_msgs/Pose pose\n")
+    workspace.write(
+        "Base.msg", "# two wheels\nstd_msgs/Header header\nWheel[2] wheels\ngeometry_msgs/Pose pose\n"
+    )
     base = workspace.registry().message("robot_msgs", "Base")
     assert base.get_fields_and_field_types() == {
         "header": "std_msgs/Header",
@@ -114,7 +119,7 @@ def test_windows_line_ends_are_read(workspace: Workspace) -> None:
 @pytest.mark.parametrize("text", ["float64 angle\n", "int8 a\n---\nint8 b\n---\nint8 c\n"])
 def test_a_service_needs_exactly_one_division(workspace: Workspace, text: str) -> None:
     workspace.write("Turn.srv", text)
-    with pytest.raises(DefinitionError, match=r"Turn\.srv: a service needs one line '---'"):
+    with pytest.raises(DefinitionError, match=r"Turn\.srv: a service needs one line '---' between"):
         workspace.registry().service("robot_msgs", "Turn")
 
 
@@ -123,40 +128,150 @@ def test_a_service_needs_exactly_one_division(workspace: Workspace, text: str) -
     [
         ("Bad.msg", "int32 a\nint32\n", r"Bad\.msg:2: 'int32' is neither a field, a constant nor a comment"),
         ("Bad.srv", "int32 a\n---\nint32 = 5\n", r"Bad\.srv:3: 'int32 = 5' is neither"),
-        ("Bad.msg", "int32 Speed\n", r"Bad\.msg: the field name 'Speed' must be lower case"),
-        ("Bad.msg", "int32 class\n", r"Bad\.msg: the field name 'class' is a keyword of Python"),
-        ("Bad.msg", "int32 a\nint8 a\n", r"Bad\.msg: the field 'a' is defined twice"),
-        ("Bad.msg", "int8 a 300\n", r"robot_msgs/msg/Bad: 300 cannot be used: The 'a' field"),
-        ("Bad.msg", "uint8 A=-1\n", r"robot_msgs/msg/Bad: -1 cannot be used: The 'A' field"),
-        ("Bad.msg", "int8[2] a [1]\n", r"robot_msgs/msg/Bad: \[1\] cannot be used: The 'a' field"),
-        ("Bad.msg", "Bad again\n", r"robot_msgs/msg/Bad contains itself"),
-        ("Bad.msg", "a/b/c/Deep deep\n", r"Bad\.msg: the type of 'deep', .*, is not of the form"),
+        ("Bad.msg", "int32 Speed\n", r"Bad\.msg:1: the field name 'Speed' must be lower case"),
+        ("Bad.msg", "int32 class\n", r"Bad\.msg:1: the field name 'class' is a keyword of Python"),
+        ("Bad.msg", "int32 a\nint8 a\n",
+         r"Bad\.msg:2: the field 'a' is defined twice; first at .*Bad\.msg:1"),
+        ("Bad.msg", "int8 A=1\nint8 A=2\n", r"Bad\.msg:2: the constant 'A' is defined twice"),
+        ("Bad.msg", "int8 low=1\n", r"Bad\.msg:1: the constant name 'low' must be capitals"),
+        ("Bad.msg", "int8 LOW=\n", r"Bad\.msg:1: the constant 'LOW' has no value"),
+        ("Bad.msg", "int8[] LOW=1\n", r"Bad\.msg:1: the constant 'LOW' is of type 'int8\[\]'"),
+        ("Bad.msg", "int8 a 300\n",
+         r"Bad\.msg:1: the default of 'a', 300, cannot be used: int8 takes integers"),
+        ("Bad.msg", "uint8 A=-1\n",
+         r"Bad\.msg:1: the constant 'A', -1, cannot be used: uint8 takes integers"),
+        ("Bad.msg", "int8 a x\n", r"Bad\.msg:1: the default of 'a', x, cannot be used: it is not an integer"),
+        ("Bad.msg", "float32 a x\n",
+         r"Bad\.msg:1: the default of 'a', x, cannot be used: it is not a number"),
+        ("Bad.msg", "bool a 2\n",
+         r"Bad\.msg:1: the default of 'a', 2, cannot be used: a bool is true or false"),
+        ("Bad.msg", "int8[] a 1\n", r"Bad\.msg:1: the default of 'a', 1, .* written as \[value, …\]"),
+        ("Bad.msg", "int8[] a [1,,2]\n", r"Bad\.msg:1: the default of 'a', \[1,,2\], .* single commas"),
+        ("Bad.msg", "int8[2] a [1]\n", r"Bad\.msg:1: \[1\] cannot be used: The 'a' field"),
+        ("Bad.msg", "int8[<=1] a [1, 2]\n", r"Bad\.msg:1: \[1, 2\] cannot be used: The 'a' field"),
+        ("Bad.msg", "string<=2 a abc\n", r"Bad\.msg:1: 'abc' cannot be used: The 'a' field"),
+        ("Bad.msg", "int8[0] a\n", r"Bad\.msg:1: the size '0' in 'int8\[0\]' must be a positive integer"),
+        ("Bad.msg", "int8[<=x] a\n", r"Bad\.msg:1: the bound 'x' in 'int8\[<=x\]' must be"),
+        ("Bad.msg", "string<=0 a\n", r"Bad\.msg:1: the bound '0' in 'string<=0' must be"),
+        ("Bad.msg", "int8<=3 a\n", r"Bad\.msg:1: 'int8<=3': only string and wstring take a bound"),
+        ("Bad.msg", "int8[2 a\n", r"Bad\.msg:1: 'int8\[2' is not a type"),
+        ("Bad.msg", "# speed\nint a\n", r"Bad\.msg:2: there is no type 'int'; did you mean 'int32'\?"),
+        ("Bad.msg", "int23 a\n", r"Bad\.msg:1: there is no type 'int23'; did you mean 'int\d+'\?"),
+        ("Bad.msg", "time stamp\n", r"Bad\.msg:1: there is no type 'time'; .* 'builtin_interfaces/Time'\?"),
+        ("Bad.msg", "Header h\n", r"Bad\.msg:1: the field 'h': robot_msgs has no .* 'std_msgs/Header'\?"),
+        ("Bad.msg", "std_mgs/Header h\n",
+         r"Bad\.msg:1: the field 'h': there is no package 'std_mgs'; .* 'std_msgs'"),
+        ("Bad.msg", "geometry_msgs/Pose pose 1\n", r"Bad\.msg:1: the field 'pose' is a message and takes no"),
+        ("Bad.msg", "int8 a\nBad again\n",
+         r"Bad\.msg:2: the field 'again': robot_msgs/msg/Bad contains itself"),
+        ("Bad.msg", "a/b/c/Deep deep\n",
+         r"Bad\.msg:1: there is no type 'a/b/c/Deep'; a message is written as"),
+        ("Bad.action", "int8 a\n---\nint8 b\n", r"Bad\.action: an action needs two lines '---'"),
+        ("Bad.action", "int8 a\n---\nint8 b\n---\nint8\n", r"Bad\.action:5: 'int8' is neither a field"),
     ],
 )  # fmt: skip
 def test_a_mistake_is_named_with_its_place(workspace: Workspace, name: str, text: str, reason: str) -> None:
     workspace.write(name, text)
     registry = workspace.registry()
-    find = registry.message if name.endswith("msg") else registry.service
+    finds = {"msg": registry.message, "srv": registry.service, "action": registry.action}
     with pytest.raises(DefinitionError, match=reason):
-        find("robot_msgs", "Bad")
+        finds[name.partition(".")[2]]("robot_msgs", "Bad")
 
 
 def test_an_unknown_type_is_named_with_the_message_that_uses_it(workspace: Workspace) -> None:
     workspace.write("Bad.msg", "geometry_msgs/Pont point\n")
-    reason = r"^robot_msgs/msg/Bad: geometry_msgs has no message 'Pont'; did you mean 'Point'\?$"
-    with pytest.raises(UnknownInterfaceError, match=reason):
+    reason = r"Bad\.msg:1: the field 'point': geometry_msgs has no message 'Pont'; did you mean 'Point'\?$"
+    with pytest.raises(DefinitionError, match=reason):
         workspace.registry().message("robot_msgs", "Bad")
 
 
 @pytest.mark.parametrize(
-    "file", ["Robot_msgs/msg/Good.msg", "robot_msgs/msg/bad.msg", "robot_msgs/srv/Bad-Name.srv"]
+    "file", ["Robot_msgs/msg/Good.msg", "robot_msgs/msg/bad.msg", "robot_msgs/msg/B_d.msg"]
 )
-def test_names_ros_does_not_take_are_refused(tmp_path: Path, file: str) -> None:
+def test_names_ros_does_not_take_are_refused_when_asked_for(tmp_path: Path, file: str) -> None:
     path = tmp_path / file
     path.parent.mkdir(parents=True)
     path.write_text("")
-    with pytest.raises(DefinitionError, match="name"):
-        DefinitionFolder(tmp_path)
+    registry = Registry(JazzyMessages(), DefinitionFolder(tmp_path))
+    with pytest.raises(DefinitionError, match=rf"^{path}: the .*name '\w+' must be"):
+        registry.message(path.parts[-3], path.stem)
+
+
+def test_a_package_may_be_given_itself_and_is_named_by_its_manifest(workspace: Workspace) -> None:
+    workspace.write("Wheel.msg", "float64 speed\n")
+    package = workspace.root / "robot_msgs"
+    assert DefinitionFolder(package).packages() == {"robot_msgs"}
+    (package / "package.xml").write_text("<package><name>my_robot_msgs</name></package>")
+    assert DefinitionFolder(package).packages() == {"my_robot_msgs"}
+    assert DefinitionFolder(workspace.root).names("my_robot_msgs", "msg") == ("Wheel",)
+
+
+def test_a_file_that_is_not_utf_8_is_named_with_its_line(workspace: Workspace) -> None:
+    workspace.write("Bad.msg", "")
+    (workspace.root / "robot_msgs" / "msg" / "Bad.msg").write_bytes(b"int8 a\n# \xe4\n")
+    with pytest.raises(DefinitionError, match=r"Bad\.msg:2: the byte 0xe4 is not UTF-8"):
+        workspace.registry().message("robot_msgs", "Bad")
+
+
+def test_an_error_in_a_file_nobody_uses_hurts_nobody(workspace: Workspace) -> None:
+    workspace.write("Bad.msg", "?\n")
+    workspace.write("Good.msg", "int8 a\n")
+    assert workspace.registry().message("robot_msgs", "Good")().a == 0
+
+
+def test_a_definition_error_is_an_import_error() -> None:
+    assert issubclass(DefinitionError, ImportError)
+    assert issubclass(DefinitionError, ValueError)
+
+
+def test_comments_and_blank_lines_say_nothing(workspace: Workspace) -> None:
+    workspace.write("Base.msg", "\ufeff# speed\n\n  \t\nint8\ta\t# trailing\nint8 b 3# default\n#int8 c\n")
+    base = workspace.registry().message("robot_msgs", "Base")
+    assert base() == base(a=0, b=3)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("string s 'it\\'s'", "it's"),
+        ('string s "it\'s"', "it's"),
+        ("string s two words ", "two words"),
+        ('string s "  kept  "', "  kept  "),
+        ("string<=3 s abc", "abc"),
+        ("wstring s ö", "ö"),
+        ("int8 s 0x1F", 31),
+        ("float64 s 1e3", 1000.0),
+        ("byte s 255", b"\xff"),
+        ("bool s True", True),
+        ('string[<=3] s ["a, b", c]', ["a, b", "c"]),
+        ("string[] s []", []),
+        ("wstring[2] s ['a', 'b']", ["a", "b"]),
+        ("bool[] s [true, 0]", [True, False]),
+        ("byte[] s [1, 2]", [b"\x01", b"\x02"]),
+    ],
+)
+def test_a_default_means_what_rosidl_reads(workspace: Workspace, text: str, value: object) -> None:
+    workspace.write("Base.msg", text + "\n")
+    assert workspace.registry().message("robot_msgs", "Base")().s == value
+
+
+def test_an_action_has_three_parts_of_own_and_standard_messages(workspace: Workspace) -> None:
+    workspace.write("Wheel.msg", "float64 speed\n")
+    workspace.write("Drive.action", "Wheel wheel\nint8 FAST=1\n---\n---\ngeometry_msgs/Point at\n")
+    drive = workspace.registry().action("robot_msgs", "Drive")
+    assert drive.Goal().wheel.speed == 0.0
+    assert drive.Goal.FAST == 1
+    assert drive.Result.get_fields_and_field_types() == {}
+    assert drive.Feedback.get_fields_and_field_types() == {"at": "geometry_msgs/Point"}
+
+
+def test_constants_belong_to_the_class_and_are_seen_on_messages(workspace: Workspace) -> None:
+    workspace.write("Mode.msg", "uint8 IDLE=0\nuint8 mode 1\n")
+    mode = workspace.registry().message("robot_msgs", "Mode")
+    assert mode.IDLE == mode().IDLE == 0
+    for target in (mode, mode()):
+        with pytest.raises(AttributeError):
+            target.IDLE = 1
 
 
 def test_a_missing_folder_is_named(tmp_path: Path) -> None:

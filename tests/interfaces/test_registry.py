@@ -10,20 +10,25 @@ from pathlib import Path
 import pytest
 from rosbags.typesys import Stores, get_typestore
 
+from sim.ros import interfaces
 from sim.ros.interfaces import (
-    DefinitionError,
     Kind,
     UnknownInterfaceError,
-    add_definitions,
+    action,
+    from_cdr,
     message,
     message_of_type,
     names,
     packages,
     service,
+    to_cdr,
 )
-from sim.ros.interfaces.interface_definition import Definition
-from sim.ros.interfaces.jazzy import FILLER_FIELD, JazzyMessages, jazzy_tables
+from sim.ros.interfaces.folder import DefinitionFolder
+from sim.ros.interfaces.interface_definition import FILLER_FIELD, Definition
+from sim.ros.interfaces.jazzy import JazzyMessages, jazzy_tables
 from sim.ros.interfaces.registry import Registry
+
+DEFINITIONS = Path(interfaces.__file__).parent / "definitions"
 
 
 class Recording(JazzyMessages):
@@ -77,6 +82,20 @@ def test_reading_the_tables_leaves_the_classes_of_rosbags_whole() -> None:
     jazzy_tables.cache_clear()
     jazzy_tables()
     assert all(dataclasses.is_dataclass(cls) for cls in get_typestore(Stores.ROS2_JAZZY).types.values())
+
+
+def test_files_of_messages_rosbags_knows_say_the_same() -> None:
+    files, jazzy = DefinitionFolder(DEFINITIONS), JazzyMessages()
+    both = [
+        (package, name)
+        for package in files.packages() & jazzy.packages()
+        for name in set(files.names(package, "msg")) & set(jazzy.names(package, "msg"))
+    ]
+    assert ("geometry_msgs", "Twist") in both
+    for package, name in both:
+        ours, theirs = files.message(package, name), jazzy.message(package, name)
+        assert (ours.constants, ours.fields) == (theirs.constants, theirs.fields)
+        assert ours.defaults == theirs.defaults
 
 
 def test_every_jazzy_message_is_there() -> None:
@@ -133,6 +152,13 @@ def test_a_name_of_another_form_is_refused(name: str) -> None:
     [
         (message, "std_mgs", "Int32", "there is no package 'std_mgs'; did you mean 'std_msgs'?"),
         (message, "std_msgs", "Int33", "std_msgs has no message 'Int33'; did you mean 'Int32'?"),
+        (
+            message,
+            "std_msgs",
+            "Twist",
+            "std_msgs has no message 'Twist'; did you mean 'geometry_msgs/Twist'?",
+        ),
+        (action, "std_srvs", "SetBool", "std_srvs has 'SetBool' as a service, not as an action"),
         (service, "std_srvs", "SetBol", "std_srvs has no service 'SetBol'; did you mean 'SetBool'?"),
         (message, "qqq", "Int32", "there is no package 'qqq'"),
         (message, "std_srvs", "SetBool", "std_srvs has 'SetBool' as a service, not as a message"),
@@ -146,10 +172,55 @@ def test_unknown_names_lead_to_the_nearest(
     assert str(unknown.value) == text
 
 
-def test_a_folder_may_not_redefine_what_is_known(tmp_path: Path) -> None:
-    file = tmp_path / "std_msgs" / "msg" / "Int32.msg"
+def overlay(root: Path, text: str) -> DefinitionFolder:
+    file = root / "geometry_msgs" / "msg" / "Vector3.msg"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    file.write_text(text)
+    return DefinitionFolder(root)
+
+
+def test_a_folder_overlays_what_is_known_and_leaves_the_rest_of_its_package(tmp_path: Path) -> None:
+    registry = Registry(JazzyMessages())
+    before = registry.message("geometry_msgs", "Twist")
+    point = registry.message("geometry_msgs", "Point")
+    registry.add(overlay(tmp_path, "float64 length\n"))
+    after = registry.message("geometry_msgs", "Twist")
+    assert after().linear.length == 0.0
+    assert before().linear.x == 0.0
+    assert registry.message("geometry_msgs", "Point") is point
+
+
+def test_a_replaced_message_is_replaced_in_services_and_actions_too(tmp_path: Path) -> None:
+    registry = Registry(JazzyMessages(), DefinitionFolder(DEFINITIONS))
+    action, service = (
+        registry.action("nav2_msgs", "NavigateToPose"),
+        registry.service("gazebo_msgs", "SpawnEntity"),
+    )
+    fibonacci = registry.action("example_interfaces", "Fibonacci")
+    file = tmp_path / "geometry_msgs" / "msg" / "Pose.msg"
     file.parent.mkdir(parents=True)
-    file.write_text("int64 data\n")
-    with pytest.raises(DefinitionError, match=r"^std_msgs/msg/Int32 is already defined elsewhere$"):
-        add_definitions(tmp_path)
-    assert message("std_msgs", "Int32").get_fields_and_field_types() == {"data": "int32"}
+    file.write_text("float64 x\n")
+    registry.add(DefinitionFolder(tmp_path))
+    assert registry.action("nav2_msgs", "NavigateToPose") is not action
+    assert registry.service("gazebo_msgs", "SpawnEntity") is not service
+    assert registry.service("gazebo_msgs", "SpawnEntity").Request().initial_pose.x == 0.0
+    assert registry.action("example_interfaces", "Fibonacci") is fibonacci
+
+
+def test_adding_an_unchanged_folder_again_keeps_its_classes(tmp_path: Path) -> None:
+    registry = Registry(JazzyMessages())
+    registry.add(overlay(tmp_path, "float64 length\n"))
+    vector = registry.message("geometry_msgs", "Vector3")
+    registry.add(DefinitionFolder(tmp_path))
+    assert registry.message("geometry_msgs", "Vector3") is vector
+    registry.add(overlay(tmp_path, "float64 length\nfloat64 width\n"))
+    assert registry.message("geometry_msgs", "Vector3")().width == 0.0
+
+
+def test_a_replaced_class_and_its_replacement_both_go_over_the_wire(tmp_path: Path) -> None:
+    registry = Registry(JazzyMessages())
+    old = registry.message("geometry_msgs", "Twist")
+    registry.add(overlay(tmp_path, "string name\n"))
+    new = registry.message("geometry_msgs", "Twist")
+    for twist in (old(), new()):
+        assert from_cdr(type(twist), to_cdr(twist)) == twist

@@ -17,7 +17,6 @@ from sim.ros.exceptions import (
 from sim.ros.interfaces import message, service
 from sim.ros.logging import LoggingSeverity, get_logger
 from sim.ros.node import Node
-from sim.ros.signals import SignalHandlerOptions, get_current_signal_handlers_options
 from sim.ros.utilities import remove_ros_args
 from tests.support.simulation import Simulation, simulate
 
@@ -289,17 +288,5 @@ def test_a_namespace_that_ends_with_a_slash_is_refused() -> None:
         assert Node("n", namespace="").get_namespace() == "/"
         with pytest.raises(InvalidNamespaceException):
             Node("n", namespace="a/")
-
-    in_a_program(check)
-
-
-def test_the_choice_of_signals_is_kept() -> None:
-    def check() -> None:
-        rclpy.init(args=[], context=Context(), signal_handler_options=SignalHandlerOptions.SIGTERM)
-        assert get_current_signal_handlers_options() == SignalHandlerOptions.SIGTERM
-        rclpy.init(args=[], context=Context())
-        assert get_current_signal_handlers_options() == SignalHandlerOptions.NO
-        with pytest.raises(TypeError):
-            rclpy.init(args=[], context=Context(), signal_handler_options=7)  # type: ignore[arg-type]
 
     in_a_program(check)

@@ -5,7 +5,7 @@ from typing import Any
 import pytest
 
 import sim.ros as rclpy
-from sim.ros.clock import Clock, ClockChange, JumpThreshold, ROSClock, TimeJump
+from sim.ros.clock import Clock, ClockChange, ClockEvent, JumpThreshold, ROSClock, TimeJump
 from sim.ros.clock_type import ClockType
 from sim.ros.duration import Duration, Infinite
 from sim.ros.exceptions import NotInitializedException
@@ -152,5 +152,46 @@ def test_a_timer_tells_when_its_call_was_due_to_whom_wants_to_know() -> None:
         assert info.actual_call_time - info.expected_call_time == Duration(seconds=0.25)
         rclpy.spin_once(node, timeout_sec=1.0)
         assert not told
+
+    simulate(program)
+
+
+@pytest.mark.parametrize(
+    ("kind", "wait"),
+    [
+        (ClockType.STEADY_TIME, "wait_until_steady"),
+        (ClockType.SYSTEM_TIME, "wait_until_system"),
+        (ClockType.ROS_TIME, "wait_until_ros"),
+    ],
+)
+def test_an_event_is_waited_for_until_a_time_or_until_it_is_set(kind: ClockType, wait: str) -> None:
+    def program(simulation: Simulation) -> None:
+        event, clock = ClockEvent(), Clock(clock_type=kind)
+        wait_until = getattr(event, wait)
+        wait_until(clock.handle, (clock.now() + SECOND)._time_handle)
+        assert simulation.now == 1.0
+        assert not event.is_set()
+        simulation.at(1.5, event.set)
+        simulation.start(lambda: wait_until(clock.handle, clock.now() + SECOND))
+        wait_until(clock.handle, clock.now() + SECOND)
+        assert simulation.now == 1.5
+        assert event.is_set()
+        wait_until(clock.handle, clock.now() + SECOND)
+        assert simulation.now == 1.5
+        event.clear()
+        wait_until(clock.handle, clock.now() + SECOND)
+        assert simulation.now == 2.5
+
+    simulate(program)
+
+
+def test_active_ros_time_ends_no_wait_for_an_event() -> None:
+    def program(simulation: Simulation) -> None:
+        event, clock = ClockEvent(), ROSClock()
+        clock._set_ros_time_is_active(True)
+        simulation.at(1.0, lambda: clock.set_ros_time_override(ros_time(100)))
+        simulation.at(2.0, event.set)
+        event.wait_until_ros(clock, ros_time(10))
+        assert simulation.now == 2.0
 
     simulate(program)

@@ -267,22 +267,23 @@ def test_a_task_gives_its_result_to_who_spins_for_it_and_to_who_awaits_it() -> N
     simulate(program)
 
 
-def test_a_coroutine_that_awaits_nothing_in_particular_goes_on_at_the_next_wake_up() -> None:
+def test_a_coroutine_that_awaits_nothing_in_particular_goes_on_at_once_and_then_at_each_wake_up() -> None:
+    went_on: list[float] = []
+
     def program(simulation: Simulation) -> None:
         node = Node("n")
 
-        class Bare:
-            def __await__(self) -> object:
-                yield
-
         async def waits() -> None:
-            await Bare()  # type: ignore[misc]
+            for _ in range(2):
+                await asyncio.sleep(0)
+                went_on.append(simulation.now)
 
         node.create_timer(1.0, waits).timer_period_ns = 10**12
         node.create_timer(1.5, lambda: None, MutuallyExclusiveCallbackGroup())
         spin(node)
 
     assert simulate(program, until=2.0).ends("waits") == [1.5]
+    assert went_on == [1.0, 1.5]
 
 
 def test_the_result_of_a_pending_future_is_none() -> None:
@@ -303,12 +304,14 @@ def test_a_future_holds_its_result_or_raises_its_exception() -> None:
     assert isinstance(failed.exception(), ValueError)
 
 
-def test_a_cancelled_future_is_done_and_has_no_result() -> None:
+def test_a_cancelled_future_is_not_done_and_has_no_result_until_it_is_given_one() -> None:
     future: Future[int] = Future()
     future.cancel()
     assert future.cancelled()
-    assert future.done()
+    assert not future.done()
     assert future.result() is None
+    future.set_result(3)
+    assert (future.done(), future.cancelled(), future.result()) == (True, False, 3)
 
 
 def test_without_an_executor_done_callbacks_run_at_once_in_the_order_of_adding() -> None:

@@ -12,7 +12,6 @@ from sim.ros.publisher import Publisher
 from sim.ros.qos import QoSProfile
 from sim.ros.qos_overriding_options import QoSOverridingOptions
 from sim.ros.serialization import serialize_message
-from sim.ros.service_introspection import ServiceIntrospectionState
 from sim.ros.wait_for_message import wait_for_message
 from tests.support.simulation import Simulation, simulate
 
@@ -146,19 +145,6 @@ def test_quality_of_service_is_overridden_where_the_program_allows_it() -> None:
         options = QoSOverridingOptions.with_default_policies()
         subscription = node.create_subscription(Int32, "t", print, 10, qos_overriding_options=options)
         assert subscription.qos_profile == QoSProfile(depth=2)
-
-    simulate(program)
-
-
-def test_introspection_is_refused_by_name() -> None:
-    def program(_: Simulation) -> None:
-        node = Node("n")
-        client = node.create_client(SetBool, "s")
-        client.configure_introspection(node.get_clock(), QoSProfile(depth=1), ServiceIntrospectionState.OFF)
-        with pytest.raises(NotImplementedError, match=r"^Client.configure_introspection is not supported$"):
-            client.configure_introspection(
-                node.get_clock(), QoSProfile(depth=1), ServiceIntrospectionState.CONTENTS
-            )
 
     simulate(program)
 

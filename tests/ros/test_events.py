@@ -2,10 +2,7 @@
 
 from typing import Any
 
-import pytest
-
 import sim.ros as rclpy
-from sim.ros.duration import Duration
 from sim.ros.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from sim.ros.interfaces import message
 from sim.ros.node import Node
@@ -108,23 +105,3 @@ def test_events_of_every_node_come_before_the_timers_of_the_first() -> None:
     trace = simulate(program)
     assert order == ["matched", "timer", "message"]
     assert len(trace.calls()) == 3
-
-
-def test_deadlines_and_liveliness_are_refused_by_name() -> None:
-    def program(_: Simulation) -> None:
-        node = Node("n")
-        qos = QoSProfile(depth=1, deadline=Duration(seconds=1))
-        with pytest.raises(NotImplementedError, match=r"PublisherEventCallbacks\(deadline=...\)"):
-            node.create_publisher(
-                Int32, "t", qos, event_callbacks=PublisherEventCallbacks(deadline=lambda _: None)
-            )
-        with pytest.raises(NotImplementedError, match=r"SubscriptionEventCallbacks\(liveliness=...\)"):
-            node.create_subscription(
-                Int32,
-                "t",
-                lambda _: None,
-                qos,
-                event_callbacks=SubscriptionEventCallbacks(liveliness=lambda _: None),
-            )
-
-    simulate(program)

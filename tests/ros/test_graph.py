@@ -1,14 +1,15 @@
 """The graph: which nodes there are, and which topics and services they have."""
 
 from collections.abc import Callable
+from typing import Any
 
 import pytest
 
 from sim.ros.exceptions import InvalidTopicNameException, NodeNameNonExistentError
 from sim.ros.interfaces import message, service
 from sim.ros.node import Node
-from sim.ros.qos import QoSProfile
-from sim.ros.topic_endpoint_info import TopicEndpointTypeEnum
+from sim.ros.qos import QoSPresetProfiles, QoSProfile
+from sim.ros.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 from tests.support.simulation import Simulation, simulate
 
 Int32 = message("std_msgs", "Int32")
@@ -101,7 +102,7 @@ def test_the_ends_of_a_topic_are_described() -> None:
             "Node name: talker",
             "Node namespace: /a",
             "Topic type: std_msgs/msg/Int32",
-            "Topic type hash: INVALID",
+            "Topic type hash: RIHS01_b6578ded3c58c626cfe8d1a6fb6e04f706f97e9f03d2727c9ff4e74b1cef0deb",
             "Endpoint type: PUBLISHER",
         ]
         assert "  History (Depth): KEEP_LAST (3)" in str(publisher)
@@ -118,3 +119,49 @@ def test_a_node_is_waited_for() -> None:
         assert 1.0 <= simulation.now <= 1.2
 
     simulate(program)
+
+
+def test_a_description_of_an_end_begins_empty_and_takes_settings_of_its_parts() -> None:
+    info = TopicEndpointInfo()
+    assert (info.node_name, info.node_namespace, info.topic_type, info.endpoint_gid) == ("", "", "", [])
+    assert info.endpoint_type is TopicEndpointTypeEnum.INVALID
+    assert info.qos_profile == QoSPresetProfiles.UNKNOWN.value
+    assert str(info.topic_type_hash) == "INVALID"
+    info.qos_profile = {"depth": 3}  # type: ignore[assignment]
+    info.topic_type_hash = {"version": 1, "value": bytes(32)}  # type: ignore[assignment]
+    info.endpoint_type = 1  # type: ignore[assignment]
+    assert info.qos_profile == QoSProfile(depth=3)
+    assert str(info.topic_type_hash) == f"RIHS01_{'0' * 64}"
+    assert info.endpoint_type is TopicEndpointTypeEnum.PUBLISHER
+    assert info == TopicEndpointInfo(
+        qos_profile=QoSProfile(depth=3), topic_type_hash=info.topic_type_hash, endpoint_type=1
+    )
+
+
+@pytest.mark.parametrize(
+    "wrong",
+    [
+        {"node_name": 1},
+        {"node_namespace": None},
+        {"topic_type": b"x"},
+        {"topic_type_hash": "x"},
+        {"endpoint_type": "x"},
+        {"endpoint_gid": "x"},
+        {"qos_profile": 1},
+        {"what": 1},
+    ],
+)
+def test_a_description_of_an_end_refuses_wrong_values(wrong: dict[str, Any]) -> None:
+    with pytest.raises(AssertionError):
+        TopicEndpointInfo(**wrong)
+
+
+@pytest.mark.parametrize("question", ["count_publishers", "count_services", "get_publishers_info_by_topic"])
+def test_a_question_about_what_is_no_name_is_refused(question: str) -> None:
+    def check(_talker: Node, listener: Node) -> None:
+        with pytest.raises(TypeError, match="a name must be a str"):
+            getattr(listener, question)(1)
+        with pytest.raises(ValueError, match="is invalid"):
+            getattr(listener, question)("42")
+
+    with_graph(check)

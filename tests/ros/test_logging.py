@@ -97,8 +97,9 @@ def test_wrong_options_are_named(options: Any, error: type[Exception], text: str
 def test_a_child_has_its_parents_level_until_it_has_one() -> None:
     def lines(logger: RcutilsLogger, _: Simulation) -> None:
         child = logger.get_child("b")
-        assert child is get_logger("a.b")
+        assert child.name == get_logger("a.b").name == "a.b"
         assert child.get_effective_level() == LoggingSeverity.INFO
+        assert (logging.get_logger_level(""), logging.get_logger_level("a")) == (20, 0)
         logging.set_logger_level("", LoggingSeverity.FATAL)
         assert child.get_effective_level() == LoggingSeverity.FATAL
         logger.set_level(LoggingSeverity.DEBUG)

@@ -1,5 +1,8 @@
 """Names: which are refused with which words and where, and what short ones become."""
 
+from collections.abc import Callable
+from typing import Any
+
 import pytest
 
 from sim.ros.exceptions import (
@@ -12,6 +15,7 @@ from sim.ros.exceptions import (
 from sim.ros.expand_topic_name import expand_topic_name
 from sim.ros.interfaces import message
 from sim.ros.node import Node
+from sim.ros.topic_or_service_is_hidden import topic_or_service_is_hidden
 from sim.ros.validate_full_topic_name import validate_full_topic_name
 from sim.ros.validate_namespace import validate_namespace
 from sim.ros.validate_node_name import validate_node_name
@@ -167,3 +171,39 @@ def test_a_node_refuses_a_bad_name_as_it_was_written() -> None:
             node.create_publisher(message("std_msgs", "Int32"), "a//b", 1)
 
     simulate(program)
+
+
+def test_a_node_refuses_an_unknown_substitution() -> None:
+    def program(_: object) -> None:
+        node = Node("n")
+        with pytest.raises(ValueError, match=r"^unknown substitution '\{what\}'$"):
+            node.create_publisher(message("std_msgs", "Int32"), "a/{what}", 1)
+        with pytest.raises(ValueError, match="unknown substitution"):
+            node.resolve_service_name("{what}/a")
+
+    simulate(program)
+
+
+@pytest.mark.parametrize(
+    "validate", [validate_node_name, validate_namespace, validate_topic_name, validate_full_topic_name]
+)
+def test_what_is_no_text_is_no_name(validate: Callable[[Any], object]) -> None:
+    for wrong in (None, 1, ["n"]):
+        with pytest.raises(TypeError, match="a name must be a str"):
+            validate(wrong)
+
+
+@pytest.mark.parametrize(
+    ("name", "hidden"),
+    [
+        ("/chatter", False),
+        ("chatter", False),
+        ("/a_b/c_", False),
+        ("/", False),
+        ("/_chatter", True),
+        ("_chatter", True),
+        ("/more/_complex/chatter", True),
+    ],
+)
+def test_a_part_that_begins_with_an_underscore_hides_a_name(name: str, hidden: bool) -> None:
+    assert topic_or_service_is_hidden(name) is hidden

@@ -8,6 +8,7 @@ from sim.ros import rcl_interfaces as rcl
 from sim.ros.duration import Duration, Infinite
 from sim.ros.node import Node
 from sim.ros.parameter import Parameter
+from sim.ros.publisher import Publisher
 from sim.ros.qos import (
     DurabilityPolicy,
     HistoryPolicy,
@@ -25,6 +26,7 @@ from sim.ros.qos import (
     qos_policy_name_from_kind,
 )
 from sim.ros.qos_overriding_options import InvalidQosOverridesError, QoSOverridingOptions, overridden
+from sim.ros.subscription import Subscription
 from tests.support.simulation import simulate
 
 SECOND = Duration(seconds=1)
@@ -143,7 +145,7 @@ def test_parameters_override_the_policies_that_are_named() -> None:
         ]
         node = Node("n", parameter_overrides=overrides)
         given = QoSProfile(depth=7)
-        found = overridden("publisher", node, "/t", given, QoSOverridingOptions.with_default_policies())
+        found = overridden(Publisher, node, "/t", given, QoSOverridingOptions.with_default_policies())
         assert found == QoSProfile(depth=3, reliability=2)
         assert given == QoSProfile(depth=7)
         assert node.get_parameter("qos_overrides./t.publisher.history").value == "keep_last"
@@ -158,6 +160,20 @@ def test_a_callback_may_refuse_overrides() -> None:
     def program(_: object) -> None:
         options = QoSOverridingOptions([QoSPolicyKind.DEADLINE], callback=refuse, entity_id="a")
         with pytest.raises(InvalidQosOverridesError, match="are not valid: too shallow"):
-            overridden("subscription", Node("n"), "/t", QoSProfile(depth=1), options)
+            overridden(Subscription, Node("n"), "/t", QoSProfile(depth=1), options)
 
     simulate(program)
+
+
+@pytest.mark.parametrize(
+    "profile",
+    [
+        QoSProfile(depth=1, lifespan=Duration(seconds=4)),
+        QoSProfile(history=HistoryPolicy.KEEP_ALL, liveliness=LivelinessPolicy.MANUAL_BY_TOPIC),
+        QoSPresetProfiles.SENSOR_DATA.value,
+    ],
+)
+def test_a_profile_comes_back_from_the_layers_below(profile: QoSProfile) -> None:
+    below = profile.get_c_qos_profile().to_dict()
+    assert type(below["history"]) is int
+    assert QoSProfile(**below) == profile

@@ -1,9 +1,105 @@
-"""Waitables written by a program are refused by name; their counts add up."""
+"""Waitables that a program writes: what they may wait for, when they are asked, and who goes before whom."""
+
+from collections.abc import Callable
+from typing import Any
 
 import pytest
 
-from sim.ros.callback_groups import ReentrantCallbackGroup
+from sim.ros import _rclpy_pybind11 as _rclpy
+from sim.ros.callback_groups import (
+    CallbackGroup,
+    MutuallyExclusiveCallbackGroup,
+    ReentrantCallbackGroup,
+)
+from sim.ros.clock import Clock
+from sim.ros.clock_type import ClockType
+from sim.ros.exceptions import InvalidHandle, RCLError
+from sim.ros.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
+from sim.ros.interfaces import message, service
+from sim.ros.node import Node
+from sim.ros.program_wait_set import ProgramWaitSet
+from sim.ros.qos import QoSProfile
+from sim.ros.task import Future
 from sim.ros.waitable import NumberOfEntities, Waitable
+from tests.support.simulation import Simulation, simulate
+
+Empty = message("std_msgs", "Empty")
+EmptySrv = service("std_srvs", "Empty")
+QOS = QoSProfile(depth=10).get_c_qos_profile()
+
+
+def two_threads() -> Executor:
+    return MultiThreadedExecutor(2)
+
+
+every_executor = pytest.mark.parametrize("make", [SingleThreadedExecutor, two_threads])
+
+
+class Waiting(Waitable[Any]):
+    """Waits for one entity of one kind, and gives what it takes to a future."""
+
+    def __init__(self, kind: str, waited: Any, take: Callable[[Any], Any]) -> None:
+        super().__init__(ReentrantCallbackGroup())
+        self.kind = kind
+        self.waited = waited
+        self.take = take
+        self.index = -1
+        self.found_ready = False
+        self.future: Future[Any] = Future()
+
+    def is_ready(self, wait_set: ProgramWaitSet) -> bool:
+        self.found_ready = self.found_ready or wait_set.is_ready(self.kind, self.index)
+        return self.found_ready
+
+    def take_data(self) -> Any:
+        self.found_ready = False
+        return self.take(self.waited)
+
+    async def execute(self, taken_data: Any) -> None:
+        self.future.set_result(taken_data)
+
+    def get_num_entities(self) -> NumberOfEntities:
+        return NumberOfEntities(**{f"num_{self.kind}s": 1})
+
+    def add_to_wait_set(self, wait_set: ProgramWaitSet) -> None:
+        self.index = getattr(wait_set, f"add_{self.kind}")(self.waited)
+
+
+class Flag(Waitable[str]):
+    """Ready while something is in its list; wakes its executor itself."""
+
+    def __init__(self, group: CallbackGroup, ran: list[str]) -> None:
+        super().__init__(group)
+        self.waiting: list[str] = []
+        self.ran = ran
+        self.asked = 0
+
+    def is_ready(self, wait_set: ProgramWaitSet) -> bool:
+        self.asked += 1
+        return bool(self.waiting)
+
+    def take_data(self) -> str:
+        return self.waiting.pop(0)
+
+    async def execute(self, taken_data: str) -> None:
+        self.ran.append(taken_data)
+
+    def get_num_entities(self) -> NumberOfEntities:
+        return NumberOfEntities()
+
+    def add_to_wait_set(self, wait_set: ProgramWaitSet) -> None:
+        pass
+
+
+def served(make: Callable[[], Executor], node: Node, waitable: Waiting) -> Any:
+    """Serve a waitable until its future is done, and return the result."""
+    executor = make()
+    executor.add_node(node)
+    node.add_waitable(waitable)
+    executor.spin_until_future_complete(waitable.future, timeout_sec=10)
+    assert waitable.future.done()
+    node.remove_waitable(waitable)
+    return waitable.future.result()
 
 
 def test_counts_of_entities_add_up() -> None:
@@ -11,9 +107,396 @@ def test_counts_of_entities_add_up() -> None:
     assert total == NumberOfEntities(num_subscriptions=4, num_guard_conditions=4, num_events=2)
 
 
-def test_a_waitable_is_refused_by_name() -> None:
-    class Mine(Waitable):
-        pass
+@every_executor
+def test_a_waitable_may_wait_for_a_response(make: Callable[[], Executor]) -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        with node.handle:
+            client = _rclpy.Client(node.handle, EmptySrv, "serve", QOS)
+        assert not client.service_server_is_available()
+        outside = simulation.outside_node()
+        outside.create_service(EmptySrv, "serve", lambda _request, response: response)
+        simulation.spin_outside(outside)
+        assert client.service_server_is_available()
+        sent = []
+        simulation.at(1.0, lambda: sent.append(client.send_request(EmptySrv.Request())))
+        waitable = Waiting("client", client, lambda each: each.take_response(EmptySrv.Response))
+        header, response = served(make, node, waitable)
+        assert isinstance(response, EmptySrv.Response)
+        assert [header.request_id.sequence_number] == sent
+        assert client.take_response(EmptySrv.Response) == (None, None)
 
-    with pytest.raises(NotImplementedError, match=r"^rclpy.waitable.Waitable is not supported$"):
-        Mine(ReentrantCallbackGroup())
+    simulate(program)
+
+
+@every_executor
+def test_a_waitable_may_wait_for_a_request_and_answer_it(make: Callable[[], Executor]) -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        with node.handle:
+            server = _rclpy.Service(node.handle, EmptySrv, "serve", QOS)
+        client = node.create_client(EmptySrv, "serve")
+        simulation.at(1.0, lambda: client.call_async(EmptySrv.Request()))
+        waitable = Waiting("service", server, lambda each: each.service_take_request(EmptySrv.Request))
+        request, header = served(make, node, waitable)
+        assert isinstance(request, EmptySrv.Request)
+        server.service_send_response(EmptySrv.Response(), header)
+        assert client.pending
+
+    simulate(program)
+
+
+@every_executor
+def test_a_waitable_may_wait_for_a_message(make: Callable[[], Executor]) -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        with node.handle:
+            subscription = _rclpy.Subscription(node.handle, Empty, "t", QOS)
+        publisher = node.create_publisher(Empty, "t", 1)
+        simulation.at(1.0, lambda: publisher.publish(Empty()))
+        waitable = Waiting("subscription", subscription, lambda each: each.take_message(Empty, False)[0])
+        assert isinstance(served(make, node, waitable), Empty)
+        assert simulation.now == 1.0
+        assert subscription.take_message(Empty, False) is None
+        assert publisher.get_subscription_count() == 1
+        subscription.destroy()
+        assert publisher.get_subscription_count() == 0
+
+    simulate(program)
+
+
+@every_executor
+def test_a_waitable_may_wait_for_a_timer(make: Callable[[], Executor]) -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        clock = Clock(clock_type=ClockType.STEADY_TIME)
+        with clock.handle, node.context.handle:
+            timer = _rclpy.Timer(clock.handle, node.context.handle, 10_000, True)
+        served(make, node, Waiting("timer", timer, lambda each: each.call_timer()))
+        assert simulation.now == 10e-6
+        assert timer.time_until_next_call() == 10_000
+
+    simulate(program)
+
+
+@every_executor
+def test_a_waitable_may_wait_for_a_guard_condition(make: Callable[[], Executor]) -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        with node.context.handle:
+            guard = _rclpy.GuardCondition(node.context.handle)
+        simulation.at(1.0, guard.trigger_guard_condition)
+        served(make, node, Waiting("guard_condition", guard, lambda _: None))
+        assert simulation.now == 1.0
+
+    simulate(program)
+
+
+def test_a_waitable_may_wait_for_an_entity_of_its_node_that_has_its_own_callback_too() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        guard = node.create_guard_condition(lambda: None)
+        simulation.at(1.0, guard.trigger)
+        served(SingleThreadedExecutor, node, Waiting("guard_condition", guard.handle, lambda _: None))
+        assert simulation.now == 1.0
+
+    simulate(program)
+
+
+@every_executor
+def test_a_waitable_that_is_set_by_a_callback_is_served_next(make: Callable[[], Executor]) -> None:
+    ran: list[str] = []
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        flag = Flag(MutuallyExclusiveCallbackGroup(), ran)
+        node.add_waitable(flag)
+        node.create_timer(1.0, lambda: flag.waiting.append(f"{simulation.now}"))
+        executor = make()
+        executor.add_node(node)
+        simulation.at(2.5, executor.shutdown)
+        executor.spin()
+        assert ran == ["1.0", "2.0"]
+
+    simulate(program)
+
+
+@every_executor
+def test_a_waitable_is_asked_again_whenever_its_executor_is_woken(make: Callable[[], Executor]) -> None:
+    ran: list[str] = []
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        flag = Flag(node.default_callback_group, ran)
+        executor = make()
+        executor.add_node(node)
+        node.add_waitable(flag)
+
+        def set_flag() -> None:
+            flag.waiting.append("set")
+            executor.wake()
+
+        simulation.at(1.0, set_flag)
+        simulation.at(1.0, lambda: None)
+        simulation.at(2.0, executor.shutdown)
+        executor.spin()
+        assert ran == ["set"]
+        assert flag.asked < 10
+
+    simulate(program)
+
+
+def test_waitables_of_every_node_go_before_the_timers_of_the_first() -> None:
+    def program(simulation: Simulation) -> None:
+        first, second = Node("first"), Node("second")
+        ran: list[str] = []
+        first.create_timer(1.0, lambda: ran.append("timer"))
+        flag = Flag(second.default_callback_group, ran)
+        flag.waiting.append("waitable")
+        second.add_waitable(flag)
+        executor = SingleThreadedExecutor()
+        simulation.sleep(1.0)
+        for node in (first, second):
+            executor.add_node(node)
+        for _ in range(2):
+            executor.spin_once(timeout_sec=0)
+        assert ran == ["waitable", "timer"]
+
+    simulate(program)
+
+
+def test_tasks_that_never_end_do_not_starve_a_waitable() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        ran: list[str] = []
+        flag = Flag(node.default_callback_group, ran)
+        flag.waiting.append("waitable")
+        node.add_waitable(flag)
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+
+        def again() -> None:
+            executor.create_task(again)
+
+        again()
+        for _ in range(3):
+            executor.spin_once(timeout_sec=0)
+        assert ran == ["waitable"]
+
+    simulate(program)
+
+
+@every_executor
+def test_a_waitable_of_a_busy_group_is_not_asked_until_the_group_is_free(
+    make: Callable[[], Executor],
+) -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        ran: list[str] = []
+        group = MutuallyExclusiveCallbackGroup()
+        flag = Flag(group, ran)
+        node.add_waitable(flag)
+        asked: list[int] = []
+
+        def callback() -> None:
+            flag.waiting.append("waitable")
+            asked.append(flag.asked)
+            simulation.sleep(0.5)
+            asked.append(flag.asked)
+            assert ran == []
+
+        timer = node.create_timer(1.0, callback, group)
+        node.create_timer(0.3, lambda: None, ReentrantCallbackGroup())
+        executor = make()
+        executor.add_node(node)
+        simulation.at(1.9, executor.shutdown)
+        executor.spin()
+        assert ran == ["waitable"]
+        assert asked[0] == asked[1]
+        assert timer.is_ready() is False
+
+    simulate(program)
+
+
+def test_a_waitable_is_not_asked_again_while_it_takes_its_data() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        ran: list[str] = []
+
+        class Slow(Flag):
+            def take_data(self) -> str:
+                before = self.asked
+                simulation.sleep(1.0)
+                assert self.asked == before
+                return super().take_data()
+
+        flag = Slow(ReentrantCallbackGroup(), ran)
+        flag.waiting.append("once")
+        node.add_waitable(flag)
+        node.create_timer(0.1, lambda: None, ReentrantCallbackGroup())
+        executor = MultiThreadedExecutor(3)
+        executor.add_node(node)
+        simulation.at(1.5, executor.shutdown)
+        executor.spin()
+        assert ran == ["once"]
+
+    simulate(program)
+
+
+def test_execute_holds_its_group_while_it_awaits() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        ran: list[str] = []
+        gate: Future[None] = Future()
+
+        class Awaiting(Flag):
+            async def execute(self, taken_data: str) -> None:
+                await gate
+                ran.append(taken_data)
+
+        group = MutuallyExclusiveCallbackGroup()
+        flag = Awaiting(group, ran)
+        flag.waiting.append("waitable")
+        node.add_waitable(flag)
+        node.create_timer(1.0, lambda: ran.append("timer"), group)
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        simulation.at(1.5, lambda: gate.set_result(None))
+        simulation.at(1.8, executor.shutdown)
+        executor.spin()
+        assert ran == ["waitable", "timer"]
+
+    simulate(program)
+
+
+def test_an_execute_that_is_no_coroutine_is_a_type_error() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        class Plain(Flag):
+            def execute(self, taken_data: str) -> None:  # type: ignore[override]
+                pass
+
+        flag = Plain(node.default_callback_group, [])
+        flag.waiting.append("x")
+        node.add_waitable(flag)
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        with pytest.raises(TypeError, match="can't be used in 'await' expression"):
+            executor.spin_once(timeout_sec=0)
+
+    simulate(program)
+
+
+def test_futures_added_to_a_waitable_belong_to_its_executor() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        ran: list[str] = []
+        flag = Flag(node.default_callback_group, ran)
+        future: Future[int] = Future()
+        other: Future[int] = Future()
+        flag.add_future(future)
+        flag.add_future(other)
+        flag.remove_future(other)
+        with pytest.raises(ValueError, match="not in list"):
+            flag.remove_future(other)
+        flag.waiting.append("waitable")
+        node.add_waitable(flag)
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        executor.spin_once(timeout_sec=0)
+        future.add_done_callback(lambda _: ran.append("as a task"))
+        other.add_done_callback(lambda _: ran.append("at once"))
+        future.set_result(1)
+        other.set_result(1)
+        assert ran == ["waitable", "at once"]
+        executor.spin_once(timeout_sec=0)
+        assert ran == ["waitable", "at once", "as a task"]
+
+    simulate(program)
+
+
+def test_a_waitable_whose_entities_are_gone_is_left_out_of_the_cycle() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        class Gone(Flag):
+            def __enter__(self) -> None:
+                raise InvalidHandle
+
+        flag = Gone(node.default_callback_group, [])
+        flag.waiting.append("x")
+        node.add_waitable(flag)
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        executor.spin_once(timeout_sec=0.1)
+        assert flag.asked == 0
+        assert simulation.now == 0.1
+
+    simulate(program)
+
+
+def test_a_nodes_waitables_are_listed_and_removed() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        flag = Flag(node.default_callback_group, [])
+        before = list(node.waitables)
+        node.add_waitable(flag)
+        assert node.default_callback_group.has_entity(flag)
+        assert list(node.waitables) == [*before, flag]
+        node.remove_waitable(flag)
+        assert list(node.waitables) == before
+        with pytest.raises(ValueError, match="was not added"):
+            node.remove_waitable(flag)
+        node.add_waitable(flag)
+        node.destroy_node()
+        assert list(node.waitables) == []
+
+    simulate(program)
+
+
+def test_more_entities_than_announced_are_refused() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        guard = _rclpy.GuardCondition(node.context.handle)
+
+        class Greedy(Waiting):
+            def get_num_entities(self) -> NumberOfEntities:
+                return NumberOfEntities()
+
+        node.add_waitable(Greedy("guard_condition", guard, lambda _: None))
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        with pytest.raises(RCLError, match="Failed to add 'guard_condition' to wait set"):
+            executor.spin_once(timeout_sec=0)
+
+    simulate(program)
+
+
+@pytest.mark.parametrize("method", ["is_ready", "take_data", "get_num_entities", "add_to_wait_set"])
+def test_a_waitable_must_say_everything_itself(method: str) -> None:
+    def program(simulation: Simulation) -> None:
+        waitable: Waitable[None] = Waitable(ReentrantCallbackGroup())
+        arguments = [ProgramWaitSet(NumberOfEntities())] if method in {"is_ready", "add_to_wait_set"} else []
+        with pytest.raises(NotImplementedError, match="Must be implemented by subclass"):
+            getattr(waitable, method)(*arguments)
+
+    simulate(program)
+
+
+def test_a_node_without_waitables_is_not_asked() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        flag = Flag(node.default_callback_group, [])
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        assert not executor._asks_waitables
+        asks = []
+        changes = (node.add_waitable, node.remove_waitable, node.add_waitable)
+        for change in changes:
+            change(flag)
+            asks.append(executor._asks_waitables)
+        executor.remove_node(node)
+        assert [*asks, executor._asks_waitables] == [True, False, True, False]
+
+    simulate(program)

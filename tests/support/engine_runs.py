@@ -10,7 +10,7 @@ import msgspec
 from cbtui.lesson_setup import setup_for
 from cbtui.session import Session
 from lessons.catalogue import find
-from sim.engine.setup import RunSetup, TimedCall
+from sim.engine.setup import ProgramSetup, RobotUse, RunSetup, TimedCall
 from sim.trace.events import AnyEvent, CallbackStarted, EntityAppeared, Logged, RunEnded
 from sim.trace.timeline import Timeline
 
@@ -91,9 +91,9 @@ def program_setup(path: Path, seconds: float, clock: str = "virtual", *, robot: 
     """The set-up of a run of a program file as fast as it goes."""
     return RunSetup(
         title=path.name,
-        node_path=str(path),
+        programs=(ProgramSetup(str(path)),),
         clock=clock,
         speed=None,
         until=round(seconds * SECOND),
-        robot=robot,
+        robot=RobotUse.ALWAYS if robot else RobotUse.NEVER,
     )

@@ -50,35 +50,41 @@ def test_every_field_is_explained() -> None:
 def test_golden_lines() -> None:
     about = '"node":"/sub_node","callback":"odom_callback","kind":"subscription","entity":"/odom","group":"A"'
     about += ',"group_type":"exclusive"'
-    assert b"".join(JsonLines().lines(FULL)).decode().splitlines()[len(CAST) :] == [
+    assert b"".join(JsonLines().lines(FULL)).decode().splitlines()[len(CAST) + 1 :] == [
         '{"t":1.5,"event":"publish","node":"robot","callback":"timer_callback","entity":"/odom","message_id":7}',
         f'{{"t":1.502,"event":"ready",{about},"depth":1,"message_id":7}}',
         f'{{"t":1.502,"event":"wait_start",{about},"reason":"group held","held_by":"timer_callback",'
         '"since":1.502,"workers_busy":true}',
         f'{{"t":1.502,"event":"message_drop",{about},"depth":10,"message_id":6}}',
         f'{{"t":2.0,"event":"wait_end",{about}}}',
-        f'{{"t":2.0,"event":"callback_start",{about},"thread":"MainThread","depth":0,"age":0.5,"message_id":7}}',
-        '{"t":2.0,"event":"log","node":"sub_node","callback":"odom_callback","thread":"MainThread",'
+        f'{{"t":2.0,"event":"callback_start",{about},"thread":"talker-1 MainThread",'
+        '"depth":0,"age":0.5,"message_id":7}',
+        '{"t":2.0,"event":"log","node":"sub_node","callback":"odom_callback","thread":"talker-1 MainThread",'
         '"message":"Odom CallBack","severity":"INFO"}',
-        f'{{"t":2.0,"event":"callback_suspend",{about},"thread":"MainThread"}}',
-        f'{{"t":2.1,"event":"callback_resume",{about},"thread":"MainThread"}}',
+        f'{{"t":2.0,"event":"callback_suspend",{about},"thread":"talker-1 MainThread"}}',
+        f'{{"t":2.1,"event":"callback_resume",{about},"thread":"talker-1 MainThread"}}',
         '{"t":2.1,"event":"service_call","callback":"odom_callback","entity":"/motor_power","call":1,'
         '"request":"SetBool_Request(data=True)"}',
-        '{"t":2.1,"event":"blocked","callback":"odom_callback","entity":"/motor_power","thread":"MainThread",'
-        '"call":1}',
+        '{"t":2.1,"event":"blocked","callback":"odom_callback","entity":"/motor_power",'
+        '"thread":"talker-1 MainThread","call":1}',
         '{"t":2.2,"event":"service_reply","entity":"/motor_power","call":1,'
         '"response":"SetBool_Response(success=True, message=\'\')"}',
-        '{"t":2.2,"event":"unblocked","thread":"MainThread","call":1}',
-        f'{{"t":2.25,"event":"callback_error",{about},"thread":"MainThread",'
+        '{"t":2.2,"event":"unblocked","thread":"talker-1 MainThread","call":1}',
+        f'{{"t":2.25,"event":"callback_error",{about},"thread":"talker-1 MainThread",'
         '"message":"IndexError: no beam 720","file":"node.py","line":60}',
-        f'{{"t":2.25,"event":"callback_end",{about},"thread":"MainThread"}}',
-        '{"t":2.3,"event":"print","message":"hello","error":true}',
+        f'{{"t":2.25,"event":"callback_end",{about},"thread":"talker-1 MainThread"}}',
+        '{"t":2.3,"event":"print","process":"talker-1","message":"hello","error":true}',
         '{"t":2.35,"event":"arena","walls":[[0.0,0.0,1.0,0.0]],"sphere":[0.9,0.0,0.2],"robot_radius":0.1}',
         '{"t":2.35,"event":"robot","x":0.5,"y":0.0,"yaw":-0.1,"front":null,"linear":0.08,"angular":0.0,'
         '"motors":true,"touching":false,"turned":-0.1,"travelled":0.5}',
         '{"t":2.35,"event":"scan","beams":4,"front":0.5,"message_id":8}',
         '{"t":2.4,"event":"cmd_vel","linear":0.08,"angular":-0.2}',
         '{"t":2.5,"event":"command","message":"/motor_power SetBool data=True"}',
+        '{"t":2.5,"event":"line","line":1,"message":"ros2 topic list"}',
+        '{"t":2.5,"event":"line_text","line":1,"message":"/odom","error":false}',
+        '{"t":2.5,"event":"line_end","line":1,"status":0}',
+        '{"t":2.5,"event":"completion","line":2,"start":5,"words":["list","pub"]}',
+        '{"t":2.5,"event":"process_end","process":"talker-1","reason":"the program returned","status":0}',
         '{"t":2.6,"event":"notice","message":"The robot touches the wall.","severity":"WARN"}',
         '{"t":2.7,"event":"lost","count":12}',
         f'{{"t":2.8,"event":"entity_gone",{about}}}',

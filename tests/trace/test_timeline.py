@@ -38,7 +38,9 @@ def test_an_empty_timeline_knows_nothing_and_says_so() -> None:
     assert (empty.published_at(1), empty.neighbour(5, None, 1), empty.neighbour(5, 1, -1)) == (None,) * 3
     assert not empty.group_members(1)
     assert not any((empty.threads, empty.executors, empty.nodes, empty.groups, empty.entities))
-    assert not any((empty.calls, empty.logs, empty.notices, empty.logs_until(5)))
+    assert not any(
+        (empty.calls, empty.logs, empty.shell, empty.completed, empty.notices, empty.logs_until(5))
+    )
     assert not any((empty.spans_on(1, ALWAYS), empty.spans_of(1, ALWAYS), empty.spans_in(1, ALWAYS)))
     assert not any((empty.waits_of(1, ALWAYS), empty.marks(ALWAYS), empty.trail(ALWAYS)))
 
@@ -59,6 +61,8 @@ def test_every_kind_of_event_is_understood() -> None:
     assert timeline.ended == FULL[-1]
     assert timeline.lost == 12
     assert [line.text for line in timeline.logs] == ["Odom CallBack", "hello"]
+    assert [type(each) for each in timeline.shell] == [ev.LineGiven, ev.LineSaid, ev.LineEnded]
+    assert timeline.completed == ev.LineCompleted(ns(2.5), 2, 5, ("list", "pub"))
     assert [notice.text for notice in timeline.notices] == ["The robot touches the wall."]
     robot = timeline.robot(ns(2.35))
     assert robot is not None
@@ -76,6 +80,7 @@ def test_marks_are_the_points_worth_a_sign() -> None:
         Mark(ns(2.2), "reply", "/motor_power SetBool_Response(success=True, message='')"),
         Mark(ns(2.25), "error", "odom_callback raised IndexError: no beam 720"),
         Mark(ns(2.5), "command", "/motor_power SetBool data=True"),
+        Mark(ns(2.5), "command", "ros2 topic list"),
         Mark(ns(2.6), "notice", "The robot touches the wall."),
     ]
     assert [mark.kind for mark in timeline.marks(Window(ns(2.2), ns(2.5)))] == ["reply", "error"]

@@ -1,4 +1,4 @@
-"""The base classes of all message and service classes."""
+"""The base classes of all message, service and action classes."""
 
 from __future__ import annotations
 
@@ -25,16 +25,24 @@ class Interface:
     """The classes of the messages in its fields."""
     handlings: Mapping[str, Handling]
     """What every field does with a value."""
+    fixed_names: frozenset[str]
+    """The names of its constants and of the default values it declares."""
     copy: Callable[[Any], Any]
     """Returns a message as a subscriber receives it."""
 
 
 class MessageType(type):
-    """The class of message classes; it tells type checkers of the constants that definitions bring."""
+    """The class of message classes, whose constants and default values cannot be set."""
 
     if TYPE_CHECKING:
-
+        # Constants are made at run time from definitions.
         def __getattr__(cls, name: str) -> Any: ...
+
+    def __setattr__(cls, name: str, value: object) -> None:
+        # Only these names are in capitals; a class under construction has no interface yet.
+        if name.isupper() and name in cls.__interface__.fixed_names:
+            raise AttributeError(f"property {name!r} of 'Metaclass_{cls.__name__}' object has no setter")
+        super().__setattr__(name, value)
 
 
 class Message(metaclass=MessageType):
@@ -68,8 +76,8 @@ class Message(metaclass=MessageType):
         return {name: str(of) for name, of in cls.__interface__.types.items()}
 
     def __repr__(self) -> str:
-        package = ".".join(type(self).__module__.split(".")[:-1])
-        values = (f"{name}={_shown(getattr(self, name))}" for name in self.__interface__.types)
+        package = type(self).__module__.rpartition(".")[0]
+        values = [f"{name}={_shown(getattr(self, name))}" for name in self.__interface__.types]
         return f"{package}.{type(self).__name__}({', '.join(values)})"
 
     def __eq__(self, other: object) -> bool:
@@ -97,9 +105,42 @@ class ServiceType(type):
     Response: type[Message]
     __type_name__: str
 
+    @property
+    def Event(cls) -> type[Message]:
+        """The message that tells of one step of a call."""
+        from sim.ros.interfaces.known import message_of_type
+
+        return message_of_type(f"{cls.__type_name__}_Event")
+
     def __call__(cls, *args: object, **values: object) -> NoReturn:
         """Raise `NotImplementedError`, as rosidl's service classes do."""
         raise NotImplementedError("Service classes can not be instantiated")
+
+
+class ActionType(type):
+    """The class of action classes such as ``example_interfaces.action.Fibonacci``, never instantiated."""
+
+    Goal: type[Message]
+    Result: type[Message]
+    Feedback: type[Message]
+    Impl: type[ActionImpl]
+    __type_name__: str
+
+    def __call__(cls, *args: object, **values: object) -> NoReturn:
+        """Raise `NotImplementedError`, as rosidl's action classes do."""
+        raise NotImplementedError("Action classes can not be instantiated")
+
+
+class ActionImpl:
+    """The services and messages that carry an action's goals, results and feedback."""
+
+    SendGoalService: ClassVar[ServiceType]
+    GetResultService: ClassVar[ServiceType]
+    FeedbackMessage: ClassVar[type[Message]]
+    CancelGoalService: ClassVar[ServiceType]
+    """Of every action: ``action_msgs/srv/CancelGoal``."""
+    GoalStatusMessage: ClassVar[type[Message]]
+    """Of every action: ``action_msgs/msg/GoalStatusArray``."""
 
 
 def copy_message(message: MessageT) -> MessageT:
@@ -119,7 +160,7 @@ def assemble(cls: type[MessageT], values: Mapping[str, Any]) -> MessageT:
     return message
 
 
-def type_name(cls: type[Message] | ServiceType) -> str:
+def type_name(cls: type[Message] | ServiceType | ActionType) -> str:
     """Return the full name of a class: ``std_msgs/msg/Int32``, ``std_srvs/srv/SetBool``."""
     return cls.__type_name__
 

@@ -18,12 +18,12 @@ from sim.ros.interfaces.field_types import (
     UnboundedSequence,
     element_type,
 )
-from sim.ros.interfaces.interface_definition import Definition
+from sim.ros.interfaces.interface_definition import Definition, DefinitionError, UnknownInterfaceError
 from sim.ros.interfaces.literals import constant_values, default_value
 from sim.ros.interfaces.sequences import Handling, handling_of
 
 FindMessage = Callable[[NamespacedType], type[Message]]
-"""Returns the class of a message that another one contains."""
+"""Returns the class of a message that another one contains; `UnknownInterfaceError` if it cannot."""
 
 _Puts = Mapping[str, Callable[[Any, Any], None]]
 """Stores a value in a message's slot, unchecked, by field name."""
@@ -33,11 +33,10 @@ def build_class(definition: Definition, find_message: FindMessage) -> type[Messa
     """Return a new class for a definition.
 
     Raises:
-        DefinitionError: a constant or default value does not fit its type.
+        DefinitionError: a constant or default value does not fit its type, or a field's type is unknown.
     """
     types = definition.field_types()
-    elements = map(element_type, types.values())
-    parts = {of: find_message(of) for of in elements if isinstance(of, NamespacedType)}
+    parts = _parts(definition, types, find_message)
     handlings = {
         name: _with_declared_default(definition, name, of, _handling(name, of, parts))
         for name, of in types.items()
@@ -49,15 +48,33 @@ def build_class(definition: Definition, find_message: FindMessage) -> type[Messa
     init = _initialiser(handlings, puts)
     init.__qualname__ = f"{cls.__name__}.__init__"
     cls.__init__ = init  # type: ignore[method-assign]
-    cls.__interface__ = Interface(definition, types, parts, handlings, _copier(cls, handlings, puts))
+    fixed_names = frozenset(
+        (*(constant for constant, _, _ in definition.constants), *map(_default_name, definition.defaults))
+    )
+    copier = _copier(cls, handlings, puts)
+    cls.__interface__ = Interface(definition, types, parts, handlings, fixed_names, copier)
     return cls
+
+
+def _parts(
+    definition: Definition, types: Mapping[str, FieldType], find_message: FindMessage
+) -> dict[NamespacedType, type[Message]]:
+    parts: dict[NamespacedType, type[Message]] = {}
+    for name, of in types.items():
+        inner = element_type(of)
+        if isinstance(inner, NamespacedType):
+            try:
+                parts[inner] = find_message(inner)
+            except UnknownInterfaceError as error:
+                raise DefinitionError(f"{definition.place(name)}: the field {name!r}: {error}") from None
+    return parts
 
 
 def _bare_class(
     definition: Definition, types: Mapping[str, FieldType], handlings: Mapping[str, Handling]
 ) -> type[Message]:
     """Return the class with slots and constants, without behaviour of its fields."""
-    defaults = {f"{name.upper()}__DEFAULT": handlings[name].make() for name in definition.defaults}
+    defaults = {_default_name(name): handlings[name].make() for name in definition.defaults}
     return type(
         definition.name,
         (Message,),
@@ -71,6 +88,11 @@ def _bare_class(
             **defaults,
         },
     )
+
+
+def _default_name(field: str) -> str:
+    """Return the name of the class attribute with a field's declared default value."""
+    return f"{field.upper()}__DEFAULT"
 
 
 def _setter(put: Callable[[Any, Any], None], handling: Handling) -> Callable[[Any, Any], None]:

@@ -1,11 +1,10 @@
-"""Messages as bytes on the wire (CDR) and definitions as text, both through rosbags' typestore."""
+"""Messages as bytes on the wire (CDR), through rosbags' typestore."""
 
 from __future__ import annotations
 
 from array import array
 from collections.abc import Callable, Sequence
 from functools import cache
-from threading import RLock
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
@@ -24,26 +23,27 @@ from sim.ros.interfaces.field_types import (
     UnboundedSequence,
     UnboundedWString,
 )
-from sim.ros.interfaces.jazzy import FILLER_FIELD
+from sim.ros.interfaces.interface_definition import FILLER_FIELD
 from sim.ros.interfaces.sequences import typecode
 
 if TYPE_CHECKING:
-    from rosbags.interfaces.typing import Fielddefs
+    from rosbags.interfaces.typing import Fielddefs, FieldDesc
     from rosbags.typesys.store import Typestore
 
 MessageT = TypeVar("MessageT", bound=Message)
 
-_lock = RLock()
+_WIDE_TEXT = "sim/msg/WideText"
+"""How rosbags is told of a wide string: as a message that holds its units."""
 
 
 def to_cdr(message: Message) -> bytes:
     """Return a message as little-endian CDR with its four bytes of header. Thread-safe.
 
-    Raises:
-        NotImplementedError: the message contains wide strings, which rosbags does not encode.
+    Wide strings become their number of UTF-16 units and these units in four bytes each, as in
+    rosidl_typesupport_fastrtps.
     """
-    name = message.__type_name__
-    return bytes(_store_with(type(message)).serialize_cdr(_outward(message), name, little_endian=True))
+    store = _wire(_message_class(message))
+    return bytes(store.serialize_cdr(_outward(message), message.__type_name__, little_endian=True))
 
 
 def from_cdr(cls: type[MessageT], data: bytes) -> MessageT:
@@ -51,42 +51,56 @@ def from_cdr(cls: type[MessageT], data: bytes) -> MessageT:
 
     Raises:
         ValueError: the bytes are no such message.
-        NotImplementedError: the message contains wide strings, which rosbags does not decode.
     """
     from rosbags.serde import SerdeError
 
     name = cls.__type_name__
     try:
-        return cast("MessageT", _store_with(cls).deserialize_cdr(data, name))
-    except SerdeError as error:
+        return cast("MessageT", _wire(cls).deserialize_cdr(data, name))
+    except (SerdeError, UnicodeDecodeError) as error:
         raise ValueError(f"these {len(data)} bytes hold no {name}: {error}") from None
 
 
-def definition(cls: type[Message]) -> str:
-    """Return a message's definition with all it contains, in the ``ros2msg`` form of MCAP schemas."""
-    text, _ = _store_with(cls).generate_msgdef(cls.__type_name__, ros_version=2)
-    return text
-
-
 @cache
-def _store() -> Typestore:
+def _wire(cls: type[Message]) -> Typestore:
+    """Return a typestore of a class and all that it contains.
+
+    Every class has its own, because two classes may have one name: an interface and what replaced it.
+    """
     from rosbags.typesys.store import Typestore
 
-    return Typestore()
-
-
-def _store_with(cls: type[Message]) -> Typestore:
-    """Return the typestore after giving it a class and all that it contains."""
-    store, interface = _store(), cls.__interface__
-    name = cls.__type_name__
-    if name not in store.fielddefs:
-        with _lock:
-            for part in interface.parts.values():
-                _store_with(part)
-            store.types[name] = cast("Any", lambda *values: _inward(cls, values))
-            filler: Fielddefs = [(FILLER_FIELD, (Nodetype.BASE, ("uint8", 0)))]
-            store.fielddefs[name] = (interface.definition.constants, interface.definition.fields or filler)
+    store = Typestore()
+    store.types[_WIDE_TEXT] = cast("Any", lambda units: units)
+    store.fielddefs[_WIDE_TEXT] = ([], [("units", (Nodetype.SEQUENCE, ((Nodetype.BASE, ("uint32", 0)), 0)))])
+    _register(store, cls)
     return store
+
+
+def _register(store: Typestore, cls: type[Message]) -> None:
+    interface = cls.__interface__
+    if cls.__type_name__ in store.fielddefs:
+        return
+    store.types[cls.__type_name__] = cast("Any", lambda *values: _inward(cls, values))
+    own: Fielddefs = [(name, _on_wire(of)) for name, of in interface.definition.fields]
+    filler: Fielddefs = [(FILLER_FIELD, (Nodetype.BASE, ("uint8", 0)))]
+    store.fielddefs[cls.__type_name__] = (interface.definition.constants, own or filler)
+    for part in interface.parts.values():
+        _register(store, part)
+
+
+def _on_wire(of: FieldDesc) -> FieldDesc:
+    """Return the type to give rosbags, which knows no wide strings."""
+    if of[0] == Nodetype.BASE:
+        return (Nodetype.NAME, _WIDE_TEXT) if of[1][0] == "wstring" else of
+    if of[0] == Nodetype.NAME:
+        return of
+    inner, size = of[1]
+    return cast("FieldDesc", (of[0], (_on_wire(cast("FieldDesc", inner)), size)))
+
+
+def _message_class(message: Message) -> type[Message]:
+    """Return the class made from the definition; the message may be of a subclass."""
+    return next(cls for cls in type(message).__mro__ if "__interface__" in vars(cls))
 
 
 @frozen
@@ -120,7 +134,7 @@ def _coding(of: FieldType) -> _Coding:
     if isinstance(of, Array | BoundedSequence | UnboundedSequence):
         return _sequence_coding(of)
     if isinstance(of, UnboundedWString | BoundedWString):
-        raise NotImplementedError(f"rosbags does not encode wide strings ({of})")
+        return _Coding(_wide_outward, _wide_inward)
     if isinstance(of, NamespacedType):
         return _Coding(_outward, _unchanged)
     if of == BasicType("octet"):
@@ -141,7 +155,19 @@ def _sequence_coding(of: Array | BoundedSequence | UnboundedSequence) -> _Coding
             lambda values: [_octet(value) for value in values.tolist()],
         )
     element = _coding(of.value_type)
-    return _Coding(lambda values: [element.outward(value) for value in values], _unchanged)
+    return _Coding(
+        lambda values: [element.outward(value) for value in values],
+        lambda values: [element.inward(value) for value in values],
+    )
+
+
+def _wide_outward(text: str) -> SimpleNamespace:
+    units = np.frombuffer(text.encode("utf-16-le", "surrogatepass"), "<u2")
+    return SimpleNamespace(units=units.astype(np.uint32))
+
+
+def _wide_inward(units: np.ndarray[Any, Any]) -> str:
+    return units.astype("<u2").tobytes().decode("utf-16-le", "surrogatepass")
 
 
 def _unchanged(value: Any) -> Any:

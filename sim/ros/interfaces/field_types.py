@@ -20,8 +20,46 @@ FLOAT_LIMITS: Final = {"float": 3.402823466e38, "double": 1.7976931348623157e308
 """Largest finite magnitude of every floating point type, in the digits rosidl uses."""
 
 
+class AbstractType:
+    """Any type."""
+
+
+class AbstractNestableType(AbstractType):
+    """The type of a single value, which a sequence may have several of."""
+
+
+class AbstractGenericString(AbstractNestableType):
+    """A text."""
+
+    def has_maximum_size(self) -> bool:
+        """Whether its length is bounded."""
+        return hasattr(self, "maximum_size")
+
+
+class AbstractString(AbstractGenericString):
+    """A text of 8-bit units."""
+
+
+class AbstractWString(AbstractGenericString):
+    """A text of 16-bit units."""
+
+
+class AbstractNestedType(AbstractType):
+    """Several values of one type."""
+
+    value_type: ElementType
+
+    def has_maximum_size(self) -> bool:
+        """Whether the number of values is bounded."""
+        return hasattr(self, "maximum_size") or hasattr(self, "size")
+
+
+class AbstractSequence(AbstractNestedType):
+    """Any number of values, perhaps up to a bound."""
+
+
 @frozen
-class BasicType:
+class BasicType(AbstractNestableType):
     """A number, a truth value (``boolean``) or one raw byte (``octet``)."""
 
     typename: str
@@ -31,7 +69,7 @@ class BasicType:
 
 
 @frozen
-class NamespacedType:
+class NamespacedType(AbstractNestableType):
     """Another message: ``NamespacedType(("geometry_msgs", "msg"), "Point")``."""
 
     namespaces: tuple[str, ...]
@@ -46,7 +84,7 @@ class NamespacedType:
 
 
 @frozen
-class UnboundedString:
+class UnboundedString(AbstractString):
     """Text of any length."""
 
     def __str__(self) -> str:
@@ -54,7 +92,7 @@ class UnboundedString:
 
 
 @frozen
-class BoundedString:
+class BoundedString(AbstractString):
     """Text of at most ``maximum_size`` characters."""
 
     maximum_size: int
@@ -64,7 +102,7 @@ class BoundedString:
 
 
 @frozen
-class UnboundedWString:
+class UnboundedWString(AbstractWString):
     """Wide (UTF-16) text of any length."""
 
     def __str__(self) -> str:
@@ -72,7 +110,7 @@ class UnboundedWString:
 
 
 @frozen
-class BoundedWString:
+class BoundedWString(AbstractWString):
     """Wide (UTF-16) text of at most ``maximum_size`` characters."""
 
     maximum_size: int
@@ -86,7 +124,7 @@ ElementType: TypeAlias = BasicType | NamespacedType | StringType
 
 
 @frozen
-class Array:
+class Array(AbstractNestedType):
     """Exactly ``size`` values."""
 
     value_type: ElementType
@@ -97,7 +135,7 @@ class Array:
 
 
 @frozen
-class BoundedSequence:
+class BoundedSequence(AbstractSequence):
     """At most ``maximum_size`` values."""
 
     value_type: ElementType
@@ -108,7 +146,7 @@ class BoundedSequence:
 
 
 @frozen
-class UnboundedSequence:
+class UnboundedSequence(AbstractSequence):
     """Any number of values."""
 
     value_type: ElementType

@@ -9,7 +9,7 @@ from types import ModuleType
 from typing import TYPE_CHECKING, cast
 
 from sim.ros.interfaces.interface_definition import Kind, module_stem
-from sim.ros.interfaces.known import message, message_of_type, names, packages, service
+from sim.ros.interfaces.known import action, message, message_of_type, names, packages, service
 
 if TYPE_CHECKING:
     # At run time this module alone would cost as much as the rest of the package.
@@ -18,13 +18,28 @@ if TYPE_CHECKING:
 _Makers = Mapping[str, Callable[[], object]]
 """What builds each class of a module, by the class's name."""
 
+_BUILDERS: Mapping[Kind, Callable[[str, str], object]] = {"msg": message, "srv": service, "action": action}
+
+_SERVICE_PARTS = ("Request", "Response", "Event")
+_ACTION_PARTS = (
+    *("Goal", "Result", "Feedback", "FeedbackMessage"),
+    *(f"{service}_{part}" for service in ("SendGoal", "GetResult") for part in _SERVICE_PARTS),
+)
+
 
 class InterfaceFinder:
-    """A finder for ``sys.meta_path`` of the modules of all interface packages; the caller installs it.
+    """A finder for ``sys.meta_path`` of the modules of all interface packages.
+
+    The caller installs it, before Python's own finders: to these, a folder ``my_interfaces/msg``
+    beside the file that is run would be a package without content.
 
     It knows ``std_msgs``, ``std_msgs.msg`` and, as rosidl has a module for each interface,
     ``std_msgs.msg._int32``, which is what a pickled class refers to.
     """
+
+    def __init__(self) -> None:
+        # What is known is read before the first import asks here, as reading it imports modules too.
+        packages()
 
     def find_spec(
         self, fullname: str, _path: Sequence[str] | None = None, _target: ModuleType | None = None
@@ -66,7 +81,7 @@ class InterfaceModule(ModuleType):
 def interface_module(name: str) -> ModuleType:
     """Return a new module object for ``std_msgs``, ``std_msgs.msg`` or ``std_msgs.msg._int32``.
 
-    A package's module is empty until its ``msg`` or ``srv`` is imported, as in ROS 2. The classes
+    A package's module is empty until its ``msg``, ``srv`` or ``action`` is imported, as in ROS 2. The classes
     in the other two kinds of modules are built when first used; ``dir()`` lists them before that.
 
     Raises:
@@ -79,7 +94,7 @@ def interface_module(name: str) -> ModuleType:
         return ModuleType(name, f"Interfaces of {package}.")
     kind = cast("Kind", inside[0])
     if len(inside) == 1:
-        build = message if kind == "msg" else service
+        build = _BUILDERS[kind]
         makers: _Makers = {found: partial(build, package, found) for found in names(package, kind)}
         return InterfaceModule(name, f"The {kind} interfaces of {package}.", makers)
     owner = _owner(package, kind, inside[1])
@@ -94,7 +109,7 @@ def _is_interface_module(name: str) -> bool:
         return False
     if not inside:
         return True
-    if inside[0] not in ("msg", "srv"):
+    if inside[0] not in _BUILDERS:
         return False
     kind = cast("Kind", inside[0])
     return bool(names(package, kind) if len(inside) == 1 else _owner(package, kind, inside[1]))
@@ -108,8 +123,15 @@ def _owner(package: str, kind: Kind, stem: str) -> str:
 def _makers_of(package: str, kind: Kind, owner: str) -> _Makers:
     if kind == "msg":
         return {owner: partial(message, package, owner)}
-    halves = (f"{owner}_Request", f"{owner}_Response")
+    parts = _SERVICE_PARTS if kind == "srv" else _ACTION_PARTS
+    makers: dict[str, Callable[[], object]] = {
+        f"{owner}_{part}": partial(message_of_type, f"{package}/{kind}/{owner}_{part}") for part in parts
+    }
+    if kind == "srv":
+        return {owner: partial(service, package, owner), **makers}
     return {
-        owner: partial(service, package, owner),
-        **{half: partial(message_of_type, f"{package}/srv/{half}") for half in halves},
+        owner: partial(action, package, owner),
+        f"{owner}_SendGoal": lambda: action(package, owner).Impl.SendGoalService,
+        f"{owner}_GetResult": lambda: action(package, owner).Impl.GetResultService,
+        **makers,
     }

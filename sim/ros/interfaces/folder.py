@@ -1,149 +1,142 @@
-"""Reading ``.msg`` and ``.srv`` files from a folder of interface packages."""
+"""Reading ``.msg``, ``.srv`` and ``.action`` files from a folder of interface packages."""
 
 from __future__ import annotations
 
-import keyword
 import re
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
-
-from rosbags.typesys import TypesysError
-from rosbags.typesys.base import BASE_NAMES, BaseType, Cardinality, Field, NamedType, Type, create_field_desc
-from rosbags.typesys.msg import MSGParser
-from rosbags.typesys.peg import Failure, Success
+from typing import NamedTuple
 
 from sim.ros.interfaces.interface_definition import Definition, DefinitionError, Kind
+from sim.ros.interfaces.notation import parse, require_interface_name, require_package_name
 
-if TYPE_CHECKING:
-    from rosbags.typesys.peg import Result
+_KINDS: tuple[Kind, ...] = ("msg", "srv", "action")
+_PARTS: Mapping[Kind, tuple[str, ...]] = {
+    "srv": ("Request", "Response"),
+    "action": ("Goal", "Result", "Feedback"),
+}
+_DIVISIONS: Mapping[Kind, str] = {
+    "srv": "a service needs one line '---' between request and response",
+    "action": "an action needs two lines '---', between goal and result and between result and feedback",
+}
+_MANIFEST_NAME = re.compile(r"<name>\s*([^<\s]+)\s*</name>")
 
-_NAME = re.compile(r"[A-Z][A-Za-z0-9]*")
-_FIELD_NAME = re.compile(r"[a-z](_?[a-z0-9]+)*")
-_PACKAGE_NAME = _FIELD_NAME
-_TYPE_NAME = re.compile(r"\w+/msg/\w+")
+
+class _File(NamedTuple):
+    """A file, and what tells that it changed."""
+
+    path: Path
+    modified: int
+    size: int
 
 
 class DefinitionFolder:
-    """Source that reads ``<folder>/<package>/msg/<Name>.msg`` and ``<folder>/<package>/srv/<Name>.srv``.
+    """Source of the definitions in one interface package, or in packages that lie side by side.
 
-    The files are listed once, when it is made, and read when asked for.
+    A package holds ``msg/<Name>.msg``, ``srv/<Name>.srv`` or ``action/<Name>.action``; its name is
+    the one in its ``package.xml``, or the folder's if it has none. The files are listed once, when
+    this is made, and read when asked for.
 
     Raises:
-        DefinitionError: the folder does not exist, or a package or file name is not one ROS 2 takes.
+        DefinitionError: the folder does not exist.
     """
 
     def __init__(self, folder: Path) -> None:
         if not folder.is_dir():
             raise DefinitionError(f"{folder}: there is no such folder to read interfaces from")
         self.folder = folder
-        self._files: dict[tuple[str, str], dict[str, Path]] = {}
-        for kind in ("msg", "srv"):
-            for path in sorted(folder.glob(f"*/{kind}/*.{kind}")):
-                package = path.parent.parent.name
-                _require_names(path, package)
-                self._files.setdefault((package, kind), {})[path.stem] = path
+        self._files: dict[tuple[str, str], dict[str, _File]] = {}
+        for package_folder in [folder] if is_package(folder) else sorted(folder.iterdir()):
+            for kind, path in _definition_files(package_folder):
+                status = path.stat()
+                files = self._files.setdefault((_package_name(package_folder), kind), {})
+                files[path.stem] = _File(path, status.st_mtime_ns, status.st_size)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the other one found the same files, unchanged since."""
+        return isinstance(other, DefinitionFolder) and self._files == other._files
+
+    __hash__ = None  # type: ignore[assignment]
 
     def packages(self) -> frozenset[str]:
         """Return the packages that hold at least one definition."""
         return frozenset(package for package, _ in self._files)
 
     def names(self, package: str, kind: Kind) -> tuple[str, ...]:
-        """Return the sorted names of a package's messages or services."""
+        """Return the sorted names of a package's interfaces of one kind."""
         return tuple(self._files.get((package, kind), ()))
 
     def message(self, package: str, name: str) -> Definition:
         """Read a ``.msg`` file."""
-        path = self._files[package, "msg"][name]
-        return parse(path.read_text(encoding="utf-8"), package, "msg", name, origin=str(path))
+        path = self._files[package, "msg"][name].path
+        return parse(self.text(package, "msg", name), package, "msg", name, origin=str(path))
 
     def service(self, package: str, name: str) -> tuple[Definition, Definition]:
         """Read a ``.srv`` file."""
-        path = self._files[package, "srv"][name]
-        lines = path.read_text(encoding="utf-8").splitlines()
+        request, response = self._parts(package, "srv", name)
+        return request, response
+
+    def action(self, package: str, name: str) -> tuple[Definition, Definition, Definition]:
+        """Read an ``.action`` file."""
+        goal, result, feedback = self._parts(package, "action", name)
+        return goal, result, feedback
+
+    def text(self, package: str, kind: Kind, name: str) -> str:
+        """Return what the file says, word for word.
+
+        Raises:
+            DefinitionError: the file is not UTF-8 text or cannot be read, or the name of the
+                package or interface is not one ROS 2 takes.
+        """
+        path = self._files[package, kind][name].path
+        require_package_name(package, str(path))
+        require_interface_name(name, str(path))
+        try:
+            content = path.read_bytes()
+        except OSError as error:
+            raise DefinitionError(f"{path}: cannot be read: {error.strerror}") from None
+        try:
+            return content.decode("utf-8-sig")
+        except UnicodeDecodeError as error:
+            line = content.count(b"\n", 0, error.start) + 1
+            raise DefinitionError(
+                f"{path}:{line}: the byte 0x{content[error.start]:02x} is not UTF-8; save the file as UTF-8"
+            ) from None
+
+    def _parts(self, package: str, kind: Kind, name: str) -> list[Definition]:
+        """Read the parts of a service or an action, which lines of ``---`` divide."""
+        path = self._files[package, kind][name].path
+        lines = self.text(package, kind, name).splitlines()
         divisions = [index for index, line in enumerate(lines) if line.strip() == "---"]
-        if len(divisions) != 1:
-            raise DefinitionError(
-                f"{path}: a service needs one line '---' between request and response, not {len(divisions)}"
-            )
-        (division,) = divisions
-        # Blank lines in place of the request keep the response's line numbers true in errors.
-        request, response = lines[:division], [""] * (division + 1) + lines[division + 1 :]
-        return (
-            parse("\n".join(request), package, "srv", f"{name}_Request", origin=str(path)),
-            parse("\n".join(response), package, "srv", f"{name}_Response", origin=str(path)),
-        )
+        if len(divisions) != len(_PARTS[kind]) - 1:
+            raise DefinitionError(f"{path}: {_DIVISIONS[kind]}, not {len(divisions)}")
+        starts = [0, *(division + 1 for division in divisions)]
+        # Blank lines in place of the parts before keep the line numbers true in errors.
+        texts = [
+            "\n".join([""] * start + lines[start:end])
+            for start, end in zip(starts, [*divisions, len(lines)], strict=True)
+        ]
+        return [
+            parse(text, package, kind, f"{name}_{part}", origin=str(path))
+            for part, text in zip(_PARTS[kind], texts, strict=True)
+        ]
 
 
-def parse(text: str, package: str, kind: Kind, name: str, *, origin: str) -> Definition:
-    """Read one structure in the ``.msg`` notation.
+def is_package(folder: Path) -> bool:
+    """Whether a folder itself holds definition files in ``msg``, ``srv`` or ``action``."""
+    return any(True for _ in _definition_files(folder))
 
-    Types without a package are messages of the same package, in a service too. ``origin`` names
-    the text in errors.
 
-    Raises:
-        DefinitionError: a line is not in the notation, or a field name is unusable or given twice.
-    """
+def _definition_files(package_folder: Path) -> Iterator[tuple[Kind, Path]]:
+    for kind in _KINDS:
+        for path in sorted((package_folder / kind).glob(f"*.{kind}")):
+            yield kind, path
+
+
+def _package_name(folder: Path) -> str:
     try:
-        (parsed,) = _Parser(f"MSG: {package}/msg/{name}\n{text}\n").specification()
-    except TypesysError:
-        raise DefinitionError(_first_bad_line(text, origin)) from None
-    _require_fields(parsed.fields, origin)
-    return Definition(
-        package,
-        kind,
-        name,
-        [(constant.name, constant.typ.value, constant.value) for constant in parsed.constants],
-        [(entry.name, create_field_desc(entry.typ)) for entry in parsed.fields],
-        {entry.name: entry.value for entry in parsed.fields if entry.value is not None},
-    )
-
-
-class _Parser(MSGParser):
-    """rosbags' parser of the ``.msg`` notation, with ``wstring``."""
-
-    def base_type(self, pos: int) -> Result[Type]:
-        found = self.regex(pos, r"wstring\b(?!<=)")
-        if isinstance(found, Failure):
-            return super().base_type(pos)
-        return Success(found.pos, Type(BaseType(BASE_NAMES["wstring"]), Cardinality.SCALAR, 0, 0))
-
-    def bounded_string(self, pos: int) -> Result[Type]:
-        found = self.regex(pos, r"wstring<=[0-9]+")
-        if isinstance(found, Failure):
-            return super().bounded_string(pos)
-        bound = int(found.value.removeprefix("wstring<="))
-        return Success(found.pos, Type(BaseType(BASE_NAMES["wstring"]), Cardinality.SCALAR, bound, 0))
-
-
-def _first_bad_line(text: str, origin: str) -> str:
-    for number, line in enumerate(text.splitlines(), start=1):
-        if isinstance(_Parser(line).line(0), Failure):
-            return f"{origin}:{number}: {line.strip()!r} is neither a field, a constant nor a comment"
-    return f"{origin}: not in the .msg notation"
-
-
-def _require_names(path: Path, package: str) -> None:
-    if not _PACKAGE_NAME.fullmatch(package):
-        raise DefinitionError(f"{path}: the package name {package!r} must be lower case words joined by '_'")
-    if not _NAME.fullmatch(path.stem):
-        raise DefinitionError(
-            f"{path}: the name {path.stem!r} must be letters and digits, the first a capital"
-        )
-
-
-def _require_fields(fields: list[Field], origin: str) -> None:
-    seen: set[str] = set()
-    for entry in fields:
-        if not _FIELD_NAME.fullmatch(entry.name):
-            raise DefinitionError(
-                f"{origin}: the field name {entry.name!r} must be lower case words joined by '_'"
-            )
-        if keyword.iskeyword(entry.name):
-            raise DefinitionError(f"{origin}: the field name {entry.name!r} is a keyword of Python")
-        if entry.name in seen:
-            raise DefinitionError(f"{origin}: the field {entry.name!r} is defined twice")
-        if isinstance(entry.typ.ref, NamedType) and not _TYPE_NAME.fullmatch(entry.typ.ref.name):
-            raise DefinitionError(
-                f"{origin}: the type of {entry.name!r}, {entry.typ.ref.name}, is not of the form package/Name"
-            )
-        seen.add(entry.name)
+        manifest = (folder / "package.xml").read_text(encoding="utf-8", errors="replace")
+    except OSError:
+        return folder.resolve().name
+    found = _MANIFEST_NAME.search(manifest)
+    return found[1] if found else folder.resolve().name

@@ -1,4 +1,4 @@
-"""What a ``.msg`` file, or one half of a ``.srv`` file, says: constants, fields and default values."""
+"""What a ``.msg`` file, or a part of a ``.srv`` or ``.action`` file, says: constants, fields, defaults."""
 
 from __future__ import annotations
 
@@ -26,18 +26,29 @@ from sim.ros.interfaces.field_types import (
 if TYPE_CHECKING:
     from rosbags.interfaces.typing import BaseDesc, Constdefs, Fielddefs, FieldDesc, NameDesc
 
-Kind: TypeAlias = Literal["msg", "srv"]
+Kind: TypeAlias = Literal["msg", "srv", "action"]
 
 _IDL_NAMES = {"bool": "boolean", "byte": "octet", "char": "uint8", "float32": "float", "float64": "double"}
 
 
-class DefinitionError(ValueError):
-    """A ``.msg`` or ``.srv`` text cannot be used; the message names file, line and reason."""
+FILLER_FIELD = "structure_needs_at_least_one_member"
+"""The field rosbags adds to a message without fields, as ROS 2's IDL does."""
+
+
+class DefinitionError(ImportError, ValueError):
+    """A ``.msg``, ``.srv`` or ``.action`` text cannot be used; the message names file, line and reason.
+
+    It is an `ImportError` too, because it is the import of the class that fails.
+    """
+
+
+class UnknownInterfaceError(LookupError):
+    """No package, message, service or action has this name; the text names the nearest one."""
 
 
 @frozen
 class Definition:
-    """One structure: a message, or the request or response of a service.
+    """One structure: a message, or a part of a service or an action.
 
     Constants and fields are kept in rosbags' notation, so that its typestore can be given them as
     they are. A structure without fields has none here (rosbags gives it a filler byte).
@@ -50,6 +61,8 @@ class Definition:
     fields: Fielddefs
     defaults: Mapping[str, object] = field(factory=dict)
     """Declared default values by field name, as written; other fields start as zero, empty or false."""
+    places: Mapping[str, str] = field(factory=dict, repr=False)
+    """Where each constant and field was read, as ``file:line``, if it came from a file."""
 
     @property
     def type_name(self) -> str:
@@ -59,10 +72,12 @@ class Definition:
     @property
     def module_name(self) -> str:
         """The module in which rosidl puts the Python class, such as ``geometry_msgs.msg._twist``."""
-        owner = (
-            self.name.removesuffix("_Request").removesuffix("_Response") if self.kind == "srv" else self.name
-        )
+        owner = self.name if self.kind == "msg" else owner_of(self.name)
         return f"{self.package}.{self.kind}.{module_stem(owner)}"
+
+    def place(self, name: str) -> str:
+        """Return where a constant or field stands, for an error; without a file, the full name."""
+        return self.places.get(name, self.type_name)
 
     def field_types(self) -> dict[str, FieldType]:
         """Return the type of every field by name, in the order of definition."""
@@ -77,16 +92,29 @@ class Source(Protocol):
         ...
 
     def names(self, package: str, kind: Kind) -> tuple[str, ...]:
-        """Return the sorted names of a package's messages or services; empty for an unknown package."""
+        """Return the sorted names of a package's interfaces of one kind; empty for an unknown package."""
         ...
 
     def message(self, package: str, name: str) -> Definition:
         """Return a message listed by ``names``; `DefinitionError` if its text is wrong."""
         ...
 
+    def text(self, package: str, kind: Kind, name: str) -> str:
+        """Return the definition of an interface listed by ``names``, as its author wrote it."""
+        ...
+
     def service(self, package: str, name: str) -> tuple[Definition, Definition]:
         """Return request and response of a service listed by ``names``; `DefinitionError` as above."""
         ...
+
+    def action(self, package: str, name: str) -> tuple[Definition, Definition, Definition]:
+        """Return goal, result and feedback of an action listed by ``names``; errors as above."""
+        ...
+
+
+def owner_of(name: str) -> str:
+    """Return the service or action that a part belongs to: ``Fibonacci_SendGoal_Request`` → ``Fibonacci``."""
+    return name.partition("_")[0]
 
 
 def module_stem(name: str) -> str:

@@ -11,13 +11,11 @@ from pathlib import Path
 from types import ModuleType, SimpleNamespace
 from typing import TYPE_CHECKING, cast
 
-from sim.ros.interfaces.interface_definition import Definition, Kind
+from sim.ros.interfaces.definition_text import message_text
+from sim.ros.interfaces.interface_definition import FILLER_FIELD, Definition, Kind
 
 if TYPE_CHECKING:
     from rosbags.interfaces.typing import Typesdict
-
-FILLER_FIELD = "structure_needs_at_least_one_member"
-"""The field rosbags adds to a message without fields, as ROS 2's IDL does."""
 
 DEFAULTS: Mapping[str, Mapping[str, object]] = {
     "geometry_msgs/msg/Quaternion": {"x": 0.0, "y": 0.0, "z": 0.0, "w": 1.0},
@@ -27,7 +25,7 @@ DEFAULTS: Mapping[str, Mapping[str, object]] = {
 
 
 class JazzyMessages:
-    """Source of every message in rosbags' Jazzy typestore; it knows no services."""
+    """Source of every message in rosbags' Jazzy typestore; it knows no services and actions."""
 
     def __init__(self) -> None:
         names: dict[str, list[str]] = {}
@@ -41,7 +39,7 @@ class JazzyMessages:
         return frozenset(self._names)
 
     def names(self, package: str, kind: Kind) -> tuple[str, ...]:
-        """Return a package's message names; it has no services."""
+        """Return a package's message names; it has no services and actions."""
         return self._names.get(package, ()) if kind == "msg" else ()
 
     def message(self, package: str, name: str) -> Definition:
@@ -51,9 +49,17 @@ class JazzyMessages:
         own_fields = [entry for entry in fields if entry[0] != FILLER_FIELD]
         return Definition(package, "msg", name, constants, own_fields, DEFAULTS.get(type_name, {}))
 
+    def text(self, package: str, kind: Kind, name: str) -> str:
+        """Return a message's definition; rosbags keeps no comments."""
+        return message_text(self.message(package, name))
+
     def service(self, package: str, name: str) -> tuple[Definition, Definition]:
         """Raise `LookupError`: ``names`` lists no services."""
         raise LookupError(f"rosbags defines no services, so not {package}/srv/{name} either")
+
+    def action(self, package: str, name: str) -> tuple[Definition, Definition, Definition]:
+        """Raise `LookupError`: ``names`` lists no actions."""
+        raise LookupError(f"rosbags defines no actions, so not {package}/action/{name} either")
 
 
 @cache

@@ -6,15 +6,13 @@ import re
 from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
-from sim.ros.interfaces.base import Message, ServiceType, assemble
-from sim.ros.interfaces.interface_definition import Kind
-from sim.ros.interfaces.registry import Registry, UnknownInterfaceError
+from sim.ros.interfaces.base import ActionType, Message, ServiceType, assemble
+from sim.ros.interfaces.interface_definition import Kind, UnknownInterfaceError
+from sim.ros.interfaces.registry import Registry
 
-_FULL_NAME = re.compile(
-    r"(?P<package>\w+)/(msg/(?P<message>\w+)|srv/(?P<service>\w+)_(?P<half>Request|Response))"
-)
+_FULL_NAME = re.compile(r"(?P<package>\w+)/(?P<kind>msg(?=/[^/]+$)|(?:srv|action)(?=/[^/_]+_))/(?P<name>\w+)")
 
 
 def message(package: str, name: str) -> type[Message]:
@@ -43,13 +41,27 @@ def service(package: str, name: str) -> ServiceType:
     return _registry().service(package, name)
 
 
+def action(package: str, name: str) -> ActionType:
+    """Return an action class: ``action("example_interfaces", "Fibonacci")``.
+
+    It has the messages ``Goal``, ``Result`` and ``Feedback``, and in ``Impl`` the services and
+    messages that carry them. Calling the class itself raises `NotImplementedError`, as in rclpy.
+    Safe to call from several threads; every call returns the same class.
+
+    Raises:
+        UnknownInterfaceError: there is no such package or action; the text names the nearest.
+        DefinitionError: its ``.action`` file cannot be read.
+    """
+    return _registry().action(package, name)
+
+
 def packages() -> frozenset[str]:
     """Return the names of all interface packages."""
     return _registry().packages()
 
 
 def names(package: str, kind: Kind) -> tuple[str, ...]:
-    """Return the sorted names of a package's messages (``"msg"``) or services (``"srv"``).
+    """Return the sorted names of a package's messages (``"msg"``), services (``"srv"``) or actions.
 
     Raises:
         UnknownInterfaceError: there is no such package; the text names the nearest.
@@ -57,12 +69,27 @@ def names(package: str, kind: Kind) -> tuple[str, ...]:
     return _registry().names(package, kind)
 
 
-def add_definitions(folder: Path) -> None:
-    """Make the interfaces of a folder known: ``<folder>/<package>/msg/*.msg`` and ``…/srv/*.srv``.
+def text(package: str, kind: Kind, name: str) -> str:
+    """Return the definition of an interface as its author wrote it.
 
     Raises:
-        DefinitionError: the folder or a name in it is unusable, or an interface is already known.
-            What is wrong inside a file is told when its class is first asked for.
+        UnknownInterfaceError: there is no such package or interface; the text names the nearest.
+        DefinitionError: the file cannot be read.
+    """
+    return _registry().text(package, kind, name)
+
+
+def add_definitions(folder: Path) -> None:
+    """Make the interfaces of a folder known.
+
+    The folder is an interface package (it holds ``msg``, ``srv`` or ``action`` with definition
+    files), or holds such packages side by side. An interface that is already known by the same
+    name is replaced, as by a workspace that overlays another; other names of its package stay.
+    Classes handed out before stay as they are, so add folders before nodes are imported.
+
+    Raises:
+        DefinitionError: the folder does not exist. What is wrong with a file is told when its
+            class is first asked for.
     """
     from sim.ros.interfaces.folder import DefinitionFolder
 
@@ -70,7 +97,10 @@ def add_definitions(folder: Path) -> None:
 
 
 def message_of_type(type_name: str) -> type[Message]:
-    """Return a message class by full name; requests and responses are ``std_srvs/srv/SetBool_Request``.
+    """Return a message class by full name; a request is ``std_srvs/srv/SetBool_Request``.
+
+    The parts of an action are named as rosidl does: ``example_interfaces/action/Fibonacci_Goal``,
+    ``…_Result``, ``…_Feedback``, ``…_FeedbackMessage``, ``…_SendGoal_Request`` and so on.
 
     Raises:
         UnknownInterfaceError: the name has another form, or as `message` and `service`.
@@ -78,13 +108,11 @@ def message_of_type(type_name: str) -> type[Message]:
     form = _FULL_NAME.fullmatch(type_name)
     if form is None:
         raise UnknownInterfaceError(
-            f"{type_name!r} is not the full name of a message, request or response, "
+            f"{type_name!r} is not the full name of a message, request, response or event, "
             "such as std_msgs/msg/Int32 or std_srvs/srv/SetBool_Request"
         )
-    if form["message"]:
-        return message(form["package"], form["message"])
-    owner = service(form["package"], form["service"])
-    return owner.Request if form["half"] == "Request" else owner.Response
+    kind = cast("Kind", form["kind"])
+    return _registry().part(form["package"], kind, form["name"])
 
 
 def restore(type_name: str, values: Mapping[str, Any]) -> Message:

@@ -29,7 +29,7 @@ def constant_values(definition: Definition) -> dict[str, Any]:
     for name, typename, literal in definition.constants:
         of = field_type((Nodetype.BASE, (typename, 0)))
         assert not isinstance(of, NamespacedType | Array | BoundedSequence | UnboundedSequence)
-        values[name] = _fitted(definition, literal, of, check_of(name, plain_element(of)))
+        values[name] = _fitted(definition, name, literal, of, check_of(name, plain_element(of)))
     return values
 
 
@@ -39,17 +39,17 @@ def default_value(definition: Definition, field: str, of: FieldType, check: Chec
     Raises:
         DefinitionError: the default does not fit the field's type.
     """
-    return _fitted(definition, definition.defaults[field], of, check)
+    return _fitted(definition, field, definition.defaults[field], of, check)
 
 
-def _fitted(definition: Definition, literal: object, of: FieldType, check: Check) -> Any:
+def _fitted(definition: Definition, name: str, literal: object, of: FieldType, check: Check) -> Any:
     try:
         if not isinstance(of, Array | BoundedSequence | UnboundedSequence):
             return check(_converted(literal, of))
         items = literal if isinstance(literal, list) else [literal]
         return check([_converted(item, of.value_type) for item in items])
     except (AssertionError, ValueError, TypeError) as error:
-        raise DefinitionError(f"{definition.type_name}: {literal!r} cannot be used: {error}") from None
+        raise DefinitionError(f"{definition.place(name)}: {literal!r} cannot be used: {error}") from None
 
 
 def _converted(literal: Any, of: ElementType) -> Any:

@@ -65,7 +65,8 @@ def handling_of(field: str, of: SequenceType, element: Element) -> Handling:
             lambda values: [copy(value) for value in values],
         )
     if isinstance(of, Array):
-        size, dtype = of.size, np.dtype(code)
+        # By its name, because numpy has two types of 64-bit integers and shows them differently.
+        size, dtype = of.size, np.dtype(np.dtype(code).name)
         return Handling(
             _check_fixed(field, of, dtype, element),
             lambda: np.zeros(size, dtype),

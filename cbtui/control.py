@@ -1,0 +1,205 @@
+"""The way of ``ros2`` lines from other terminals into a run: a local socket, known by the process's number.
+
+The socket lies in the user's own runtime folder, which nobody else may enter. One connection carries one
+line: the client sends its words and perhaps an interruption, and gets what the line writes and how it ends.
+"""
+
+import os
+import socket
+import stat
+import tempfile
+import threading
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from multiprocessing.connection import Client, Connection
+from pathlib import Path
+from queue import SimpleQueue
+from typing import TypeAlias
+
+import msgspec
+
+from sim.engine.commands import Command, InterruptLine, RunLine
+from sim.trace.events import AnyEvent, LineEnded, LineId, LineSaid
+
+_FIRST_NUMBER = 1_000_000
+"""Lines from other terminals are numbered from here on: those of the run itself come before."""
+
+
+class Ask(msgspec.Struct, frozen=True, tag="ask"):
+    """Carry out a line."""
+
+    text: str
+
+
+class Interrupt(msgspec.Struct, frozen=True, tag="interrupt"):
+    """End the line as Ctrl-C would."""
+
+
+class Said(msgspec.Struct, frozen=True, tag="said"):
+    """What the line wrote."""
+
+    text: str
+    error: bool
+
+
+class Done(msgspec.Struct, frozen=True, tag="done"):
+    """The line's exit status; None: the run ended before it."""
+
+    status: int | None
+
+
+Question: TypeAlias = Ask | Interrupt
+Answer: TypeAlias = Said | Done
+
+_encode = msgspec.msgpack.Encoder().encode
+_decode_question: Callable[[bytes], Question] = msgspec.msgpack.Decoder(Question).decode
+_decode_answer: Callable[[bytes], Answer] = msgspec.msgpack.Decoder(Answer).decode
+
+
+def runtime_folder() -> Path:
+    """The folder of the sockets; made, for its owner only, if it is not there.
+
+    Raises:
+        OSError: it cannot be made, or somebody else could have put something into it.
+    """
+    above = os.environ.get("XDG_RUNTIME_DIR") or tempfile.gettempdir()
+    folder = Path(above) / f"cbtui-{os.getuid()}"
+    folder.mkdir(mode=0o700, exist_ok=True)
+    status = folder.lstat()
+    if not stat.S_ISDIR(status.st_mode) or status.st_uid != os.getuid() or status.st_mode & 0o077:
+        raise PermissionError(f"{folder} is open to others")
+    return folder
+
+
+class ControlServer:
+    """Takes lines for one run; thread-safe. ``send`` commands its engine, ``take`` is fed its events."""
+
+    def __init__(self, send: Callable[[Command], None]) -> None:
+        self._send = send
+        self._lock = threading.Lock()
+        self._next = _FIRST_NUMBER
+        self._answers: dict[LineId, SimpleQueue[Answer]] = {}
+        self._socket: socket.socket | None = None
+        self._path = Path()
+
+    def start(self) -> None:
+        """Begin to listen; where there can be no such socket, lines from elsewhere find no engine."""
+        with suppress(OSError):
+            self._path = runtime_folder() / f"{os.getpid()}.sock"
+            self._path.unlink(missing_ok=True)
+            listening = socket.socket(socket.AF_UNIX)
+            listening.bind(str(self._path))
+            listening.listen()
+            self._socket = listening
+            threading.Thread(target=self._accept, args=(listening,), name="control", daemon=True).start()
+
+    def take(self, events: Iterable[AnyEvent]) -> None:
+        """Hand what lines wrote to those who gave them."""
+        if not self._answers:
+            return
+        for event in events:
+            match event:
+                case LineSaid(line=line, text=text, error=error):
+                    self._answer(line, Said(text, error))
+                case LineEnded(line=line, status=status):
+                    self._answer(line, Done(status))
+
+    def stop(self) -> None:
+        """Listen no more and tell everybody that the run is over."""
+        if self._socket is not None:
+            listening, self._socket = self._socket, None
+            with suppress(OSError):
+                listening.shutdown(socket.SHUT_RDWR)  # wakes the thread that accepts
+            listening.close()
+            self._path.unlink(missing_ok=True)
+        for line in tuple(self._answers):
+            self._answer(line, Done(None))
+
+    def _answer(self, line: LineId, answer: Answer) -> None:
+        queue = self._answers.get(line)
+        if queue is not None:
+            queue.put(answer)
+
+    def _accept(self, listening: socket.socket) -> None:
+        while True:
+            try:
+                accepted, _ = listening.accept()
+            except OSError:
+                return
+            connection = Connection(accepted.detach())
+            threading.Thread(target=self._serve, args=(connection,), name="control", daemon=True).start()
+
+    def _serve(self, connection: Connection) -> None:
+        with connection, suppress(OSError, EOFError, msgspec.DecodeError):
+            question = _decode_question(connection.recv_bytes())
+            if isinstance(question, Ask):
+                self._carry_out(connection, question.text)
+
+    def _carry_out(self, connection: Connection, text: str) -> None:
+        with self._lock:
+            line = self._next
+            self._next += 1
+            answers = self._answers[line] = SimpleQueue()
+        threading.Thread(target=self._listen, args=(connection, line), name="control", daemon=True).start()
+        self._send(RunLine(line, text))
+        try:
+            while not isinstance(answer := answers.get(), Done):
+                connection.send_bytes(_encode(answer))
+            connection.send_bytes(_encode(answer))
+        finally:
+            del self._answers[line]
+
+    def _listen(self, connection: Connection, line: LineId) -> None:
+        """Interrupt the line when its client says so or goes away."""
+        with suppress(OSError, EOFError, msgspec.DecodeError):
+            _decode_question(connection.recv_bytes())
+        self._send(InterruptLine(line))
+
+
+class NoEngine(LookupError):  # noqa: N818 - the sentence it carries is what a reader sees
+    """No run listens; the text says which was looked for."""
+
+
+def connect(process: int | None) -> Connection:
+    """Connect to the run of that process number, for None to the one started last.
+
+    Raises:
+        NoEngine: there is none.
+    """
+    for path in _sockets():
+        if process is not None and path.stem != str(process):
+            continue
+        try:
+            return Client(str(path), family="AF_UNIX")
+        except ConnectionRefusedError:
+            path.unlink(missing_ok=True)  # left behind by a process that was killed
+        except OSError:
+            continue
+    raise NoEngine("no run listens" if process is None else f"no run of process {process} listens")
+
+
+def _sockets() -> list[Path]:
+    """The sockets there are, youngest first."""
+    with suppress(OSError):
+        return sorted(runtime_folder().glob("*.sock"), key=lambda path: path.stat().st_mtime, reverse=True)
+    return []
+
+
+class RemoteLine:
+    """A line given to a run elsewhere."""
+
+    def __init__(self, connection: Connection, text: str) -> None:
+        self._connection = connection
+        connection.send_bytes(_encode(Ask(text)))
+
+    def next_answer(self) -> Answer:
+        """Wait for what it writes next, or for how it ends: ``Done(None)`` if the run is over before it."""
+        try:
+            return _decode_answer(self._connection.recv_bytes())
+        except (OSError, EOFError):
+            return Done(None)
+
+    def interrupt(self) -> None:
+        """End it as Ctrl-C would."""
+        with suppress(OSError):
+            self._connection.send_bytes(_encode(Interrupt()))

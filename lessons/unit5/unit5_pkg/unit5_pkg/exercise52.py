@@ -1,0 +1,1 @@
+../../shared-group/node.py

@@ -1,0 +1,1 @@
+../../split-groups/node.py

@@ -1,0 +1,169 @@
+"""The programs of a run, each in a process of its own: its context, executor, loggers and arguments.
+
+A run's only program has the engine's main thread; several run on threads of their own, which stand for the
+main threads of their processes.
+"""
+
+import signal
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from itertools import count
+
+from sim.clock import Signal
+from sim.engine.program import Outcome, Program, run_program
+from sim.ros.context import end_contexts_by_signal
+from sim.ros.host import Host
+from sim.ros.process import Process
+from sim.ros.signals import deliver_sigint
+from sim.trace.events import AnyEvent, ProcessAppeared, ProcessEnded
+
+Ended = Callable[[Outcome], None]
+
+
+@dataclass(eq=False)
+class RunningProgram:
+    """A program that was started; ``number`` stands for the process id."""
+
+    programs: "Programs"
+    process: Process
+    program: Program
+    on_exit: Ended
+    thread: int | None = None
+    outcome: Outcome | None = None
+
+    @property
+    def number(self) -> int:
+        """What tells its process from others on the trace."""
+        return self.process.number
+
+    def interrupt(self) -> None:
+        """Have it end as Ctrl-C would; nothing happens once it has ended."""
+        if self.outcome is None and self.thread is not None:
+            deliver_sigint(self.process)
+            self.process.host.clock.interrupt(self.thread)
+
+    def terminate(self) -> None:
+        """Have it end as SIGTERM would: its contexts end, and nothing is raised."""
+        if self.outcome is None:
+            end_contexts_by_signal(self.process)
+
+    def kill(self) -> None:
+        """Have it be over whatever it does."""
+        self.programs.kill(self)
+
+
+@dataclass(eq=False)
+class Programs:
+    """Starts programs and knows which of them run. Thread-safe; ``record`` takes events."""
+
+    host: Host
+    record: Callable[[AnyEvent], None]
+    ended: list[RunningProgram] = field(default_factory=list)
+    _running: list[RunningProgram] = field(default_factory=list)
+    _numbers: "count[int]" = field(default_factory=lambda: count(1))
+    _held: int = 0
+    _waiters: list[Signal] = field(default_factory=list)
+
+    def run_only(self, program: Program) -> Outcome:
+        """Run the run's only program on the calling thread."""
+        Process(self.host, arguments=[program.path, *program.arguments]).enter()
+        return run_program(program)
+
+    def start(
+        self,
+        program: Program,
+        label: str,
+        on_exit: Ended,
+        environment: Mapping[str, str] | None = None,
+        shows_stdout: bool = True,
+    ) -> RunningProgram:
+        """Start a program as one of several; ``on_exit`` is called on its thread when it has ended."""
+        process = Process(
+            self.host,
+            number=self.announce(label),
+            label=label,
+            arguments=[program.path, *program.arguments],
+            environment=dict(environment or {}),
+            shows_stdout=shows_stdout,
+        )
+        running = RunningProgram(self, process, program, on_exit)
+        with self.host.lock:
+            self._running.append(running)
+        process.start_thread(lambda: self._run(running), "MainThread")
+        return running
+
+    def announce(self, label: str) -> int:
+        """Put one more process on the trace; returns its number."""
+        with self.host.lock:
+            number = next(self._numbers)
+            self.record(ProcessAppeared(self.host.clock.now(), number, label))
+        return number
+
+    def _run(self, running: RunningProgram) -> None:
+        running.thread = threading.get_ident()
+        self._end(running, run_program(running.program))
+
+    def kill(self, running: RunningProgram) -> None:
+        """Have a program be over whatever it does: it ends as far as it lets itself be ended."""
+        running.interrupt()
+        self._end(running, Outcome("it was killed", failed=True, status=-signal.SIGKILL))
+
+    def _end(self, running: RunningProgram, outcome: Outcome) -> None:
+        with self.host.lock:
+            if running.outcome is not None:
+                return  # it was killed, and its thread has ended only now
+            running.outcome = outcome
+            self._running.remove(running)
+            self.ended.append(running)
+            now = self.host.clock.now()
+            self.record(ProcessEnded(now, running.number, outcome.sentence, outcome.status))
+        running.on_exit(outcome)
+        self.look()
+
+    def wait_until(self, condition: Callable[[], bool]) -> None:
+        """Wait until ``condition`` holds; it is asked whenever a program has ended or ``look`` is called."""
+        while True:
+            signal = self.host.clock.signal()
+            with self.host.lock:
+                if condition():
+                    return
+                self._waiters.append(signal)
+            signal.wait(None)
+
+    def look(self) -> None:
+        """Have ``wait_until`` ask again."""
+        with self.host.lock:
+            waiters, self._waiters = self._waiters, []
+        for waiter in waiters:
+            waiter.set()
+
+    def joint_outcome(self) -> Outcome:
+        """How the programs that ended did, taken together: the first failure speaks for all."""
+        failed = [each for each in self.ended if each.outcome is not None and each.outcome.failed]
+        if failed:
+            first = failed[0]
+            assert first.outcome is not None
+            return Outcome(f"{first.process.label}: {first.outcome.sentence}", failed=True)
+        return Outcome("every program returned", failed=False)
+
+    def hold(self) -> None:
+        """Count something as running that starts programs, until ``release``."""
+        with self.host.lock:
+            self._held += 1
+
+    def release(self) -> None:
+        """End what ``hold`` began."""
+        with self.host.lock:
+            self._held -= 1
+        self.look()
+
+    @property
+    def any_run(self) -> bool:
+        """Whether a program runs, or something that starts programs."""
+        return bool(self._running) or self._held > 0
+
+    def interrupt_all(self) -> None:
+        """Interrupt every program that runs."""
+        for running in tuple(self._running):
+            running.interrupt()

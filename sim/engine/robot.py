@@ -1,0 +1,61 @@
+"""The robot of a run: there from the beginning, from its first use on, or never."""
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from sim.engine.setup import RobotUse
+from sim.ros.host import Host
+from sim.trace.events import AnyEvent
+
+if TYPE_CHECKING:
+    from sim.robot.world import World
+
+
+def provide_robot(
+    use: RobotUse, host: Host, record: Callable[[AnyEvent], None], unavailable: Callable[[str], None]
+) -> None:
+    """Have the robot there when it is to be.
+
+    ``unavailable`` gets the sentence that tells why one that comes with its first use cannot be.
+
+    Raises:
+        WorldUnavailable: one that is to be there from the beginning cannot be; the text says what to do.
+    """
+    match use:
+        case RobotUse.ALWAYS:
+            _start_at_once(host, record)
+        case RobotUse.WHEN_USED:
+            _start_when_used(host, record, unavailable)
+        case RobotUse.NEVER:
+            return
+
+
+def _start_at_once(host: Host, record: Callable[[AnyEvent], None]) -> None:
+    from sim.robot.driver import Driver
+    from sim.robot.world import World
+
+    world = World()
+    Driver(host, record, lambda: world).start()
+
+
+def _start_when_used(
+    host: Host, record: Callable[[AnyEvent], None], unavailable: Callable[[str], None]
+) -> None:
+    from sim.robot.bullet import WorldUnavailable
+    from sim.robot.names import NAMES
+
+    def build() -> "World":
+        from sim.robot.world import World
+
+        try:
+            return World()
+        except WorldUnavailable as error:
+            unavailable(str(error))
+            raise
+
+    def start() -> None:
+        from sim.robot.driver import Driver
+
+        Driver(host, record, build).start()
+
+    host.network.when_wanted(NAMES, start)

@@ -1,0 +1,62 @@
+"""``ament_index_python.packages``: where packages lie."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from sim.launch.errors import LaunchFailure
+from sim.packages import Package, UnknownPackageError, known_packages
+
+__all__ = [
+    "PackageNotFoundError",
+    "get_package_prefix",
+    "get_package_share_directory",
+    "get_package_share_path",
+    "get_packages_with_prefixes",
+]
+
+
+class PackageNotFoundError(LaunchFailure, KeyError):
+    """There is no package of that name."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
+def _package(name: str) -> Package:
+    try:
+        return known_packages().package(name)
+    except UnknownPackageError as error:
+        raise PackageNotFoundError(str(error)) from None
+
+
+def get_package_prefix(package_name: str) -> str:
+    """The folder that a package is installed in.
+
+    Raises:
+        PackageNotFoundError: there is no such package.
+    """
+    return str(_package(package_name).prefix)
+
+
+def get_package_share_directory(package_name: str) -> str:
+    """The share folder of a package.
+
+    Raises:
+        PackageNotFoundError: there is no such package.
+    """
+    return str(_package(package_name).share)
+
+
+def get_package_share_path(package_name: str) -> Path:
+    """The share folder of a package, as a path.
+
+    Raises:
+        PackageNotFoundError: there is no such package.
+    """
+    return _package(package_name).share
+
+
+def get_packages_with_prefixes() -> dict[str, str]:
+    """The folders that the known packages are installed in, by their names."""
+    return {package.name: str(package.prefix) for package in known_packages()}

@@ -1,0 +1,36 @@
+"""Makes ``import launch``, ``launch_ros`` and ``ament_index_python`` mean this model, in this process."""
+
+import importlib
+import sys
+
+_MODULES = (
+    "ament_index_python",
+    "ament_index_python.packages",
+    "launch",
+    "launch.action",
+    "launch.actions",
+    "launch.condition",
+    "launch.conditions",
+    "launch.event",
+    "launch.event_handler",
+    "launch.event_handlers",
+    "launch.events",
+    "launch.events.process",
+    "launch.launch_context",
+    "launch.launch_description",
+    "launch.launch_description_sources",
+    "launch.substitution",
+    "launch.substitutions",
+    "launch.utilities",
+    "launch_ros",
+    "launch_ros.actions",
+    "launch_ros.descriptions",
+    "launch_ros.parameter_descriptions",
+    "launch_ros.substitutions",
+)
+
+
+def install() -> None:
+    """Put the model in these packages' place; twice does no harm."""
+    for name in _MODULES:
+        sys.modules[name] = importlib.import_module(f"sim.launch.{name}")

@@ -1,0 +1,58 @@
+"""The base of event handlers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+from sim.launch.launch.action import LaunchDescriptionEntity
+from sim.launch.launch.event import Event
+
+if TYPE_CHECKING:
+    from sim.launch.launch.launch_context import LaunchContext
+
+Reaction = Any
+"""An entity, entities, or a callable of event and context that gives them or None."""
+
+
+class EventHandler:
+    """Gives the entities to visit when an event that it matches happens."""
+
+    def __init__(
+        self,
+        *,
+        matcher: Callable[[Event], bool],
+        entities: Reaction = None,
+        handle_once: bool = False,
+    ) -> None:
+        self._matcher = matcher
+        self._entities = entities
+        self.handle_once = handle_once
+
+    def matches(self, event: Event) -> bool:
+        """Whether it has to do with the event."""
+        return self._matcher(event)
+
+    def handle(self, event: Event, context: LaunchContext) -> list[LaunchDescriptionEntity]:
+        """What to visit because of the event."""
+        if self.handle_once:
+            context.unregister_event_handler(self)
+        return entities_of(self._entities, event, context)
+
+
+def entities_of(reaction: Reaction, event: Event, context: LaunchContext) -> list[LaunchDescriptionEntity]:
+    """The entities that a reaction to an event consists of.
+
+    Raises:
+        TypeError: it is, or gives, something else.
+    """
+    given = reaction(event, context) if callable(reaction) else reaction
+    if given is None:
+        return []
+    if isinstance(given, LaunchDescriptionEntity):
+        return [given]
+    if isinstance(given, Iterable):
+        found = list(given)
+        if all(isinstance(each, LaunchDescriptionEntity) for each in found):
+            return found
+    raise TypeError(f"an action or a list of actions is wanted as the reaction to an event, not {given!r}")

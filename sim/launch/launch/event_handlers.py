@@ -1,0 +1,86 @@
+"""``launch.event_handlers``."""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+from sim.launch.launch.action import Action
+from sim.launch.launch.event import Event
+from sim.launch.launch.event_handler import EventHandler, Reaction
+from sim.launch.launch.events import ExecutionComplete, Shutdown
+from sim.launch.launch.events.process import ProcessExited, ProcessStarted
+
+__all__ = ["OnExecutionComplete", "OnProcessExit", "OnProcessIO", "OnProcessStart", "OnShutdown"]
+
+
+class _OnActionEvent(EventHandler):
+    """Matches the events of one class, of every action, of one, or of those that a callable picks."""
+
+    event_class: ClassVar[type[Event]]
+
+    def __init__(self, target_action: Any, reaction: Reaction, *, handle_once: bool = False) -> None:
+        if (
+            target_action is not None
+            and not isinstance(target_action, Action)
+            and not callable(target_action)
+        ):
+            raise TypeError(
+                f"{type(self).__name__} requires an action as target_action, not {target_action!r}"
+            )
+        self._target = target_action
+        super().__init__(matcher=self._is_meant, entities=reaction, handle_once=handle_once)
+
+    def _is_meant(self, event: Event) -> bool:
+        if not isinstance(event, self.event_class):
+            return False
+        action: Any = getattr(event, "action", None)
+        if self._target is None or action is self._target:
+            return True
+        return not isinstance(self._target, Action) and bool(self._target(action))
+
+
+class OnProcessStart(_OnActionEvent):
+    """Reacts when a process has started."""
+
+    event_class = ProcessStarted
+
+    def __init__(self, *, target_action: Any = None, on_start: Reaction, handle_once: bool = False) -> None:
+        super().__init__(target_action, on_start, handle_once=handle_once)
+
+
+class OnProcessExit(_OnActionEvent):
+    """Reacts when a process has ended."""
+
+    event_class = ProcessExited
+
+    def __init__(self, *, target_action: Any = None, on_exit: Reaction, handle_once: bool = False) -> None:
+        super().__init__(target_action, on_exit, handle_once=handle_once)
+
+
+class OnExecutionComplete(_OnActionEvent):
+    """Reacts when an action has done all it does."""
+
+    event_class = ExecutionComplete
+
+    def __init__(
+        self, *, target_action: Any = None, on_completion: Reaction, handle_once: bool = False
+    ) -> None:
+        super().__init__(target_action, on_completion, handle_once=handle_once)
+
+
+class OnShutdown(EventHandler):
+    """Reacts when the launch is to end."""
+
+    def __init__(self, *, on_shutdown: Reaction, handle_once: bool = False) -> None:
+        super().__init__(
+            matcher=lambda event: isinstance(event, Shutdown), entities=on_shutdown, handle_once=handle_once
+        )
+
+
+class OnProcessIO(EventHandler):
+    """Not supported: what a process prints does not come by the launch."""
+
+    def __init__(self, *_: object, **__: object) -> None:
+        raise NotImplementedError(
+            "OnProcessIO is not supported: a launch does not read its nodes' output here"
+        )

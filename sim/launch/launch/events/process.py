@@ -1,0 +1,63 @@
+"""``launch.events.process``."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from sim.launch.launch.event import Event
+
+__all__ = ["ProcessExited", "ProcessStarted", "RunningProcessEvent", "ShutdownProcess", "SignalProcess"]
+
+
+class RunningProcessEvent(Event):
+    """Something that happened to a process: its action, label, command, folder, environment and id."""
+
+    def __init__(
+        self,
+        *,
+        action: Any,
+        name: str,
+        cmd: Sequence[str],
+        cwd: str | None,
+        env: Mapping[str, str] | None,
+        pid: int,
+    ) -> None:
+        self.action = action
+        self.process_name = name
+        self.cmd = list(cmd)
+        self.cwd = cwd
+        self.env = env
+        self.pid = pid
+
+
+class ProcessStarted(RunningProcessEvent):
+    """A process runs."""
+
+    name = "launch.events.process.ProcessStarted"
+
+
+class ProcessExited(RunningProcessEvent):
+    """A process has ended with ``returncode``."""
+
+    name = "launch.events.process.ProcessExited"
+
+    def __init__(self, *, returncode: int, **about: Any) -> None:
+        super().__init__(**about)
+        self.returncode = returncode
+
+
+class ShutdownProcess(Event):
+    """A process is to end; ``process_matcher`` picks it among the actions."""
+
+    name = "launch.events.process.ShutdownProcess"
+
+    def __init__(self, *, process_matcher: Any) -> None:
+        self.process_matcher = process_matcher
+
+
+class SignalProcess(Event):
+    """Not supported: signals other than those of a shutdown are not sent here."""
+
+    def __init__(self, *_: object, **__: object) -> None:
+        raise NotImplementedError("SignalProcess is not supported; ShutdownProcess ends a process")

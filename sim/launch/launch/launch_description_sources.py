@@ -1,0 +1,75 @@
+"""``launch.launch_description_sources``: where an included launch description comes from."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from sim.launch.errors import LaunchError, LaunchFailure
+from sim.launch.launch.launch_context import LaunchContext
+from sim.launch.launch.launch_description import LaunchDescription
+from sim.launch.launch.substitution import (
+    TextSubstitution,
+    normalize_to_list_of_substitutions,
+    performed,
+)
+from sim.launch.loading import load_description
+
+__all__ = [
+    "AnyLaunchDescriptionSource",
+    "FrontendLaunchDescriptionSource",
+    "LaunchDescriptionSource",
+    "PythonLaunchDescriptionSource",
+]
+
+
+class LaunchDescriptionSource:
+    """A launch file at a path that may be a substitution."""
+
+    def __init__(self, location: Any) -> None:
+        self._location = normalize_to_list_of_substitutions(location)
+
+    def load(self, context: LaunchContext) -> tuple[LaunchDescription, Path]:
+        """The description and its file.
+
+        Raises:
+            LaunchFailure: there is no such file.
+            LaunchError: it cannot be read.
+        """
+        path = Path(performed(context, self._location))
+        if not path.is_file():
+            raise LaunchFailure(f"the included launch file {path} does not exist")
+        return load_description(path), path.resolve()
+
+    def known_description(self) -> LaunchDescription | None:
+        """The description if its place is known before the launch runs and it can be read."""
+        if not all(isinstance(each, TextSubstitution) for each in self._location):
+            return None
+        path = Path("".join(each.text for each in self._location if isinstance(each, TextSubstitution)))
+        try:
+            return load_description(path) if path.is_file() else None
+        except LaunchError:
+            return None
+
+
+class PythonLaunchDescriptionSource(LaunchDescriptionSource):
+    """A launch file in Python."""
+
+    def __init__(self, launch_file_path: Any) -> None:
+        super().__init__(launch_file_path)
+
+
+class AnyLaunchDescriptionSource(LaunchDescriptionSource):
+    """A launch file of whatever kind; those in Python can be read."""
+
+    def __init__(self, launch_file_path: Any) -> None:
+        super().__init__(launch_file_path)
+
+
+class FrontendLaunchDescriptionSource(LaunchDescriptionSource):
+    """Not supported: launch files in XML and YAML are not read."""
+
+    def __init__(self, *_: object, **__: object) -> None:
+        raise NotImplementedError(
+            "FrontendLaunchDescriptionSource is not supported: only launch files in Python are read"
+        )

@@ -1,0 +1,36 @@
+"""``launch_ros.actions``."""
+
+from sim.launch.launch_ros.actions.node import Node
+from sim.launch.launch_ros.actions.settings import (
+    PushROSNamespace,
+    SetParameter,
+    SetParametersFromFile,
+    SetRemap,
+    SetUseSimTime,
+)
+from sim.launch.launch_ros.actions.unsupported import (
+    ComposableNodeContainer,
+    LifecycleNode,
+    LifecycleTransition,
+    LoadComposableNodes,
+    ROSTimer,
+    RosTimer,
+)
+
+PushRosNamespace = PushROSNamespace
+
+__all__ = [
+    "ComposableNodeContainer",
+    "LifecycleNode",
+    "LifecycleTransition",
+    "LoadComposableNodes",
+    "Node",
+    "PushROSNamespace",
+    "PushRosNamespace",
+    "ROSTimer",
+    "RosTimer",
+    "SetParameter",
+    "SetParametersFromFile",
+    "SetRemap",
+    "SetUseSimTime",
+]

@@ -1,0 +1,69 @@
+"""Actions that settle something for all nodes after them in their group."""
+
+# ruff: noqa: D102 -- what a method does that overrides another stands with that one
+
+from __future__ import annotations
+
+from typing import Any
+
+from sim.launch.launch.action import Action
+from sim.launch.launch.launch_context import LaunchContext
+from sim.launch.launch.substitution import normalize_to_list_of_substitutions, performed
+from sim.launch.launch_ros.namespaces import joined
+from sim.launch.launch_ros.parameters import file_arguments, parameter_arguments
+
+
+class PushROSNamespace(Action):
+    """Puts the nodes into a namespace, inside of the present one."""
+
+    def __init__(self, namespace: Any, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._namespace = normalize_to_list_of_substitutions(namespace)
+
+    def execute(self, context: LaunchContext) -> None:
+        context.namespace = joined(context.namespace, performed(context, self._namespace))
+
+
+class SetRemap(Action):
+    """Gives the nodes a remapping."""
+
+    def __init__(self, src: Any, dst: Any, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._src = normalize_to_list_of_substitutions(src)
+        self._dst = normalize_to_list_of_substitutions(dst)
+
+    def execute(self, context: LaunchContext) -> None:
+        context.global_remaps.append((performed(context, self._src), performed(context, self._dst)))
+
+
+class SetParameter(Action):
+    """Gives the nodes a parameter; their own ones count more."""
+
+    def __init__(self, name: Any, value: Any, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        self._name = name
+        self._value = value
+
+    def execute(self, context: LaunchContext) -> None:
+        name = performed(context, self._name)
+        context.global_parameters.append(parameter_arguments(context, [{name: self._value}]))
+
+
+class SetUseSimTime(SetParameter):
+    """Tells the nodes whether to take the time from the clock topic."""
+
+    def __init__(self, value: Any, **kwargs: Any) -> None:
+        super().__init__("use_sim_time", value, **kwargs)
+
+
+class SetParametersFromFile(Action):
+    """Gives the nodes the parameters of a file; their own ones count more."""
+
+    def __init__(self, filename: Any, *, node_name: Any = None, **kwargs: Any) -> None:
+        super().__init__(**kwargs)
+        if node_name is not None:
+            raise NotImplementedError("SetParametersFromFile(node_name=…) is not supported")
+        self._file = normalize_to_list_of_substitutions(filename)
+
+    def execute(self, context: LaunchContext) -> None:
+        context.global_parameters.append(file_arguments(context, self._file))

@@ -1,0 +1,86 @@
+"""What a launch needs of whoever runs programs: the interface between launch files and the engine."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Protocol
+
+OnExit = Callable[[int], None]
+"""Takes the exit status of a process, once."""
+
+
+@dataclass(frozen=True, slots=True)
+class ProcessSpec:
+    """A program to start as a process of its own.
+
+    ``path`` is run as a script, or ``function`` of the module ``module`` in it is called; ``folder`` is where
+    imports look first. ``arguments`` are those behind the program's own name. ``label`` names the process in
+    the log, such as ``exercise51-1``. ``package`` and ``executable`` are empty for a plain file.
+    """
+
+    label: str
+    path: Path
+    folder: Path
+    arguments: tuple[str, ...] = ()
+    module: str = ""
+    function: str = ""
+    package: str = ""
+    executable: str = ""
+    environment: Mapping[str, str] = field(default_factory=dict)
+    """The variables that differ from this process's own."""
+    output: str = "log"
+    """``screen`` and ``both`` show all output; ``log`` shows, as launch does, only stderr."""
+    working_folder: Path | None = None
+    """None: the folder that the launch was started in."""
+
+    @property
+    def command(self) -> str:
+        """The command line, as launch tells it of a process that died."""
+        return " ".join((str(self.path), *self.arguments))
+
+
+class RunningProcess(Protocol):
+    """A process that was started. Every method does nothing once it has ended; none of them waits."""
+
+    @property
+    def number(self) -> int:
+        """What stands for its process id."""
+        ...
+
+    def interrupt(self) -> None:
+        """Have it end as Ctrl-C would."""
+        ...
+
+    def terminate(self) -> None:
+        """Have it end as SIGTERM would."""
+        ...
+
+    def kill(self) -> None:
+        """End it whatever it does, as SIGKILL would."""
+        ...
+
+
+class Machine(Protocol):
+    """Runs processes, keeps time and shows the log.
+
+    What it calls (``on_exit``, timed actions) it calls on the thread or under the lock that the launch was
+    started with, never two at once; ``on_exit`` may be called from inside ``start_process``.
+    """
+
+    def start_process(self, spec: ProcessSpec, on_exit: OnExit) -> RunningProcess:
+        """Start a program."""
+        ...
+
+    def run_line(self, label: str, words: Sequence[str], on_exit: OnExit) -> RunningProcess:
+        """Start a ``ros2 …`` line; ``label`` names it in the log."""
+        ...
+
+    def call_at(self, seconds_from_now: float, action: Callable[[], None]) -> None:
+        """Call ``action`` that many seconds from now."""
+        ...
+
+    def say(self, text: str, severity: str = "INFO", logger: str = "launch") -> None:
+        """Show a line of the launch's own log, printed as ``[INFO] [launch]: text``."""
+        ...

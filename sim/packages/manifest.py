@@ -1,0 +1,49 @@
+"""Reads a ``package.xml``. Source of the format: REP 149."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from xml.etree import ElementTree
+
+from sim.packages.errors import PackageError
+
+MANIFEST = "package.xml"
+_LARGEST = 1_000_000
+"""Bytes; a real manifest has a few thousand."""
+
+
+def read_name(folder: Path) -> str:
+    """The name that the ``package.xml`` in ``folder`` gives the package.
+
+    Raises:
+        PackageError: it cannot be read, is no package manifest, or declares XML entities.
+    """
+    path = folder / MANIFEST
+    try:
+        if path.stat().st_size > _LARGEST:
+            raise PackageError(f"{path}: a package manifest of over {_LARGEST} bytes is not read")
+        root = ElementTree.fromstring(path.read_bytes(), parser=_parser(path))
+    except ElementTree.ParseError as error:
+        line, _ = error.position
+        raise PackageError(f"{path}:{line}: this is not XML: {str(error).split(':', 1)[0]}") from None
+    except OSError as error:
+        raise PackageError(f"{path}: {error.strerror}") from None
+    name = (root.findtext("name") or "").strip()
+    if root.tag != "package" or not name:
+        raise PackageError(f"{path}: a package manifest needs <package> with a <name> in it")
+    return name
+
+
+def _parser(path: Path) -> ElementTree.XMLParser:
+    return ElementTree.XMLParser(target=_NoEntities(path))
+
+
+class _NoEntities(ElementTree.TreeBuilder):
+    """Builds a tree, but refuses entities: a few lines of them can grow without bound."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self._path = path
+
+    def doctype(self, _name: str, _public: str | None, _system: str | None) -> None:
+        raise PackageError(f"{self._path}: a package manifest with a DOCTYPE is not read; remove that line")

@@ -1,0 +1,70 @@
+"""The states of a goal, and which events lead from one to the next.
+
+Source: the goal state machine of ROS 2's design documents ("Actions"), and rcl_action.
+"""
+
+from __future__ import annotations
+
+from enum import Enum, IntEnum
+from types import MappingProxyType
+
+from sim.ros.exceptions import RCLError
+
+
+class GoalState(IntEnum):
+    """The states, numbered as in ``action_msgs/msg/GoalStatus``."""
+
+    UNKNOWN = 0
+    ACCEPTED = 1
+    EXECUTING = 2
+    CANCELING = 3
+    SUCCEEDED = 4
+    CANCELED = 5
+    ABORTED = 6
+
+
+class GoalEvent(Enum):
+    """What can happen to a goal once it has been accepted."""
+
+    EXECUTE = 0
+    CANCEL_GOAL = 1
+    SUCCEED = 2
+    ABORT = 3
+    CANCELED = 4
+
+
+TERMINAL = frozenset({GoalState.SUCCEEDED, GoalState.CANCELED, GoalState.ABORTED})
+"""The states that a goal does not leave."""
+
+_TRANSITIONS = MappingProxyType(
+    {
+        (GoalState.ACCEPTED, GoalEvent.EXECUTE): GoalState.EXECUTING,
+        (GoalState.ACCEPTED, GoalEvent.CANCEL_GOAL): GoalState.CANCELING,
+        (GoalState.EXECUTING, GoalEvent.CANCEL_GOAL): GoalState.CANCELING,
+        (GoalState.EXECUTING, GoalEvent.SUCCEED): GoalState.SUCCEEDED,
+        (GoalState.EXECUTING, GoalEvent.ABORT): GoalState.ABORTED,
+        (GoalState.CANCELING, GoalEvent.SUCCEED): GoalState.SUCCEEDED,
+        (GoalState.CANCELING, GoalEvent.ABORT): GoalState.ABORTED,
+        (GoalState.CANCELING, GoalEvent.CANCELED): GoalState.CANCELED,
+    }
+)
+
+
+def next_state(state: GoalState, event: GoalEvent) -> GoalState:
+    """The state after an event.
+
+    Raises:
+        RCLError: the event cannot happen in that state.
+    """
+    following = _TRANSITIONS.get((state, event))
+    if following is None:
+        raise RCLError(
+            "Failed to update goal state: goal_handle attempted invalid transition "
+            f"from state {state.name} with event {event.name}"
+        )
+    return following
+
+
+def is_cancelable(state: GoalState) -> bool:
+    """Whether a goal in that state can be asked to stop, which a goal can be once."""
+    return (state, GoalEvent.CANCEL_GOAL) in _TRANSITIONS

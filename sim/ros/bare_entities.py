@@ -1,0 +1,282 @@
+"""Entities without a callback: what a program's own waitable waits for, and takes from, itself.
+
+They are what rclpy's compiled part calls by the same names. No executor serves them; what they have makes
+the executors that wait for them look again.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
+
+from sim.ros.callback_groups import ReentrantCallbackGroup
+from sim.ros.client import Client
+from sim.ros.event_handler import SubscriptionEventCallbacks
+from sim.ros.exceptions import InvalidHandle
+from sim.ros.qos import QoSProfile, RmwQoSProfile
+from sim.ros.service import Service
+from sim.ros.subscription import Subscription
+from sim.ros.timer import next_due
+
+if TYPE_CHECKING:
+    from sim.ros.context import Context
+    from sim.ros.handle import Handle
+    from sim.ros.network import Request
+    from sim.ros.node import Node
+
+
+class Watcher(Protocol):
+    """Who wants to look again once there is something."""
+
+    def wake(self) -> None:
+        """Have it look again. With the host's lock held."""
+
+
+class BareEntity:
+    """Base of the entities without a callback; ``pending`` tells that there is something to take.
+
+    As a context manager it demands that it is alive: InvalidHandle if it was destroyed.
+    """
+
+    traced = False
+    pending = False
+    destroyed = False
+
+    @property
+    def pointer(self) -> int:
+        """A number that no other living entity has."""
+        return id(self)
+
+    def look(self, watcher: Watcher, now: int) -> bool:
+        """Whether it is ready; ``watcher`` is woken when it is so next. With the host's lock held."""
+        self._watchers[watcher] = None
+        return self.pending
+
+    def next_due(self) -> int | None:
+        """When it becomes ready by the mere passing of time; None: by that it never does."""
+        return None
+
+    def become_ready(self, since: int) -> None:
+        """There is something to take from now on. With the host's lock held."""
+        self.pending = True
+        watchers = tuple(self._watchers)
+        self._watchers.clear()
+        for each in watchers:
+            each.wake()
+
+    def nothing_left(self) -> None:
+        """There is nothing more to take. With the host's lock held."""
+        self.pending = False
+
+    def destroy(self) -> None:
+        """Take it off the network."""
+        self.destroyed = True
+
+    def destroy_when_not_in_use(self) -> None:
+        """Destroy it."""
+        self.destroy()
+
+    def __enter__(self) -> Self:
+        if self.destroyed:
+            raise InvalidHandle("cannot use Destroyable because destruction was requested")
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        """Leave it as it is."""
+
+    @property
+    def _watchers(self) -> dict[Watcher, None]:
+        watchers: dict[Watcher, None] = self.__dict__.setdefault("_watched_by", {})
+        return watchers
+
+
+class BareSubscription(BareEntity, Subscription):
+    """A subscription whose messages the program takes itself."""
+
+    def __init__(self, node: Handle, msg_type: type, topic: str, qos_profile: RmwQoSProfile) -> None:
+        owner: Node = node.owner
+        name = owner.resolve_topic_name(topic)
+        silent = SubscriptionEventCallbacks(use_default_callbacks=False)
+        with owner.context.host.lock:
+            super().__init__(
+                owner, msg_type, name, _never_called, ReentrantCallbackGroup(), _as_profile(qos_profile),
+                topic=topic, event_callbacks=silent,
+            )  # fmt: skip
+            owner.context.network.join_subscription(self)
+
+    def take_message(self, msg_type: type, raw: bool) -> tuple[Any, Any] | None:
+        """Take the oldest message, with its info; None without one."""
+        with self.node.context.host.lock:
+            self.raw, self._with_info = raw, True
+            taken = self.take(self.node.context.host.clock.now())
+        return None if taken is None else taken.data
+
+    def destroy(self) -> None:
+        """Take it off the network."""
+        with self.node.context.host.lock:
+            if not self.destroyed:
+                self.destroyed = True
+                self.node.context.network.leave_subscription(self)
+
+
+class RequestId(NamedTuple):
+    """Which request an answer belongs to."""
+
+    sequence_number: int
+
+
+class ServiceInfo(NamedTuple):
+    """What comes with a response."""
+
+    request_id: RequestId
+
+
+class BareClient(BareEntity, Client):
+    """A client whose responses the program takes itself."""
+
+    def __init__(self, node: Handle, srv_type: Any, srv_name: str, qos_profile: RmwQoSProfile) -> None:
+        owner: Node = node.owner
+        name, profile = owner.resolve_service_name(srv_name), _as_profile(qos_profile)
+        with owner.context.host.lock:
+            owner.context.network.want(name)
+            super().__init__(owner, srv_type, name, profile, ReentrantCallbackGroup(), srv_name=srv_name)
+
+    def service_server_is_available(self) -> bool:
+        """Whether somebody offers the service."""
+        return self.service_is_ready()
+
+    def send_request(self, request: Any) -> int:
+        """Send a request; returns its sequence number."""
+        return self._send(request)[0]
+
+    def take_response(self, response_type: type) -> tuple[ServiceInfo | None, Any]:
+        """Take the oldest response, after which request it came; None twice without one."""
+        with self._host.lock:
+            taken = self.take(self._host.clock.now())
+            if taken is None:
+                return None, None
+            reply = taken.data
+            self._pending_requests.pop(reply.call, None)
+        return ServiceInfo(RequestId(reply.call)), reply.data
+
+    def destroy(self) -> None:
+        """Take no more responses."""
+        self.destroyed = True
+
+
+class BareService(BareEntity, Service):
+    """A service whose requests the program takes and answers itself."""
+
+    def __init__(self, node: Handle, srv_type: Any, srv_name: str, qos_profile: RmwQoSProfile) -> None:
+        owner: Node = node.owner
+        name, profile = owner.resolve_service_name(srv_name), _as_profile(qos_profile)
+        group = ReentrantCallbackGroup()
+        with owner.context.host.lock:
+            super().__init__(owner, srv_type, name, _never_called, group, profile, srv_name=srv_name)
+            owner.context.network.join_service(self)
+
+    def service_take_request(self, request_type: type) -> tuple[Any, Request | None]:
+        """Take the oldest request, and the header to answer it by; None twice without one."""
+        with self.node.context.host.lock:
+            taken = self.take(self.node.context.host.clock.now())
+        return (None, None) if taken is None else (taken.data.data, taken.data)
+
+    def service_send_response(self, response: Any, header: Request) -> None:
+        """Answer the request of that header."""
+        self.send_response(response, header)
+
+    def destroy(self) -> None:
+        """Take it off the network."""
+        with self.node.context.host.lock:
+            if not self.destroyed:
+                self.destroyed = True
+                self.node.context.network.leave_service(self)
+
+
+class BareGuardCondition(BareEntity):
+    """A flag that any thread raises, and that waiting for it takes down."""
+
+    def __init__(self, context: Handle) -> None:
+        owner: Context = context.owner
+        self._host = owner.host
+
+    def trigger_guard_condition(self) -> None:
+        """Raise it."""
+        with self._host.lock:
+            self.become_ready(self._host.clock.now())
+
+    def look(self, watcher: Watcher, now: int) -> bool:
+        """Whether it is raised; it no longer is afterwards. With the host's lock held."""
+        ready = super().look(watcher, now)
+        self.pending = False
+        return ready
+
+
+class BareTimer(BareEntity):
+    """A timer that the program calls itself; all times in nanoseconds."""
+
+    def __init__(self, clock: Handle, context: Handle, period_nsec: int, autostart: bool = True) -> None:
+        owner: Context = context.owner
+        self._host = owner.host
+        self._period = period_nsec
+        self._last_call = self._host.clock.now()
+        self._due = self._last_call + period_nsec
+        self._canceled = not autostart
+
+    def look(self, watcher: Watcher, now: int) -> bool:
+        """Whether it is due. With the host's lock held."""
+        super().look(watcher, now)
+        return not self._canceled and self._due <= now
+
+    def next_due(self) -> int | None:
+        """When it is due; None while cancelled."""
+        return None if self._canceled else self._due
+
+    def is_timer_ready(self) -> bool:
+        """Whether it is due."""
+        return not self._canceled and self._due <= self._host.clock.now()
+
+    def call_timer(self) -> None:
+        """Count a call, and move on to the next due time."""
+        with self._host.lock:
+            self._last_call = self._host.clock.now()
+            self._due = next_due(self._due, self._period, self._last_call)
+
+    def cancel_timer(self) -> None:
+        """Be due no more until ``reset_timer``."""
+        self._canceled = True
+
+    def is_timer_canceled(self) -> bool:
+        """Whether it was cancelled."""
+        return self._canceled
+
+    def reset_timer(self) -> None:
+        """Be due one period from now."""
+        with self._host.lock:
+            self._canceled = False
+            self._due = self._host.clock.now() + self._period
+            for each in tuple(self._watchers):
+                each.wake()
+
+    def get_timer_period(self) -> int:
+        """The period."""
+        return self._period
+
+    def change_timer_period(self, period_nsec: int) -> None:
+        """Have another period from the next call on."""
+        self._period = period_nsec
+
+    def time_until_next_call(self) -> int | None:
+        """How long until it is due; None while cancelled."""
+        return None if self._canceled else self._due - self._host.clock.now()
+
+    def time_since_last_call(self) -> int:
+        """How long since it was called, or made."""
+        return self._host.clock.now() - self._last_call
+
+
+def _never_called(_data: Any, _more: Any = None) -> None:
+    """Stand in for a callback: what arrives is taken by the program."""
+
+
+def _as_profile(profile: RmwQoSProfile) -> QoSProfile:
+    return QoSProfile(**profile.to_dict())

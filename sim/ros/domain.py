@@ -1,0 +1,32 @@
+"""Domains: nodes of different ones share a machine and do not see each other."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+
+from sim.ros.exceptions import RCLError
+
+DOMAIN_VARIABLE = "ROS_DOMAIN_ID"
+
+
+def domain_of(environment: Mapping[str, str]) -> int:
+    """The domain that an environment names; 0 without one.
+
+    Raises:
+        RCLError: ``ROS_DOMAIN_ID`` is no number, or a negative one.
+    """
+    text = environment.get(DOMAIN_VARIABLE, "").strip()
+    if not text:
+        return 0
+    if not text.isdecimal():
+        raise RCLError(f"failed to initialize rcl: {DOMAIN_VARIABLE} is not an integral number: {text!r}")
+    return int(text)
+
+
+def domain_of_machine() -> int:
+    """The domain of whatever is not a program; 0 if the environment names none that can be read."""
+    try:
+        return domain_of(os.environ)
+    except RCLError:
+        return 0

@@ -1,0 +1,83 @@
+"""What an executor that a program wrote is given to call: one callback, from group entered to group left."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Coroutine, Generator
+from types import coroutine
+from typing import TYPE_CHECKING, Any
+
+from sim.ros.task import Task
+
+if TYPE_CHECKING:
+    from sim.ros.entity import Entity
+    from sim.ros.executor import Executor
+
+
+class Handler(Task[None]):
+    """Runs an entity's callback when it is called, on the calling thread.
+
+    Done once the callback has ended, or was refused by its group. What the callback raises is the handler's
+    exception. A coroutine is run up to its next await; when it can go on, the handler is yielded again.
+    """
+
+    def __init__(self, entity: Entity, executor: Executor) -> None:
+        self.entity = entity
+        self._outer = 0
+        self._serving = executor
+        self._begun = False
+        super().__init__(_nothing, executor=executor)
+
+    def _step(self) -> object | None:
+        # Begun no earlier, so that Python does not complain about a handler that is never called.
+        if not self._begun:
+            self._begun = True
+            self._handler = self._serve()
+        return super()._step()
+
+    async def _serve(self) -> None:
+        executor, entity = self._serving, self.entity
+        with executor._lock:
+            taken = executor._enter(entity, executor._clock.now())
+        if taken is None:
+            return
+        self._outer = executor._probe.callback_started(entity, taken.message, taken.age, taken.left)
+        try:
+            outcome = entity.invoke(taken)
+            if inspect.iscoroutine(outcome):
+                await self._steps_of(outcome)
+        except BaseException as error:
+            executor._fail(entity, error, self._outer)
+            raise
+        executor._end(entity, self._outer)
+
+    @coroutine
+    def _steps_of(self, callback: Coroutine[Any, Any, Any]) -> Generator[Any, None, None]:
+        while True:
+            try:
+                awaited = callback.send(None)
+            except StopIteration:
+                return
+            self._leave_thread()
+            try:
+                yield awaited
+            finally:
+                self._enter_thread()
+
+    def _leave_thread(self) -> None:
+        executor = self._serving
+        with executor._lock:
+            executor._running.remove(self.entity)
+            executor._probe.callback_suspended(self.entity, self._outer)
+            executor._leave()
+
+    def _enter_thread(self) -> None:
+        executor = self._serving
+        with executor._lock:
+            executor._running.append(self.entity)
+            executor._at_work += 1
+            self._outer = executor._probe.callback_resumed(self.entity)
+
+
+def _nothing() -> None:
+    """Stand for what is done, until it is begun."""

@@ -1,0 +1,114 @@
+"""The services and the topic by which others follow and steer a node's life cycle."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any
+
+from sim.ros.exceptions import RCLError
+from sim.ros.hidden_service import offer_hidden
+from sim.ros.interfaces import message, service
+from sim.ros.lifecycle.state_machine import (
+    STATES,
+    LifecycleStateMachine,
+    Transition,
+    TransitionCallbackReturn,
+)
+from sim.ros.qos import QoSProfile
+
+if TYPE_CHECKING:
+    from sim.ros.callback_groups import CallbackGroup
+    from sim.ros.node import Node
+
+_PACKAGE = "lifecycle_msgs"
+_QOS = QoSProfile(depth=10)
+
+
+class LifecycleInterface:
+    """Offers ``~/change_state``, four services that tell of states, and the topic ``~/transition_event``.
+
+    ``~/change_state`` runs the program's own callbacks, so the trace shows it, unlike the other four.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        machine: LifecycleStateMachine,
+        change_state: Callable[[int], TransitionCallbackReturn],
+        callback_group: CallbackGroup | None,
+    ) -> None:
+        self._node = node
+        self._machine = machine
+        self._change = change_state
+        self._events = node.create_publisher(message(_PACKAGE, "TransitionEvent"), "~/transition_event", _QOS)
+        node.create_service(
+            service(_PACKAGE, "ChangeState"),
+            "~/change_state",
+            self.change_state,
+            qos_profile=_QOS,
+            callback_group=callback_group,
+        )
+        for kind, name, callback in (
+            ("GetState", "get_state", self._get_state),
+            ("GetAvailableStates", "get_available_states", self._get_available_states),
+            ("GetAvailableTransitions", "get_available_transitions", self._get_available_transitions),
+            ("GetAvailableTransitions", "get_transition_graph", self._get_transition_graph),
+        ):
+            offer_hidden(node, service(_PACKAGE, kind), f"~/{name}", callback, _QOS, callback_group)
+
+    def tell(self, transition: Transition) -> None:
+        """Tell a listener that the node took a transition; without one nothing is sent."""
+        if self._events.get_subscription_count() == 0:
+            return
+        event = message(_PACKAGE, "TransitionEvent")(
+            timestamp=self._node.get_clock().now().nanoseconds,
+            transition=_transition(transition),
+            start_state=_state(transition.start),
+            goal_state=_state(transition.goal),
+        )
+        self._events.publish(event)
+
+    def change_state(self, request: Any, response: Any) -> Any:
+        """Take the transition of that label, else of that number, if the node's state has it."""
+        wanted = request.transition
+        response.success = False
+        try:
+            number = self._machine.get_transition_by_label(wanted.label) if wanted.label else wanted.id
+            response.success = self._change(number) is TransitionCallbackReturn.SUCCESS
+        except RCLError as error:
+            self._node.get_logger().error(str(error))
+        return response
+
+    def _get_state(self, _request: Any, response: Any) -> Any:
+        response.current_state = _state(self._machine.current_state[0])
+        return response
+
+    def _get_available_states(self, _request: Any, response: Any) -> Any:
+        response.available_states = [_state(number) for number, _ in self._machine.available_states]
+        return response
+
+    def _get_available_transitions(self, _request: Any, response: Any) -> Any:
+        response.available_transitions = _described(self._machine.available_transitions)
+        return response
+
+    def _get_transition_graph(self, _request: Any, response: Any) -> Any:
+        response.available_transitions = _described(self._machine.transition_graph)
+        return response
+
+
+def _described(transitions: Iterable[Transition]) -> list[Any]:
+    description = message(_PACKAGE, "TransitionDescription")
+    return [
+        description(
+            transition=_transition(each), start_state=_state(each.start), goal_state=_state(each.goal)
+        )
+        for each in transitions
+    ]
+
+
+def _transition(transition: Transition) -> Any:
+    return message(_PACKAGE, "Transition")(id=transition.transition_id, label=transition.label)
+
+
+def _state(number: int) -> Any:
+    return message(_PACKAGE, "State")(id=number, label=STATES[number])

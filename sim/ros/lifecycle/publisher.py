@@ -1,0 +1,21 @@
+"""Publishers that are silent unless their node is active."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sim.ros.lifecycle.managed_entity import SimpleManagedEntity
+from sim.ros.publisher import Publisher
+
+
+class LifecyclePublisher(SimpleManagedEntity, Publisher):
+    """A publisher that sends nothing while its node is not active."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        SimpleManagedEntity.__init__(self)
+        Publisher.__init__(self, *args, **kwargs)
+
+    def publish(self, msg: Any) -> None:
+        """Send a message if the node is active; otherwise as ``Publisher.publish``."""
+        if self.is_activated:
+            Publisher.publish(self, msg)

@@ -1,0 +1,37 @@
+"""``--filter``: a Python expression that decides which messages count."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from sim.shell.parser import Parser
+from sim.shell.session import Failed
+
+
+def add_filter_option(parser: Parser, purpose: str) -> None:
+    """Add the option."""
+    parser.add_argument(
+        "--filter",
+        metavar="PY_EXPR",
+        help=f"Python expression to filter messages that are to be {purpose}ed: a function of m, the message",
+    )
+
+
+def compiled_filter(expression: str | None) -> Callable[[Any], object] | None:
+    """The function that decides, None without an expression; raises Failed if it is none."""
+    if expression is None:
+        return None
+    try:
+        code = compile(expression, "<filter>", "eval")
+    except SyntaxError as error:
+        raise Failed(f"Invalid filter expression '{expression}': {error.msg}") from None
+
+    def decide(message: Any) -> object:
+        try:
+            # The run's programs execute Python of the same author in this process already.
+            return eval(code, {"m": message})
+        except Exception as error:
+            raise Failed(f"The filter '{expression}' raised {type(error).__name__}: {error}") from error
+
+    return decide

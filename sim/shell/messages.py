@@ -1,0 +1,91 @@
+"""Message and service types by the names that a line gives them, and messages filled from YAML."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TypeVar
+
+from sim import plain_yaml
+from sim.plain_yaml import YamlError
+from sim.ros.interfaces import Message, ServiceType, UnknownInterfaceError, action, message, service
+from sim.ros.interfaces.base import ActionType
+from sim.ros.interfaces.rosidl_runtime_py import message_to_yaml, set_message_fields
+from sim.shell.quoting import backslashed, double_quoted
+from sim.shell.session import Failed
+
+T = TypeVar("T")
+
+NO_DICTIONARY = "The passed value needs to be a dictionary in YAML format"
+
+
+def message_class(name: str) -> type[Message]:
+    """The class of ``std_msgs/msg/Int32`` or ``std_msgs/Int32``; raises Failed if there is none."""
+    return _found(name, "msg", "message", message)
+
+
+def service_class(name: str) -> ServiceType:
+    """The class of ``std_srvs/srv/SetBool`` or ``std_srvs/SetBool``; raises Failed if there is none."""
+    return _found(name, "srv", "service", service)
+
+
+def action_class(name: str) -> ActionType:
+    """The class of ``example_interfaces/action/Fibonacci``; raises Failed if there is none."""
+    return _found(name, "action", "action", action)
+
+
+def _found(name: str, kind: str, noun: str, find: Callable[[str, str], T]) -> T:
+    parts = name.split("/")
+    if len(parts) == 2:
+        parts.insert(1, kind)
+    if len(parts) != 3 or parts[1] != kind:
+        raise Failed(f"The passed {noun} type is invalid: {name!r} is not of the form package/{kind}/Name")
+    try:
+        return find(parts[0], parts[2])
+    except UnknownInterfaceError as error:
+        raise Failed(f"The passed {noun} type is invalid: {error}") from None
+
+
+def prototype_of(cls: type[Message]) -> str:
+    """A message with its default values as YAML."""
+    return message_to_yaml(cls())
+
+
+def prototype_word(cls: type[Message]) -> str:
+    """A message with its default values, as YAML on one line and quoted for a shell."""
+    text = prototype_of(cls).removesuffix("\n")
+    if "\n" not in text:
+        return backslashed(text)
+    return double_quoted(message_to_yaml(cls(), flow_style=True).removesuffix("\n"))
+
+
+def given_values(text: str) -> object:
+    """The values that a line gives; raises Failed if they are no YAML."""
+    try:
+        return plain_yaml.load(text)
+    except YamlError as error:
+        raise Failed(f"{NO_DICTIONARY}: {error}") from None
+
+
+class Outgoing:
+    """A message to send, and the times in it that are to be those of sending: ``now``, a header's ``auto``.
+
+    Raises:
+        Failed: a value does not fit.
+    """
+
+    def __init__(self, cls: type[Message], values: object) -> None:
+        self.message = cls()
+        try:
+            self._stamps = set_message_fields(
+                self.message,
+                values,  # type: ignore[arg-type] # what is no mapping is refused in ros2's words
+                expand_header_auto=True,
+                expand_time_now=True,
+            )
+        except (TypeError, AttributeError, ValueError, AssertionError, OverflowError) as error:
+            raise Failed(f"Failed to populate field: {error}") from None
+
+    def stamp(self, now: Message) -> None:
+        """Put the time, a builtin_interfaces/msg/Time, where it is wanted."""
+        for set_stamp in self._stamps:
+            set_stamp(now)

@@ -1,0 +1,25 @@
+"""Writes a word so that a shell reads it as it is meant."""
+
+from __future__ import annotations
+
+import re
+
+_PLAIN = re.compile(r"[\w@%+=:,./~-]+", re.ASCII)
+_TO_ESCAPE = re.compile(r"[^\w@%+=:,./~-]", re.ASCII)
+_TO_ESCAPE_IN_DOUBLE_QUOTES = re.compile(r'[$`"\\]')
+
+
+def backslashed(text: str) -> str:
+    """The word with backslashes, as a shell completes it."""
+    if _PLAIN.fullmatch(text):
+        return text
+    return _TO_ESCAPE.sub(_backslashed, text) if text else "''"
+
+
+def double_quoted(text: str) -> str:
+    """The word in double quotes."""
+    return f'"{_TO_ESCAPE_IN_DOUBLE_QUOTES.sub(_backslashed, text)}"'
+
+
+def _backslashed(found: re.Match[str]) -> str:
+    return f"\\{found[0]}"

@@ -1,0 +1,164 @@
+"""What a verb has at hand while it is carried out: a hidden node, its time, and a place for its output."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from sim.ros.context import Context
+from sim.ros.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
+from sim.ros.host import Host
+from sim.ros.node import Node
+from sim.ros.probe import PublishingProbe
+from sim.ros.process import Process
+from sim.ros.task import Future
+from sim.shell.tools import Tools
+
+HIDDEN_NODE_PREFIX = "_ros2cli_"
+
+_SERVICE_POLL = 0.25
+"""Seconds between two looks for a service, as in rclpy."""
+
+
+class Failed(Exception):  # noqa: N818 -- what a line did, as a shell would say it
+    """The line failed: the text goes to stderr, the status is the line's."""
+
+    def __init__(self, text: str, status: int = 1) -> None:
+        super().__init__(text)
+        self.status = status
+
+
+class Ended(Exception):  # noqa: N818
+    """The line ended with a status and nothing more to say."""
+
+    def __init__(self, status: int) -> None:
+        super().__init__(status)
+        self.status = status
+
+
+class Interrupted(Exception):  # noqa: N818
+    """Ctrl-C, or the end of the context."""
+
+
+class LineProbe(PublishingProbe):
+    """Records what a line sends: its messages and its service calls."""
+
+    def service_called(self, call: int, service: str, request: object) -> None:
+        """A request left for a service."""
+        self._program.service_called(call, service, request)
+
+
+class Session:
+    """One line's stay on the network. Only ``interrupt`` may be called by other threads than the line's."""
+
+    def __init__(self, host: Host, tools: Tools) -> None:
+        self.host = host
+        self.tools = tools
+        self._context = Context(host=host, probe=LineProbe(host.clock, host.probe))
+        self._context.init([])
+        self._listeners: list[Callable[[], None]] = []
+        self._made_node: Node | None = None
+        self._made_executor: Executor | None = None
+
+    @property
+    def process(self) -> Process:
+        """The process whose thread the line is to run on."""
+        return self._context.process
+
+    def want(self, name: str) -> None:
+        """Tell the network that the line is about to use a topic or service."""
+        with self.host.lock:
+            self._context.network.want(name)
+
+    @property
+    def node(self) -> Node:
+        """The hidden node, which is made when first asked for."""
+        if self._made_node is None:
+            self.make_node(self._free_name())
+        assert self._made_node is not None
+        return self._made_node
+
+    def make_node(self, name: str) -> None:
+        """Make the line's node under another name than the one it gets by itself."""
+        self._made_node = Node(
+            name, context=self._context, start_parameter_services=False, enable_rosout=False
+        )
+        self._executor.add_node(self._made_node)
+
+    def _free_name(self) -> str:
+        with self.host.lock:
+            taken = {node.get_name() for node in self._context.network.nodes()}
+        number = 1
+        while f"{HIDDEN_NODE_PREFIX}{number}" in taken:
+            number += 1
+        return f"{HIDDEN_NODE_PREFIX}{number}"
+
+    @property
+    def _executor(self) -> Executor:
+        # Made on the line's own thread, so that it belongs to the line's process.
+        if self._made_executor is None:
+            self._made_executor = SingleThreadedExecutor(context=self._context)
+        return self._made_executor
+
+    # Output
+
+    def say(self, text: str = "") -> None:
+        """Write text, and a line end, to stdout."""
+        for line in text.split("\n"):
+            self.tools.say(line, error=False)
+
+    def complain(self, text: str) -> None:
+        """Write text, and a line end, to stderr."""
+        for line in text.split("\n"):
+            self.tools.say(line, error=True)
+
+    # Waiting
+
+    def spin(self, until: Future[Any] | None = None, seconds: float | None = None) -> bool:
+        """Serve the node until the future is done, at most for some seconds; whether it is done.
+
+        Raises:
+            Interrupted: the line was interrupted meanwhile.
+        """
+        future = Future() if until is None else until
+        try:
+            self._executor.spin_until_future_complete(future, seconds)
+        except ExternalShutdownException:
+            raise Interrupted from None
+        self.check()
+        return future.done()
+
+    def sleep(self, seconds: float) -> None:
+        """Let time pass; raises as ``spin``."""
+        if seconds > 0:
+            self.spin(seconds=seconds)
+
+    def wait_until(self, condition: Callable[[], bool], poll: float = _SERVICE_POLL) -> None:
+        """Ask ``condition`` every ``poll`` seconds until it holds; raises as ``spin``."""
+        while not condition():
+            self.sleep(poll)
+
+    def check(self) -> None:
+        """Raise Interrupted if the line was interrupted."""
+        if not self._context.ok():
+            raise Interrupted
+
+    # Interrupting
+
+    def on_interrupt(self, listener: Callable[[], None]) -> None:
+        """Have ``listener`` called at every Ctrl-C, at once if there was one already; it must not wait."""
+        self._listeners.append(listener)
+        if not self._context.ok():
+            listener()
+
+    def interrupt(self) -> None:
+        """Have every wait of the line end."""
+        for listener in tuple(self._listeners):
+            listener()
+        self._context.try_shutdown()
+
+    def close(self) -> None:
+        """Leave the network."""
+        if self._made_node is not None:
+            self._made_node.destroy_node()
+        self._context.try_shutdown()

@@ -1,0 +1,55 @@
+"""A verb: what stands after ``ros2 topic`` and the like."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TypeAlias
+
+from sim.shell.parser import Parser
+from sim.shell.session import Session
+
+Action: TypeAlias = Callable[[Session, Namespace], None]
+
+
+@dataclass(frozen=True, slots=True)
+class Verb:
+    """What it is called, which arguments it takes, and what it does.
+
+    ``carry_out`` raises for any end but a good one: Failed, Ended, Interrupted, or an error that says
+    what is wrong (NotImplementedError, PackageError, DefinitionError).
+    """
+
+    name: str
+    help: str
+    add_arguments: Callable[[Parser], None]
+    carry_out: Action
+
+
+@dataclass(frozen=True, slots=True)
+class Command:
+    """A command with verbs, or one that is a verb itself."""
+
+    name: str
+    help: str
+    verbs: tuple[Verb, ...] = ()
+    itself: Verb | None = None
+
+
+def no_arguments(parser: Parser) -> None:
+    """Add none."""
+
+
+def add_graph_options(parser: Parser) -> None:
+    """The options of verbs that look at the graph, which is known here at once and without a daemon."""
+    parser.add_argument(
+        "--spin-time",
+        type=float,
+        default=None,
+        help="Spin time in seconds to wait for discovery (only applies when not using an already running "
+        "daemon)",
+    )
+    parser.add_argument(
+        "--no-daemon", action="store_true", help="Do not spawn nor use an already running daemon"
+    )

@@ -1,0 +1,64 @@
+"""Measures the figures and prints them against goal and record: ``python -m tests.benchmarks [--record]``."""
+
+import argparse
+import os
+import platform
+import warnings
+from dataclasses import replace
+
+from tests.benchmarks import records
+from tests.benchmarks.figures import FIGURES, Figure, unit
+
+_COLUMNS = "{:<42}{:>12}{:>8}{:>12}{:>9}{:>9}{:>9}{:>9}"
+
+
+def main() -> None:
+    """Measure what was asked for."""
+    options = _parse()
+    known = records.read()
+    print(f"Python {platform.python_version()}, {os.cpu_count()} cores, u = {unit() * 1e9:.0f} ns")
+    print(_COLUMNS.format("", "unit", "goal", "rclpy", "before", "last", "now", "change"))
+    measured: dict[str, float] = {}
+    for figure in FIGURES:
+        if all(word in figure.name for word in options.words):
+            measured[figure.name] = figure.median_of(options.rounds)
+            print(row(figure, known, measured[figure.name]), flush=True)
+    if options.record:
+        records.write(replace(known, last={**known.last, **measured}))
+
+
+def row(figure: Figure, known: records.Records, now: float) -> str:
+    """A figure's line of the table; one that misses its goal is marked."""
+    before, last = known.before.get(figure.name), known.last.get(figure.name)
+    change = "" if last is None else f"{now / last - 1:+.0%}"
+    over = "" if now <= figure.goal else "  over"
+    return (
+        _COLUMNS.format(
+            figure.name,
+            figure.unit,
+            f"{figure.goal:g}",
+            figure.rclpy,
+            _shown(before),
+            _shown(last),
+            _shown(now),
+            change,
+        )
+        + over
+    )
+
+
+def _shown(value: float | None) -> str:
+    return "" if value is None else f"{value:.0f}" if value >= 10 else f"{value:.2g}"
+
+
+def _parse() -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="python -m tests.benchmarks", description=__doc__)
+    parser.add_argument("words", nargs="*", help="measure only figures whose name has all these words")
+    parser.add_argument("--rounds", type=int, default=5, help="how often each is measured; the median counts")
+    parser.add_argument("--record", action="store_true", help="keep what was measured as the last record")
+    return parser.parse_args()
+
+
+if __name__ == "__main__":
+    warnings.simplefilter("error")
+    main()

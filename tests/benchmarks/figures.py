@@ -1,0 +1,121 @@
+"""The figures that are watched: what each measures, its goal, and what real rclpy was measured to take.
+
+Most are in units u: one ``deque.append``, ``popleft`` and call of an empty function in a bare loop, measured
+just before and after. Machines differ, and the same one differs from minute to minute; u differs with them.
+"""
+
+import time
+from collections import deque
+from collections.abc import Callable
+from dataclasses import dataclass
+from statistics import median
+
+from tests.benchmarks import scenes
+from tests.benchmarks.scenes import MakeExecutor, Scene, multi, pinned, single
+
+CALLS = 5_000
+FEW_CALLS = 1_000
+
+
+def unit() -> float:
+    """The seconds that one u takes now."""
+    turns = 40_000
+    queue: deque[int] = deque()
+
+    def empty() -> None:
+        return None
+
+    began = time.perf_counter()
+    for _ in range(turns):
+        queue.append(1)
+        queue.popleft()
+        empty()
+    return (time.perf_counter() - began) / turns
+
+
+@dataclass(frozen=True)
+class Figure:
+    """``measure`` runs so many calls once; ``goal`` is the most it may be, in ``unit``."""
+
+    name: str
+    unit: str
+    goal: float
+    rclpy: str
+    measure: Callable[[int], float]
+    calls: int = CALLS
+
+    def median_of(self, rounds: int) -> float:
+        """Measure several times, after one run that nobody counts."""
+        self.measure(self.calls // 10)
+        return median(self.measure(self.calls) for _ in range(rounds))
+
+
+def _in_units(scene: Scene, make_executor: MakeExecutor) -> Callable[[int], float]:
+    def measure(calls: int) -> float:
+        before = unit()
+        took = scene(make_executor, calls)
+        return took / ((before + unit()) / 2)
+
+    return measure
+
+
+def _on_one_core(measure: Callable[[int], float]) -> Callable[[int], float]:
+    def measure_pinned(calls: int) -> float:
+        with pinned():
+            return measure(calls)
+
+    return measure_pinned
+
+
+def _growth(calls: int) -> float:
+    """What a callback costs among 500 entities, relative to what it costs alone."""
+    alone = scenes.one_timer(single, calls)
+    among = scenes.timer_among(500)(single, calls)
+    return among / alone
+
+
+def _u(
+    name: str, scene: Scene, make_executor: MakeExecutor, goal: float, rclpy: str, calls: int = CALLS
+) -> Figure:
+    return Figure(name, "u", goal, rclpy, _in_units(scene, make_executor), calls)
+
+
+def _both_ways(
+    name: str, scene: Scene, threads: int, goal: float, rclpy: str, on_one_core: str
+) -> tuple[Figure, Figure]:
+    measure = _in_units(scene, multi(threads))
+    return (
+        Figure(f"{name}, multi {threads}", "u", goal, rclpy, measure),
+        Figure(f"{name}, multi {threads}, one core", "u", goal, on_one_core, _on_one_core(measure)),
+    )
+
+
+_ANY, _PINNED = "5200-7900", "1850-2200"
+
+FIGURES = (
+    _u("zero timer, single", scenes.one_timer, single, 120, "920-1250"),
+    *_both_ways("zero timer", scenes.one_timer, 2, 250, _ANY, _PINNED),
+    *_both_ways("zero timer", scenes.one_timer, 4, 250, _ANY, _PINNED),
+    *_both_ways("four timers and groups", scenes.four_timers, 2, 250, _ANY, _PINNED),
+    *_both_ways("four timers and groups", scenes.four_timers, 4, 250, _ANY, _PINNED),
+    _u("publish to callback, single", scenes.subscriptions(1), single, 250, "1800-2100"),
+    _u("publish to callback, multi 4", scenes.subscriptions(1), multi(4), 250, ""),
+    _u("ten subscriptions, a delivery, single", scenes.subscriptions(10), single, 150, "600-740"),
+    _u("ten subscriptions, a delivery, multi 4", scenes.subscriptions(10), multi(4), 150, ""),
+    _u("service round trip, single", scenes.calls_in_a_row, single, 700, "4700"),
+    _u("service round trip, multi 2", scenes.calls_in_a_row, multi(2), 700, "4700"),
+    _u("service, spin until done, single", scenes.calls_awaited, single, 700, "4700", FEW_CALLS),
+    # Here too the thread that waits is not the one that runs the callbacks: two hand-overs at least.
+    _u("service, spin until done, multi 2", scenes.calls_awaited, multi(2), 2500, "", FEW_CALLS),
+    _u(
+        "client in another thread, single", scenes.calls_from_another_thread, single, 2500, "11500", FEW_CALLS
+    ),
+    _u("client in another thread, multi 2", scenes.calls_from_another_thread, multi(2), 2500, "", FEW_CALLS),
+    Figure("500 entities against one", "times", 1.2, "100", _growth),
+    Figure(
+        "1 ms timer, 99 % less late than", "ms", 0.3, "0.32", lambda n: scenes.lateness(single, n) * 1e3, 1000
+    ),
+    Figure(
+        "five idle 100 Hz timers", "% of a core", 2.7, "", lambda n: scenes.idle_timers(single, n) * 1e2, 1000
+    ),
+)

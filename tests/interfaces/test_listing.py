@@ -1,0 +1,66 @@
+"""Interfaces as the ros2 interface commands show them."""
+
+from __future__ import annotations
+
+import pytest
+
+from sim.ros.interfaces import (
+    UnknownInterfaceError,
+    interface_names,
+    interface_text,
+    known_packages_sentence,
+    prototype,
+)
+
+
+def test_messages_in_a_message_are_shown_below_it_by_tabs() -> None:
+    assert interface_text("geometry_msgs/msg/Twist") == (
+        "# This expresses velocity in free space broken into its linear and angular parts.\n\n"
+        "Vector3  linear\n\tfloat64 x\n\tfloat64 y\n\tfloat64 z\n"
+        "Vector3  angular\n\tfloat64 x\n\tfloat64 y\n\tfloat64 z\n"
+    )
+    assert "std_msgs/Header header\n\tbuiltin_interfaces/Time stamp\n\t\tint32 sec\n" in interface_text(
+        "geometry_msgs/msg/PoseStamped"
+    )
+
+
+def test_services_and_actions_keep_their_division() -> None:
+    assert interface_text("std_srvs/srv/SetBool") == "bool data\n---\nbool success\nstring message\n"
+    assert interface_text("example_interfaces/action/Fibonacci").count("---\n") == 2
+
+
+def test_every_interface_can_be_shown() -> None:
+    for name in interface_names():
+        assert interface_text(name) == "" or interface_text(name).endswith("\n")
+
+
+def test_names_are_listed_by_kind() -> None:
+    assert "std_msgs/msg/Int32" in interface_names("msg")
+    assert "turtlesim/action/RotateAbsolute" in interface_names("action")
+    assert set(interface_names("srv")) < set(interface_names())
+
+
+def test_a_prototype_is_the_default_as_yaml_in_quotes() -> None:
+    assert prototype("geometry_msgs/msg/Quaternion") == '"x: 0.0\ny: 0.0\nz: 0.0\nw: 1.0\n"\n'
+    assert prototype("std_srvs/srv/SetBool") == '"data: false\n"\n'
+    assert prototype("example_interfaces/action/Fibonacci") == '"order: 0\n"\n'
+
+
+@pytest.mark.parametrize(
+    ("name", "text"),
+    [
+        ("std_msgs/Int32", "Invalid name 'std_msgs/Int32'. Expected three parts"),
+        ("std_msgs/foo/Int32", "middle part must be one of msg, srv, action"),
+        ("std_mgs/msg/Int32", "there is no package 'std_mgs'; did you mean 'std_msgs'?"),
+    ],
+)
+def test_a_wrong_name_says_what_is_wrong(name: str, text: str) -> None:
+    with pytest.raises(UnknownInterfaceError) as unknown:
+        interface_text(name)
+    assert text in str(unknown.value)
+
+
+def test_an_unknown_package_leads_to_the_nearest_and_to_all_that_are_known() -> None:
+    assert known_packages_sentence("geometry_msg").startswith("did you mean 'geometry_msgs'? ")
+    assert "std_msgs, std_srvs" in known_packages_sentence("qqq")
+    assert known_packages_sentence("std_srvs") == "std_srvs has services only"

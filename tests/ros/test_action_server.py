@@ -1,0 +1,526 @@
+"""Action servers, asked by plain clients of their services and heard by plain subscriptions."""
+
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+
+import sim.ros as rclpy
+from sim.ros.action.server import ActionServer, CancelResponse, GoalResponse, ServerGoalHandle
+from sim.ros.callback_groups import ReentrantCallbackGroup
+from sim.ros.exceptions import RCLError
+from sim.ros.executors import MultiThreadedExecutor
+from sim.ros.interfaces import action, message, service
+from sim.ros.node import Node
+from sim.ros.task import Future
+from sim.trace.events import CallbackFailed, EntityAppeared, EntityGone
+from tests.support.simulation import Simulation, simulate
+
+Fibonacci = action("example_interfaces", "Fibonacci")
+Impl = Fibonacci.Impl
+CancelGoal = service("action_msgs", "CancelGoal")
+GoalStatus = message("action_msgs", "GoalStatus")
+Int32 = message("std_msgs", "Int32")
+
+
+class Asker:
+    """Asks an action server by its services, and keeps what it publishes."""
+
+    def __init__(self, node: Node, name: str = "/fibonacci") -> None:
+        self.node = node
+        self.feedback: list[tuple[int, list[int]]] = []
+        self.statuses: list[list[int]] = []
+        group = ReentrantCallbackGroup()
+        self.goals, self.cancels, self.results = (
+            node.create_client(kind, f"{name}/_action/{part}", callback_group=group)
+            for kind, part in (
+                (Impl.SendGoalService, "send_goal"),
+                (Impl.CancelGoalService, "cancel_goal"),
+                (Impl.GetResultService, "get_result"),
+            )
+        )
+        node.create_subscription(
+            Impl.FeedbackMessage, f"{name}/_action/feedback", self._hear, 10, callback_group=group
+        )
+        node.create_subscription(
+            Impl.GoalStatusMessage, f"{name}/_action/status", self._see, 10, callback_group=group
+        )
+
+    def _hear(self, feedback: Any) -> None:
+        self.feedback.append((int(feedback.goal_id.uuid[0]), list(feedback.feedback.sequence)))
+
+    def _see(self, status: Any) -> None:
+        self.statuses.append([each.status for each in status.status_list])
+
+    def send(self, number: int, order: int = 0) -> Any:
+        return self._answer(self.goals.call_async(self.goal(number, order)))
+
+    def goal(self, number: int, order: int = 0) -> Any:
+        request = Impl.SendGoalService.Request()
+        request.goal_id.uuid = [number] * 16
+        request.goal.order = order
+        return request
+
+    def cancel(self, number: int) -> Any:
+        request = CancelGoal.Request()
+        request.goal_info.goal_id.uuid = [number] * 16
+        return self._answer(self.cancels.call_async(request))
+
+    def result(self, number: int) -> Any:
+        request = Impl.GetResultService.Request()
+        request.goal_id.uuid = [number] * 16
+        return self._answer(self.results.call_async(request))
+
+    def _answer(self, future: Future[Any]) -> Any:
+        rclpy.spin_until_future_complete(self.node, future, timeout_sec=50)
+        return future.result()
+
+
+def spin_for(node: Node, seconds: float) -> None:
+    rclpy.spin_until_future_complete(node, Future(), timeout_sec=seconds)
+
+
+def succeed(goal_handle: ServerGoalHandle) -> Any:
+    goal_handle.succeed()
+    return Fibonacci.Result(sequence=[1, 1, 2])
+
+
+def test_an_accepted_goal_is_executed_and_its_result_is_for_whoever_asks() -> None:
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+        ActionServer(asker.node, Fibonacci, "fibonacci", succeed)
+        accepted = asker.send(1)
+        assert accepted.accepted
+        assert accepted.stamp == asker.node.get_clock().now().to_msg()
+        for _ in range(2):
+            response = asker.result(1)
+            assert response.status == GoalStatus.STATUS_SUCCEEDED
+            assert list(response.result.sequence) == [1, 1, 2]
+
+    simulate(program)
+
+
+def test_the_goal_callback_sees_the_goal_and_may_refuse_it() -> None:
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+        begun: list[ServerGoalHandle] = []
+        ActionServer(
+            asker.node,
+            Fibonacci,
+            "fibonacci",
+            succeed,
+            goal_callback=lambda goal: GoalResponse.ACCEPT if goal.order > 5 else GoalResponse.REJECT,
+            handle_accepted_callback=begun.append,
+        )
+        assert not asker.send(1, order=5).accepted
+        assert asker.send(2, order=6).accepted
+        assert [handle.request.order for handle in begun] == [6]
+        assert begun[0].status == GoalStatus.STATUS_ACCEPTED
+
+    simulate(program)
+
+
+def test_a_goal_callback_that_answers_anything_else_warns_and_refuses() -> None:
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+        ActionServer(asker.node, Fibonacci, "fibonacci", succeed, goal_callback=lambda _: True)
+        assert not asker.send(1).accepted
+
+    said = simulate(program).said()
+    assert said == ["Goal request callback did not return a GoalResponse type. Rejecting goal."]
+
+
+def test_an_id_that_is_in_use_is_refused_without_asking() -> None:
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+        asked: list[Any] = []
+
+        def accept(goal: Any) -> GoalResponse:
+            asked.append(goal)
+            return GoalResponse.ACCEPT
+
+        ActionServer(asker.node, Fibonacci, "fibonacci", succeed, goal_callback=accept)
+        assert asker.send(1).accepted
+        assert not asker.send(1).accepted
+        assert len(asked) == 1
+
+    simulate(program)
+
+
+def test_callbacks_may_be_coroutines() -> None:
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+
+        async def accept(_goal: Any) -> GoalResponse:
+            return GoalResponse.ACCEPT
+
+        async def begin(goal_handle: ServerGoalHandle) -> None:
+            goal_handle.execute()
+
+        async def execute(goal_handle: ServerGoalHandle) -> Any:
+            return succeed(goal_handle)
+
+        ActionServer(
+            asker.node,
+            Fibonacci,
+            "fibonacci",
+            execute,
+            goal_callback=accept,
+            handle_accepted_callback=begin,
+        )
+        assert asker.send(1).accepted
+        assert asker.result(1).status == GoalStatus.STATUS_SUCCEEDED
+
+    simulate(program)
+
+
+def test_a_goal_whose_state_is_not_set_counts_as_aborted() -> None:
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+        ActionServer(asker.node, Fibonacci, "fibonacci", lambda _: Fibonacci.Result(sequence=[7]))
+        asker.send(3)
+        response = asker.result(3)
+        assert response.status == GoalStatus.STATUS_ABORTED
+        assert list(response.result.sequence) == [7]
+
+    said = simulate(program).said()
+    assert said == [f"Goal state not set, assuming aborted. Goal ID: [{' '.join('3' * 16)}]"]
+
+
+def test_an_execute_callback_that_raises_gives_an_empty_result(capsys: pytest.CaptureFixture[str]) -> None:
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+
+        def execute(goal_handle: ServerGoalHandle) -> Any:
+            goal_handle.succeed()
+            raise ValueError("no way")
+
+        ActionServer(asker.node, Fibonacci, "fibonacci", execute)
+        asker.send(1)
+        response = asker.result(1)
+        assert response.status == GoalStatus.STATUS_SUCCEEDED
+        assert list(response.result.sequence) == []
+
+    trace = simulate(program)
+    assert trace.said() == ["Error raised in execute callback: no way"]
+    assert [event.error for event in trace.of(CallbackFailed)] == ["ValueError: no way"]
+    assert 'raise ValueError("no way")' in capsys.readouterr().err
+
+
+def test_an_execute_callback_that_returns_nothing_breaks_the_spin() -> None:
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+        ActionServer(asker.node, Fibonacci, "fibonacci", lambda goal_handle: goal_handle.succeed())
+        with pytest.raises(AssertionError, match="'result' field must be a sub message"):
+            asker.send(1)
+
+    simulate(program)
+
+
+def test_a_result_given_with_the_state_counts() -> None:
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+        begun: list[ServerGoalHandle] = []
+        ActionServer(asker.node, Fibonacci, "fibonacci", handle_accepted_callback=begun.append)
+        asker.send(1)
+        (goal_handle,) = begun
+        goal_handle.execute()
+        goal_handle.succeed(Fibonacci.Result(sequence=[4]))
+        assert list(asker.result(1).result.sequence) == [4]
+
+    simulate(program)
+
+
+def test_an_unknown_goal_has_an_unknown_result() -> None:
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+        ActionServer(asker.node, Fibonacci, "fibonacci", succeed)
+        assert asker.result(1).status == GoalStatus.STATUS_UNKNOWN
+
+    simulate(program)
+
+
+def test_feedback_carries_the_goals_id_and_must_be_of_the_right_type() -> None:
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+
+        def execute(goal_handle: ServerGoalHandle) -> Any:
+            feedback = Fibonacci.Feedback(sequence=[5])
+            goal_handle.publish_feedback(feedback)
+            feedback.sequence = [6]
+            with pytest.raises(TypeError):
+                goal_handle.publish_feedback(Fibonacci.Result())
+            return succeed(goal_handle)
+
+        ActionServer(asker.node, Fibonacci, "fibonacci", execute)
+        asker.send(9)
+        asker.result(9)
+        assert asker.feedback == [(9, [5])]
+
+    simulate(program)
+
+
+def test_the_status_of_all_goals_is_told_at_each_change_and_to_late_listeners() -> None:
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+        ActionServer(asker.node, Fibonacci, "fibonacci", succeed)
+        for number in (1, 2):
+            asker.send(number)
+            asker.result(number)
+        executing, succeeded = GoalStatus.STATUS_EXECUTING, GoalStatus.STATUS_SUCCEEDED
+        spin_for(asker.node, 0.1)
+        assert asker.statuses == [[executing], [succeeded], [succeeded, executing], [succeeded, succeeded]]
+
+    simulate(program)
+
+
+def cancelled_by(answer: Callable[[Any], Any] | None, reply: Callable[[Any], None]) -> None:
+    """Cancel a goal that runs for 2 s at 1 s, and let ``reply`` judge the answer."""
+
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+
+        def execute(goal_handle: ServerGoalHandle) -> Any:
+            simulation.sleep(2.0)
+            if goal_handle.is_cancel_requested:
+                goal_handle.canceled()
+            else:
+                goal_handle.succeed()
+            return Fibonacci.Result()
+
+        group = ReentrantCallbackGroup()
+        ActionServer(
+            asker.node, Fibonacci, "fibonacci", execute, cancel_callback=answer, callback_group=group
+        )
+        executor = MultiThreadedExecutor(3)
+        executor.add_node(asker.node)
+        simulation.start(executor.spin)
+        future = asker.goals.call_async(asker.goal(1))
+        simulation.sleep(1.0)
+        assert future.done()
+        request = CancelGoal.Request()
+        cancelled = asker.cancels.call_async(request)
+        result = asker.results.call_async(Impl.GetResultService.Request(goal_id=asker.goal(1).goal_id))
+        simulation.sleep(2.0)
+        reply((cancelled.result(), result.result()))
+
+    simulate(program)
+
+
+def test_a_granted_cancel_request_lets_the_goal_end_as_canceled() -> None:
+    def judge(answers: Any) -> None:
+        cancel, result = answers
+        assert [int(info.goal_id.uuid[0]) for info in cancel.goals_canceling] == [1]
+        assert result.status == GoalStatus.STATUS_CANCELED
+
+    cancelled_by(lambda _: CancelResponse.ACCEPT, judge)
+
+
+@pytest.mark.parametrize("answer", [None, lambda _: CancelResponse.REJECT, lambda _: True])
+def test_a_cancel_request_that_is_not_granted_changes_nothing(answer: Callable[[Any], Any] | None) -> None:
+    def judge(answers: Any) -> None:
+        cancel, result = answers
+        assert list(cancel.goals_canceling) == []
+        assert result.status == GoalStatus.STATUS_SUCCEEDED
+
+    cancelled_by(answer, judge)
+
+
+def test_a_goal_cancelled_before_it_began_is_executed_as_canceling() -> None:
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+        begun: list[ServerGoalHandle] = []
+
+        def execute(goal_handle: ServerGoalHandle) -> Any:
+            assert goal_handle.is_cancel_requested
+            goal_handle.canceled()
+            return Fibonacci.Result()
+
+        ActionServer(
+            asker.node,
+            Fibonacci,
+            "fibonacci",
+            execute,
+            handle_accepted_callback=begun.append,
+            cancel_callback=lambda _: CancelResponse.ACCEPT,
+        )
+        asker.send(1)
+        assert len(asker.cancel(1).goals_canceling) == 1
+        assert begun[0].status == GoalStatus.STATUS_CANCELING
+        begun[0].execute()
+        assert asker.result(1).status == GoalStatus.STATUS_CANCELED
+        assert asker.cancel(1).return_code == CancelGoal.Response.ERROR_GOAL_TERMINATED
+        assert asker.cancel(2).return_code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID
+
+    simulate(program)
+
+
+def test_a_goal_cannot_be_executed_twice() -> None:
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+        begun: list[ServerGoalHandle] = []
+        ActionServer(asker.node, Fibonacci, "fibonacci", succeed, handle_accepted_callback=begun.append)
+        asker.send(1)
+        begun[0].execute()
+        with pytest.raises(RCLError, match=r"from state EXECUTING with event EXECUTE"):
+            begun[0].execute()
+        assert asker.result(1).status == GoalStatus.STATUS_SUCCEEDED
+
+    simulate(program)
+
+
+def test_the_callback_given_to_execute_takes_the_place_of_the_servers() -> None:
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+
+        def abort(goal_handle: ServerGoalHandle) -> Any:
+            goal_handle.abort()
+            return Fibonacci.Result()
+
+        ActionServer(
+            asker.node,
+            Fibonacci,
+            "fibonacci",
+            succeed,
+            handle_accepted_callback=lambda goal_handle: goal_handle.execute(abort),
+        )
+        asker.send(1)
+        assert asker.result(1).status == GoalStatus.STATUS_ABORTED
+
+    simulate(program)
+
+
+@pytest.mark.parametrize(("timeout", "left"), [(1, 0), (3, 2), (-1, 2)])
+def test_results_are_kept_for_a_while_after_the_end(timeout: float, left: int) -> None:
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+        server = ActionServer(asker.node, Fibonacci, "fibonacci", succeed, result_timeout=timeout)
+        for number in (1, 2):
+            asker.send(number)
+            asker.result(number)
+        spin_for(asker.node, 2.0)
+        assert len(server._goal_handles) == left
+        known = asker.result(1).status != GoalStatus.STATUS_UNKNOWN
+        assert known == bool(left)
+
+    simulate(program)
+
+
+def test_results_are_kept_10_s_and_counted_from_the_end_of_the_goal() -> None:
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+
+        def execute(goal_handle: ServerGoalHandle) -> Any:
+            simulation.sleep(5.0)
+            return succeed(goal_handle)
+
+        ActionServer(asker.node, Fibonacci, "fibonacci", execute)
+        asker.send(1)
+        assert simulation.now == 5.0
+        spin_for(asker.node, 9.9)
+        assert asker.result(1).status == GoalStatus.STATUS_SUCCEEDED
+        spin_for(asker.node, 0.2)
+        assert asker.result(1).status == GoalStatus.STATUS_UNKNOWN
+
+    simulate(program)
+
+
+def test_a_goal_forgotten_while_its_result_is_awaited_is_answered_all_the_same() -> None:
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+
+        async def execute(goal_handle: ServerGoalHandle) -> Any:
+            goal_handle.succeed()
+            await later
+            assert goal_handle.status == GoalStatus.STATUS_UNKNOWN
+            assert not goal_handle.is_active
+            goal_handle.publish_feedback(Fibonacci.Feedback())
+            goal_handle.abort()
+            return Fibonacci.Result(sequence=[3])
+
+        later: Future[None] = Future()
+        ActionServer(asker.node, Fibonacci, "fibonacci", execute, result_timeout=1)
+        asker.send(1)
+        simulation.at(3.0, lambda: later.set_result(None))
+        assert list(asker.result(1).result.sequence) == [3]
+        assert asker.feedback == []
+
+    simulate(program)
+
+
+def test_a_destroyed_server_is_off_the_network_and_its_goals_are_over() -> None:
+    def program(simulation: Simulation) -> None:
+        asker = Asker(Node("n"))
+        begun: list[ServerGoalHandle] = []
+        server = ActionServer(
+            asker.node, Fibonacci, "fibonacci", succeed, handle_accepted_callback=begun.append
+        )
+        asker.send(1)
+        server.destroy()
+        server.destroy()
+        assert begun[0].status == GoalStatus.STATUS_UNKNOWN
+        assert not asker.goals.service_is_ready()
+        assert asker.node.count_publishers("/fibonacci/_action/status") == 0
+        assert len(list(asker.node.services)) == len(list(Node("other").services))
+        ActionServer(asker.node, Fibonacci, "fibonacci", succeed)
+        assert asker.send(1).accepted
+
+    simulate(program)
+
+
+def test_a_server_goes_with_its_node() -> None:
+    def program(simulation: Simulation) -> None:
+        asker, node = Asker(Node("n")), Node("server")
+        server = ActionServer(node, Fibonacci, "fibonacci", succeed)
+        node.destroy_node()
+        assert server.destroyed
+        assert not asker.goals.service_is_ready()
+
+    simulate(program)
+
+
+def test_a_server_is_one_waitable_of_its_node() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        server = ActionServer(node, Fibonacci, "fibonacci", succeed)
+        assert list(node.waitables) == [server]
+        server.destroy()
+        assert list(node.waitables) == []
+
+    trace = simulate(program)
+    made = {event.entity for event in trace.of(EntityAppeared)}
+    assert {event.entity for event in trace.of(EntityGone)} == made
+    assert len(made) == 2
+
+
+def test_a_server_counts_as_a_callback_that_its_program_has_to_spin_for() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        before = node.context.process.callbacks
+        ActionServer(node, Fibonacci, "fibonacci", succeed)
+        assert node.context.process.callbacks == before + 1
+
+    simulate(program)
+
+
+def test_a_server_counts_its_entities() -> None:
+    def program(simulation: Simulation) -> None:
+        counts = ActionServer(Node("n"), Fibonacci, "fibonacci", succeed).get_num_entities()
+        assert (counts.num_services, counts.num_timers) == (3, 1)
+        assert (counts.num_clients, counts.num_subscriptions, counts.num_guard_conditions) == (0, 0, 0)
+
+    simulate(program)
+
+
+def test_what_is_no_action_type_no_name_or_no_callback_is_refused() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        with pytest.raises(AttributeError, match="no action type"):
+            ActionServer(node, Int32, "fibonacci", succeed)
+        with pytest.raises(ValueError, match="fibo nacci"):
+            ActionServer(node, Fibonacci, "fibo nacci", succeed)
+        with pytest.raises(TypeError, match="not callable"):
+            ActionServer(node, Fibonacci, "fibonacci", 3)  # type: ignore[arg-type]
+        assert not any("_action" in name for name, _ in node.get_topic_names_and_types())
+
+    simulate(program)

@@ -1,0 +1,129 @@
+"""How the workers of a pool share what is ready: who begins what, and that nobody idle is forgotten."""
+
+import threading
+from collections.abc import Callable
+
+import sim.ros as rclpy
+from sim.clock import RealClock
+from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
+from sim.ros.executors import MultiThreadedExecutor
+from sim.ros.host import HostLock
+from sim.ros.interfaces import message
+from sim.ros.node import Node
+from sim.ros.task import Future
+from tests.support.simulation import Simulation, Trace, installed, no_thread_left, simulate
+
+Int32 = message("std_msgs", "Int32")
+
+
+class LateClock(RealClock):
+    """Wall time on a machine where the second worker gets to run only when ``gate`` opens."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.gate = threading.Event()
+
+    def start_thread(self, target: Callable[[], None], name: str) -> None:
+        """Start a thread; the second worker waits first."""
+
+        def run() -> None:
+            if name.endswith("_1"):
+                self.gate.wait(5.0)
+            target()
+
+        super().start_thread(run, name)
+
+
+def test_a_worker_that_comes_free_takes_over_what_another_one_is_late_for() -> None:
+    clock = LateClock()
+    simulation = Simulation(clock)
+    with no_thread_left(), installed(simulation.host):
+        node = Node("n")
+        ticks: list[str] = []
+
+        def tick(name: str) -> None:
+            ticks.append(name)
+            if len(ticks) == 20:
+                rclpy.shutdown()
+                clock.gate.set()
+
+        for name in "abc":
+            node.create_timer(0.0, _calling(tick, name), MutuallyExclusiveCallbackGroup())
+        executor = MultiThreadedExecutor(2)
+        executor.add_node(node)
+        executor.spin()
+        executor.shutdown()
+    assert "".join(ticks[:18]) == "abc" * 6
+    assert {each.thread for each in Trace(simulation.events).calls()} == {"ThreadPoolExecutor-0_0"}
+
+
+def test_what_a_callback_sends_and_waits_for_is_heard_by_an_idle_worker() -> None:
+    simulation = Simulation(RealClock())
+    with no_thread_left(), installed(simulation.host):
+        node = Node("n")
+        publisher = node.create_publisher(Int32, "t", 10)
+        heard = threading.Semaphore(0)
+        node.create_subscription(
+            Int32, "t", lambda _: heard.release(), 10, callback_group=MutuallyExclusiveCallbackGroup()
+        )
+        missed: list[int] = []
+
+        def send() -> None:
+            for number in range(300):
+                publisher.publish(Int32(data=number))
+                if not heard.acquire(timeout=5.0):
+                    missed.append(number)
+                    break
+            rclpy.shutdown()
+
+        node.create_guard_condition(send, MutuallyExclusiveCallbackGroup()).trigger()
+        executor = MultiThreadedExecutor(2)
+        executor.add_node(node)
+        executor.spin()
+        executor.shutdown()
+    assert missed == []
+
+
+def test_once_the_future_is_done_workers_begin_nothing_more() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        future: Future[int] = Future()
+
+        def finish() -> None:
+            future.set_result(1)
+            simulation.sleep(1.0)
+
+        node.create_timer(1.0, finish, MutuallyExclusiveCallbackGroup())
+        node.create_timer(0.7, lambda: None, MutuallyExclusiveCallbackGroup())
+        executor = MultiThreadedExecutor(2)
+        executor.add_node(node)
+        executor.spin_until_future_complete(future)
+        assert simulation.now == 1.0
+        simulation.sleep(5.0)
+
+    trace = simulate(program)
+    assert [(each.at, each.name) for each in trace.calls()] == [(0.7, "<lambda>"), (1.0, "finish")]
+
+
+def test_the_hosts_lock_lets_one_thread_in_at_a_time_and_itself_again() -> None:
+    lock, inside, worst = HostLock(), 0, 0
+
+    def enter() -> None:
+        nonlocal inside, worst
+        for _ in range(200):
+            with lock, lock:
+                inside += 1
+                worst = max(worst, inside)
+                threading.Event().wait(0)
+                inside -= 1
+
+    threads = [threading.Thread(target=enter) for _ in range(3)]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join()
+    assert (inside, worst) == (0, 1)
+
+
+def _calling(function: Callable[[str], None], name: str) -> Callable[[], None]:
+    return lambda: function(name)
