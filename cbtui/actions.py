@@ -24,6 +24,7 @@ class Scope(StrEnum):
     LESSON = "Lesson"
     PROMPT = "Prompt"
     THREADS = "Choice of threads"
+    MOMENT = "Choice of a moment"
     HELP = "Help"
 
 
@@ -47,7 +48,7 @@ class Action(NamedTuple):
         return self.series or self.help
 
 
-_ALONE = (Scope.PROMPT, Scope.THREADS, Scope.HELP)
+_ALONE = (Scope.PROMPT, Scope.THREADS, Scope.MOMENT, Scope.HELP)
 
 PANES = ("guide", "code", "robot", "log", "shell")
 """The panes of a lesson, in the order of their keys."""
@@ -72,6 +73,13 @@ ACTIONS = (
     Action("pause", "space", "pause", "Stop time for every thread", Scope.LESSON),
     Action("resume", "space", "go on", "Let time go on", Scope.LESSON),
     Action(
+        "step",
+        "full_stop",
+        "step",
+        "Go on by one decision, in a pause; looking back, by one event",
+        Scope.LESSON,
+    ),
+    Action(
         "threads", "t", "threads", "Choose how many threads the executor gets, and run again", Scope.LESSON
     ),
     Action("reset_world", "r", "reset", "Put the robot back to its start", Scope.LESSON),
@@ -90,10 +98,15 @@ ACTIONS = (
         for number, name in enumerate(PANES, start=1)
     ),
     Action("prompt", "colon", "ros2", "Type a ros2 line; tab completes, up brings lines back", Scope.LESSON),
+    Action(
+        "record", "R", "record", "Begin a recording of the run in the current folder, or end it", Scope.LESSON
+    ),
+    Action("go_to_time", "g", "go to", "Look back at a moment, or run on until it has come", Scope.LESSON),
+    Action("step_back", "comma", "look back", "Look at the event before the moment on screen", Scope.LESSON),
     Action("earlier", "left", "look back", "Look at an earlier stretch of the run", Scope.LESSON),
     Action("later", "right", "look back", "Look at a later stretch of the run", Scope.LESSON),
-    Action("slower", "minus", "speed", "Let virtual time pass more slowly", Scope.LESSON),
-    Action("faster", "plus", "speed", "Let virtual time pass faster", Scope.LESSON),
+    Action("slower", "minus", "speed", "Let time pass more slowly", Scope.LESSON),
+    Action("faster", "plus", "speed", "Let time pass faster", Scope.LESSON),
     Action("zoom_out", "less_than_sign", "zoom", "Show a longer stretch of time", Scope.LESSON),
     Action("zoom_in", "greater_than_sign", "zoom", "Show a shorter stretch of time", Scope.LESSON),
     Action("next_pane", "tab", "next pane", "Go to the next pane", Scope.LESSON),
@@ -105,15 +118,15 @@ ACTIONS = (
     Action("older", "up", "lines before", "Bring back the line before", Scope.PROMPT),
     Action("newer", "down", "lines before", "Go on to the line after", Scope.PROMPT),
     Action("interrupt", "ctrl+c", "interrupt", "End the line that goes on", Scope.PROMPT),
-    Action(
-        "leave_prompt", "escape", "other keys", "Go back to the other keys", Scope.PROMPT
-    ),
+    Action("leave_prompt", "escape", "other keys", "Go back to the other keys", Scope.PROMPT),
     *(
         Action(f"choose({number})", str(number), "threads", f"Run with {number} threads", Scope.THREADS)
         for number in range(1, 9)
     ),
     Action("choose(0)", "o", "the program's own", "Run with the program's own number", Scope.THREADS),
     Action("close", "escape,q", "close", "Close the window, and leave everything as it is", Scope.THREADS),
+    Action("go", "enter", "go", "Go to the moment", Scope.MOMENT),
+    Action("close", "escape", "close", "Close the window, and stay where you are", Scope.MOMENT),
     Action("close", "escape,q,question_mark", "close", "Go back to where you were", Scope.HELP),
     Action("command_palette", "ctrl+p", "commands", "Find any command, and colour themes", Scope.EVERYWHERE),
     Action("help", "question_mark", "help", "Show every key and what it does", Scope.EVERYWHERE),
@@ -121,7 +134,7 @@ ACTIONS = (
 
 
 def actions_of(scope: Scope) -> tuple[Action, ...]:
-    """Return the actions that work somewhere, those of everywhere last; prompt and windows have their own only."""
+    """Return the actions that work in a scope; outside of prompt and windows also those of everywhere."""
     scopes = (scope,) if scope in _ALONE else (scope, Scope.EVERYWHERE)
     return tuple(action for action in ACTIONS if action.scope in scopes)
 
@@ -166,6 +179,8 @@ _SIGNS = {
     "less_than_sign": "<",
     "greater_than_sign": ">",
     "question_mark": "?",
+    "comma": ",",
+    "full_stop": ".",
     "colon": ":",
     "ctrl+p": "^p",
     "ctrl+c": "^c",

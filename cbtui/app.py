@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from cbtui.live_run import Deliver, Ended, OpenSession, Session
     from cbtui.subject import Subject
     from sim.engine.setup import RunSetup
+    from sim.trace.recording import Recording
 
 
 def _actions_provider() -> "type[Provider]":
@@ -41,8 +42,8 @@ class CbtuiApp(App[None]):
     """The console.
 
     ``start_lesson`` is the id of a lesson to open at once, ``start_file`` a program file, its arguments and
-    its clock; ``open_session`` starts engines, the real ones
-    unless a test says otherwise.
+    its clock, ``start_recording`` a recording to show; ``open_session`` starts engines, the real ones unless
+    a test says otherwise.
     """
 
     TITLE = "cbtui"
@@ -61,12 +62,14 @@ class CbtuiApp(App[None]):
         charset: str = Charset.BRAILLE,
         start_lesson: str | None = None,
         start_file: tuple[Path, Sequence[str], str] | None = None,
+        start_recording: "Recording | None" = None,
         open_session: "OpenSession" = _engine_session,
     ) -> None:
         super().__init__()
         self.charset = Charset(charset)
         self._start_lesson = start_lesson
         self._start_file = start_file
+        self._start_recording = start_recording
         self._open_session = open_session
         self._ascii = AsciiFilter()
 
@@ -82,6 +85,10 @@ class CbtuiApp(App[None]):
             from cbtui.subject import of_file
 
             self._show(of_file(*self._start_file))
+        elif self._start_recording is not None:
+            from cbtui.screens.replay import ReplayScreen
+
+            self.push_screen(ReplayScreen(self._start_recording, self.charset))
 
     def open_lesson(self, lesson: Lesson) -> None:
         """Run a lesson on screen, in place of another that may be open."""

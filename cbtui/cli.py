@@ -10,6 +10,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
+from cbtui import export_command
+
 if TYPE_CHECKING:
     from lessons.lesson import Lesson
 
@@ -93,6 +95,23 @@ def _parser() -> argparse.ArgumentParser:
     _add_run_options(running)
     running.set_defaults(action=_run)
 
+    replaying = commands.add_parser("replay", help="show a recording in the console")
+    replaying.add_argument("recording", metavar="FILE.mcap", help="a recording that cbtui made")
+    _add_console_options(replaying)
+    replaying.set_defaults(action=_replay)
+
+    informing = commands.add_parser("info", help="tell what is in a recording")
+    informing.add_argument("recording", metavar="FILE.mcap", help="a recording that cbtui made")
+    informing.set_defaults(action=_info)
+
+    exporting = commands.add_parser(
+        "export",
+        help="take a recording to trace viewers, spreadsheets and paper",
+        usage="%(prog)s FILE.mcap --FORMAT OUT …",
+    )
+    export_command.add_options(exporting, _moment)
+    exporting.set_defaults(action=export_command.export_command)
+
     commands.add_parser("ros2", help="carry out a ros2 line in the run that is going on", add_help=False)
     return parser
 
@@ -151,9 +170,17 @@ def _add_run_options(parser: argparse.ArgumentParser) -> None:
         metavar="X",
         type=_speed,
         default=math.inf,
-        help="virtual seconds per real second, or max (max)",
+        help="seconds of the run per real second, or max (max; on the real clock 1)",
     )
     parser.add_argument("--events", metavar="FILE.jsonl", help="write every event as a line of JSON")
+    parser.add_argument(
+        "--record",
+        metavar="FILE.mcap",
+        help="record the run, with its topics as rosbag2 and Foxglove read them",
+    )
+    parser.add_argument(
+        "--force", action="store_true", help="let --record replace a file that is there already"
+    )
 
 
 def _number(text: str, what: str) -> float:
@@ -243,18 +270,36 @@ def _open_console(options: argparse.Namespace) -> int:
         start_file = (_file(target), options.arguments, options.clock)
     elif target is not None:
         lesson = _lesson(target).id
-    if not (sys.stdin.isatty() and sys.stdout.isatty()):
-        _refuse("the console needs a terminal; use cbtui run where there is none")
+    _need_terminal("cbtui run")
     from cbtui.app import CbtuiApp
 
     CbtuiApp(charset=options.charset, start_lesson=lesson, start_file=start_file).run()
     return 0
 
 
+def _replay(options: argparse.Namespace) -> int:
+    from sim.trace.recording import RecordingError, read
+
+    try:
+        recording = read(Path(options.recording))
+    except (RecordingError, ValueError) as error:
+        _refuse(str(error))
+    _need_terminal("cbtui info")
+    from cbtui.app import CbtuiApp
+
+    CbtuiApp(charset=options.charset, start_recording=recording).run()
+    return 0
+
+
+def _need_terminal(instead: str) -> None:
+    if not (sys.stdin.isatty() and sys.stdout.isatty()):
+        _refuse(f"the console needs a terminal; use {instead} where there is none")
+
+
 def _run(options: argparse.Namespace) -> int:
     is_file = _is_file_name(options.targets[0])
     clock = options.clock or ("real" if is_file else "virtual")
-    _check_run(options, clock, is_file=is_file)
+    _check_run(options, is_file=is_file)
     paths = [_file(name) for name in options.targets] if is_file else []
     lesson = None if is_file else _lesson(options.targets[0])
 
@@ -277,7 +322,15 @@ def _run(options: argparse.Namespace) -> int:
         call_data=options.call_data == "true",
         lines=options.lines,
         events_path=options.events,
+        recording_path=options.record,
+        replace_recording=options.force,
     )
+
+
+def _info(options: argparse.Namespace) -> int:
+    from cbtui.info import tell
+
+    return tell(Path(options.recording))
 
 
 def _ros2(words: list[str]) -> int:
@@ -292,7 +345,7 @@ def _ros2(words: list[str]) -> int:
     return run_line(words, process)
 
 
-def _check_run(options: argparse.Namespace, clock: str, *, is_file: bool) -> None:
+def _check_run(options: argparse.Namespace, *, is_file: bool) -> None:
     """Refuse what does not fit together."""
     moments = [("call", at) for at in options.calls] + [("line", at) for at, _ in options.lines]
     for what, at in moments:
@@ -300,14 +353,14 @@ def _check_run(options: argparse.Namespace, clock: str, *, is_file: bool) -> Non
             _refuse(f"a {what} at {at:g} s comes when the run of {options.seconds:g} s is over; see --for")
     if not is_file and len(options.targets) > 1:
         _refuse("one lesson runs at a time; several targets must all be files")
-    if clock == "real" and options.speed != math.inf:
-        _refuse("--speed needs the virtual clock; leave it out, or add --clock virtual")
+    if options.force and options.record is None:
+        _refuse("--force lets --record replace a file; there is nothing to record to")
     if options.arguments and not is_file:
         _refuse("a lesson has its own arguments; leave out what stands behind --")
 
 
 def _is_file_name(target: str) -> bool:
-    return target.endswith(".py") or "/" in target
+    return target.endswith((".py", ".xml", ".yaml", ".yml")) or "/" in target
 
 
 def _file(name: str) -> Path:

@@ -140,8 +140,8 @@ class ControlServer:
             line = self._next
             self._next += 1
             answers = self._answers[line] = SimpleQueue()
-        threading.Thread(target=self._listen, args=(connection, line), name="control", daemon=True).start()
         self._send(RunLine(line, text))
+        threading.Thread(target=self._listen, args=(connection, line), name="control", daemon=True).start()
         try:
             while not isinstance(answer := answers.get(), Done):
                 connection.send_bytes(_encode(answer))

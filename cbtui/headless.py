@@ -1,4 +1,4 @@
-"""Runs a program without the console: its log to stderr, its summary to stdout, its events to a file."""
+"""Runs a program without the console: its log to stderr, its summary to stdout, its events to files."""
 
 import sys
 from collections.abc import Iterator, Sequence
@@ -12,10 +12,12 @@ import msgspec
 
 from cbtui.listening import ListeningSession
 from cbtui.program_log import ProgramLog
+from cbtui.record import CannotRecordError, start_recording
 from sim.engine.commands import Stop
 from sim.engine.setup import RunSetup, TimedCall, TimedLine
 from sim.trace.events import AnyEvent
 from sim.trace.jsonl import JsonLines
+from sim.trace.recording import Recorder
 from sim.trace.summary import summarise
 from sim.trace.summary_text import plain_text
 from sim.trace.timeline import Timeline
@@ -35,17 +37,21 @@ def run_headless(
     call_data: bool,
     lines: Sequence[tuple[float, str]],
     events_path: str | None,
+    recording_path: str | None = None,
+    replace_recording: bool = False,
 ) -> int:
-    """Run a program to its end; returns the exit code: 0 well, 1 it failed, 2 the events file cannot be.
+    """Run a program to its end; returns the exit code: 0 well, 1 it failed, 2 a file cannot be written.
 
     ``seconds`` is how long the run lasts in its own time, ``calls`` when its SetBool service is called,
-    ``lines`` which ``ros2`` lines are carried out when.
+    ``lines`` which ``ros2`` lines are carried out when. A recording replaces another one only with
+    ``replace_recording``.
     """
     setup = msgspec.structs.replace(
         program,
         until=round(seconds * _SECOND),
         calls=tuple(TimedCall(round(at * _SECOND), call_data) for at in sorted(calls)),
         lines=tuple(TimedLine(round(at * _SECOND), text) for at, text in sorted(lines, key=itemgetter(0))),
+        contents=recording_path is not None,
     )
     with ExitStack() as files:
         try:
@@ -53,8 +59,16 @@ def run_headless(
         except OSError as error:
             sys.stderr.write(f"cbtui: cannot write events to {events_path}: {error.strerror}\n")
             return 2
+        recorder: Recorder | None = None
+        if recording_path is not None:
+            try:
+                recorder = start_recording(Path(recording_path), setup, replace=replace_recording)
+            except CannotRecordError as error:
+                sys.stderr.write(f"cbtui: {error}\n")
+                return 2
+            files.callback(recorder.close)
         try:
-            return _Headless(setup, file).run()
+            return _Headless(setup, file, recorder).run()
         except OSError as error:
             sys.stderr.write(f"cbtui: the run was cut short: {error.strerror}\n")
             return 1
@@ -63,11 +77,12 @@ def run_headless(
 class _Headless:
     """One run: takes the news of its session on this thread, one batch after another."""
 
-    def __init__(self, setup: RunSetup, events_file: BinaryIO | None) -> None:
+    def __init__(self, setup: RunSetup, events_file: BinaryIO | None, recorder: Recorder | None) -> None:
         self._news: Queue[News] = Queue(_BATCHES)
         self._session = ListeningSession(setup, self._news.put, self._news.put)
         self._timeline = Timeline()
         self._file = events_file
+        self._recorder = recorder
         self._lines = JsonLines()
         self._log = ProgramLog()
 
@@ -90,6 +105,8 @@ class _Headless:
     def _follow(self) -> str | None:
         """Take news until the last; what was lost, if the engine was."""
         for events in iter(self._batches()):
+            if self._recorder is not None:
+                self._recorder.take(events)
             self._timeline.extend(events)
             self._log.print(events)
             if self._file is not None:
@@ -108,5 +125,19 @@ class _Headless:
         ended = self._timeline.ended
         if ended is not None and ended.failed:
             sys.stderr.write(f"cbtui: {ended.reason}\n")
+            return 1
+        return self._recording_verdict()
+
+    def _recording_verdict(self) -> int:
+        if self._recorder is None:
+            return 0
+        if self._timeline.contents_lost:
+            sys.stderr.write(
+                f"cbtui: {self._timeline.contents_lost} messages came faster than they could be recorded; "
+                "the recording tells that they were sent, not what they held\n"
+            )
+        self._recorder.close()
+        if self._recorder.failure is not None:
+            sys.stderr.write(f"cbtui: the recording is not whole: {self._recorder.failure}\n")
             return 1
         return 0

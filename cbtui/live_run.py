@@ -5,23 +5,30 @@ from enum import Enum, auto
 from itertools import count
 from typing import Protocol, TypeAlias
 
+from cbtui.live_recording import LiveRecording
 from sim.engine.commands import (
     CallService,
     Command,
     CompleteLine,
     InterruptLine,
+    KeepContents,
     Pause,
     ResetWorld,
     Resume,
     RunLine,
+    RunUntil,
+    RunUntilCallback,
     SetSpeed,
+    Step,
 )
 from sim.engine.setup import RunSetup
-from sim.trace.events import AnyEvent
+from sim.trace.events import AnyEvent, EntityId, TimeHalted
+from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
+from sim.trace.words import name_of
 
 SPEEDS: tuple[float | None, ...] = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, None)
-"""Virtual seconds per real second that can be chosen; None is as fast as the engine can."""
+"""Seconds of a run per real second that can be chosen; None, virtual only, is as fast as the engine can."""
 
 Deliver: TypeAlias = Callable[[list[AnyEvent]], None]
 Ended: TypeAlias = Callable[[str | None], None]
@@ -51,6 +58,8 @@ class State(Enum):
     PAUSED = auto()
     ENDED = auto()
     LOST = auto()
+    REPLAY_STANDS = auto()
+    REPLAY_PLAYS = auto()
 
 
 class LiveRun:
@@ -59,7 +68,8 @@ class LiveRun:
     def __init__(self, setup: RunSetup, open_session: OpenSession, deliver: Deliver, ended: Ended) -> None:
         self.setup = setup
         self.timeline = Timeline()
-        self.speed = setup.speed
+        self._recording = LiveRecording(setup)
+        self.speed = setup.speed if self.virtual else setup.speed or 1.0
         self.loss: str | None = None
         self.paused = False
         self._over = False
@@ -82,12 +92,17 @@ class LiveRun:
     @property
     def alive(self) -> bool:
         """Whether the engine can still be told something."""
-        return self.state not in (State.ENDED, State.LOST)
+        return self.state in (State.STARTING, State.LIVE, State.PAUSED)
 
     @property
     def virtual(self) -> bool:
-        """Whether time can be made faster and slower."""
+        """Whether time stands still for every thread in a pause, and can go on step by step."""
         return self.setup.clock == "virtual"
+
+    @property
+    def speeds(self) -> tuple[float | None, ...]:
+        """The speeds that can be chosen for this run."""
+        return SPEEDS if self.virtual else SPEEDS[:-1]
 
     def start(self) -> None:
         """Start the engine; one that cannot be started counts as lost."""
@@ -97,19 +112,47 @@ class LiveRun:
         except OSError as error:
             self.loss = f"it could not be started: {error.strerror or error}"
 
-    def take(self, events: list[AnyEvent]) -> None:
-        """Add what the session delivered."""
+    def take(self, events: list[AnyEvent]) -> str | None:
+        """Add what the session delivered; a sentence if it could not be recorded as it should."""
         self.timeline.extend(events)
+        if any(isinstance(event, TimeHalted) for event in events):
+            self.paused = True
+        return self._recording.take(events)
 
-    def over(self, loss: str | None) -> None:
-        """Note that the engine is gone; ``loss`` says how, if it should not be."""
+    def over(self, loss: str | None) -> str | None:
+        """Note that the engine is gone; ``loss`` says how, if it should not be.
+
+        Returns a sentence on what was recorded until then, if anything was.
+        """
         self._over = True
         self.loss = loss
+        return self._recording.end()
 
     def stop(self) -> None:
-        """End the engine. Blocks for up to a second; may be called from any thread."""
+        """End the engine and a recording. Blocks for up to a second; may be called from any thread."""
         if self._started:
             self._session.stop()
+        self._recording.end()
+
+    @property
+    def recorded(self) -> int | None:
+        """How many events have been recorded; None if the run is not being recorded."""
+        return self._recording.count
+
+    def record(self) -> str:
+        """Begin a recording in the current folder, and say so.
+
+        Raises:
+            CannotRecordError: it cannot be made.
+        """
+        sentence = self._recording.begin()
+        self._session.send(KeepContents(wanted=True))
+        return sentence
+
+    def end_recording(self) -> str | None:
+        """Finish the recording, and say what it holds; None if there is none."""
+        self._session.send(KeepContents(wanted=False))
+        return self._recording.end()
 
     def call(self, data: bool) -> None:
         """Call the SetBool service that the run was set up with, or else the program's first."""
@@ -139,12 +182,27 @@ class LiveRun:
         self.paused = False
         self._session.send(Resume())
 
+    def step(self) -> None:
+        """Go on to the next scheduling decision; time stands again there."""
+        self._session.send(Step())
+
+    def run_until(self, moment: Nanoseconds) -> None:
+        """Go on to a moment that has not come yet; time stands again there."""
+        self.paused = False
+        self._session.send(RunUntil(moment))
+
+    def run_until_callback(self, entity: EntityId) -> None:
+        """Go on to the next event of an entity; time stands again there."""
+        self.paused = False
+        self._session.send(RunUntilCallback(entity, name_of(entity, self.timeline)))
+
     def reset_world(self) -> None:
         """Put the robot back to its start."""
         self._session.send(ResetWorld())
 
     def change_speed(self, steps: int) -> None:
-        """Go up (> 0) or down in ``SPEEDS``."""
-        place = max(0, min(SPEEDS.index(self.speed) + steps, len(SPEEDS) - 1))
-        self.speed = SPEEDS[place]
+        """Go up (> 0) or down in ``speeds``."""
+        speeds = self.speeds
+        place = max(0, min(speeds.index(self.speed) + steps, len(speeds) - 1))
+        self.speed = speeds[place]
         self._session.send(SetSpeed(self.speed))

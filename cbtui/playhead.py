@@ -2,7 +2,9 @@
 
 from dataclasses import dataclass, replace
 
+from sim.trace.events import EntityId
 from sim.trace.model import Nanoseconds, Window
+from sim.trace.timeline import Timeline
 
 _SECOND = 1_000_000_000
 SPANS = tuple(
@@ -31,8 +33,18 @@ class Playhead:
 
     def moved(self, steps: int, end: Nanoseconds) -> "Playhead":
         """Go steps of a tenth of the stretch into the past (< 0) or back; past the end is live again."""
-        at = max(0, self.now(end) + steps * self.span // 10)
-        return replace(self, at=None if at >= end else at)
+        return self.sought(self.now(end) + steps * self.span // 10, end)
+
+    def sought(self, at: Nanoseconds, end: Nanoseconds) -> "Playhead":
+        """Go to a moment, the beginning if it lies before it; at or past the end is live again."""
+        return replace(self, at=None if at >= end else max(0, at))
+
+    def beside(self, timeline: Timeline, step: int, entity: EntityId | None = None) -> "Playhead":
+        """Go to the event before (``step`` < 0) or after, of an entity or of any; after the last is live."""
+        found = timeline.neighbour(self.now(timeline.end), entity, step)
+        if found is not None:
+            return self.sought(found, timeline.end)
+        return self.live() if step > 0 else self
 
     def live(self) -> "Playhead":
         """Follow the end again."""

@@ -3,7 +3,7 @@
 import sys
 
 from cbtui.theme import Charset
-from cbtui.widgets.cells import visible
+from cbtui.widgets.cells import visible, without_tabs
 from sim.trace.events import (
     AnyEvent,
     LineGiven,
@@ -44,7 +44,7 @@ class ProgramLog:
                 case LineGiven(text=text):
                     write_line(f"$ {text}", error=False)
                 case LineSaid(text=text, error=error):
-                    write_line(text, error=error)
+                    write_line(without_tabs(text), error=error)
                 case Notice(severity=severity, text=text):
                     write_line(f"cbtui: {text}", error=True)
                 case ThreadAppeared(thread=thread, process=process):

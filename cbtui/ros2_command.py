@@ -11,6 +11,7 @@ from cbtui.control import Done, NoEngine, RemoteLine, Said, connect
 from cbtui.lesson_setup import setup_for_line
 from cbtui.listening import ListeningSession
 from cbtui.program_log import ProgramLog, write_line
+from cbtui.widgets.cells import without_tabs
 from sim.engine.commands import InterruptLine, Stop
 from sim.trace.events import AnyEvent, LineEnded, LineGiven, LineSaid, RunEnded
 
@@ -42,7 +43,7 @@ def _follow_elsewhere(line: RemoteLine) -> int:
     for answer in _interruptible(line.next_answer, line.interrupt):
         match answer:
             case Said(text=said, error=error):
-                write_line(said, error=error)
+                write_line(without_tabs(said), error=error)
             case Done(status=None):
                 sys.stderr.write("cbtui: the run ended before the line did\n")
                 return _CUT_OFF
@@ -86,7 +87,7 @@ class _AloneLine:
                 case LineGiven():
                     pass  # the person has just typed it
                 case LineSaid(text=text, error=error):
-                    write_line(text, error=error)
+                    write_line(without_tabs(text), error=error)
                 case LineEnded(status=status):
                     self._status = status
                 case RunEnded(failed=True, reason=reason):

@@ -29,7 +29,10 @@ The lessons' robot is there for your file too: `/odom`, `/scan`, `/cmd_vel`, `/r
 
 @dataclass(frozen=True)
 class Subject:
-    """One program to run on screen; ``service`` is empty where it shows only when the program runs."""
+    """One program to run on screen; ``service`` is empty where it shows only when the program runs.
+
+    ``source`` is the program's text where it is not the one that lies at ``node_path`` now.
+    """
 
     heading: str
     guide: str
@@ -39,6 +42,7 @@ class Subject:
     set_up: SetUp
     lesson: Lesson | None = None
     following: Lesson | None = None
+    source: str | None = None
 
 
 def of_lesson(lesson: Lesson, lessons: Sequence[Lesson]) -> Subject:

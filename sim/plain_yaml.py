@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import sys
 from collections import OrderedDict
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache
+from operator import methodcaller
 from typing import TYPE_CHECKING, Any, Final
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ def load(text: str) -> Any:
     Raises:
         YamlError: it is no YAML, more than one document, nested too deeply, or holds an alias.
     """
-    return _read(text, _loader(), "get_single_data")
+    return _read(text, _loader(), methodcaller("get_single_data"))
 
 
 def compose(text: str) -> Node | None:
@@ -42,7 +43,7 @@ def compose(text: str) -> Node | None:
     Raises:
         YamlError: as ``load``.
     """
-    node: Node | None = _read(text, _untyped_loader(), "get_single_node")
+    node: Node | None = _read(text, _untyped_loader(), methodcaller("get_single_node"))
     return node
 
 
@@ -96,7 +97,7 @@ def _dumper() -> type[SafeDumper]:
     return Dumper
 
 
-def _read(text: str, loader_class: Any, what: str) -> Any:
+def _read(text: str, loader_class: Any, result_of: Callable[[Any], Any]) -> Any:
     import yaml
 
     def line(index: int) -> int:
@@ -107,7 +108,7 @@ def _read(text: str, loader_class: Any, what: str) -> Any:
         _check(text, loader_class)
         loader = loader_class(text)
         try:
-            return getattr(loader, what)()
+            return result_of(loader)
         finally:
             loader.dispose()
     except yaml.MarkedYAMLError as error:
@@ -131,11 +132,12 @@ def _check(text: str, loader_class: Any) -> None:
     depth = 0
     events: Iterator[Any] = yaml.parse(text, Loader=loader_class)
     for event in events:
+        line = event.start_mark.line + 1
         if isinstance(event, yaml.AliasEvent):
-            raise YamlError(f"the alias *{event.anchor} is not supported", event.start_mark.line + 1)
+            raise YamlError(f"the alias *{event.anchor} is not supported", line)
         if isinstance(event, yaml.CollectionStartEvent):
             depth += 1
         elif isinstance(event, yaml.CollectionEndEvent):
             depth -= 1
         if depth > _DEEPEST:
-            raise YamlError("it is nested too deeply", event.start_mark.line + 1)
+            raise YamlError("it is nested too deeply", line)

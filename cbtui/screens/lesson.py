@@ -14,9 +14,11 @@ from textual.widget import Widget
 
 from cbtui.actions import PANES, Scope, bindings_of
 from cbtui.concurrency import Concurrency
-from cbtui.live_run import SPEEDS, LiveRun, OpenSession
+from cbtui.live_run import Deliver, Ended, LiveRun, OpenSession, State
 from cbtui.playhead import SPANS, Playhead
+from cbtui.record import CannotRecordError
 from cbtui.screens.layout import Layout
+from cbtui.screens.moment import MomentScreen
 from cbtui.screens.sized import SizedScreen
 from cbtui.screens.threads import ThreadsScreen
 from cbtui.subject import Subject
@@ -34,6 +36,7 @@ from cbtui.widgets.status_line import StatusLine, status_of
 from cbtui.widgets.tabs import Tabs, title_of
 from lessons.lesson import Lesson
 from sim.trace.events import AnyEvent
+from sim.trace.model import Nanoseconds
 
 if TYPE_CHECKING:
     from cbtui.app import CbtuiApp
@@ -124,13 +127,13 @@ class LessonScreen(SizedScreen[None]):
     @on(Delivered)
     def _take(self, message: Delivered) -> None:
         if message.run == self._runs:
-            self._run.take(message.events)
+            self._tell(self._run.take(message.events))
             self._stale = True
 
     @on(Over)
     def _note_the_end(self, message: Over) -> None:
         if message.run == self._runs:
-            self._run.over(message.loss)
+            self._tell(self._run.over(message.loss))
             self._stale = True
 
     # drawing
@@ -184,15 +187,18 @@ class LessonScreen(SizedScreen[None]):
         """Set up another run; what the engine of the one before still sends no longer counts."""
         self._runs += 1
         number = self._runs
-        self._run = LiveRun(
-            self._subject.set_up(self._threads, speed),
-            self._open_session,
+        self._run = self._new_run(
+            speed,
             lambda events: self._hand_over(self.Delivered(number, events)),
             lambda loss: self._hand_over(self.Over(number, loss)),
         )
         self._concurrency = Concurrency(self._run.timeline)
         self._playhead = self._playhead.live()
         self._stale = True
+
+    def _new_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
+        """A run of what is on screen."""
+        return LiveRun(self._subject.set_up(self._threads, speed), self._open_session, deliver, ended)
 
     async def _run_again(self) -> None:
         before = self._run
@@ -206,7 +212,7 @@ class LessonScreen(SizedScreen[None]):
         robot = ArenaMap(id="robot")
         robot.can_focus = True
         guide = Guide(self._subject.guide, id="guide")
-        code = CodeView(self._subject.node_path, id="code")
+        code = CodeView(self._subject.node_path, self._subject.source, id="code")
         for pane in (guide, code, robot, LogView(id="log"), ShellView(id="shell")):
             assert pane.id is not None
             pane.border_title = title_of(pane.id)
@@ -265,7 +271,6 @@ class LessonScreen(SizedScreen[None]):
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer what has a meaning now."""
         run, playhead = self._run, self._playhead
-        paced = run.alive and run.virtual
         typing = isinstance(self.focused, Prompt)
         meaningless = {
             "earlier": typing,
@@ -273,12 +278,15 @@ class LessonScreen(SizedScreen[None]):
             "prompt": not run.alive,
             "call_service": not run.alive,
             "call_service_off": not run.alive,
-            "pause": not paced or run.paused,
-            "resume": not paced or not run.paused,
+            "pause": not run.alive or run.paused,
+            "resume": not run.alive or not run.paused,
+            "step": playhead.at is None and not (run.virtual and run.state is State.PAUSED),
+            "step_back": playhead.now(run.timeline.end) == 0,
             "reset_world": not run.alive,
+            "record": not run.alive,
             "run_again": run.alive,
-            "slower": not paced or run.speed == SPEEDS[0],
-            "faster": not paced or run.speed == SPEEDS[-1],
+            "slower": not run.alive or run.speed == run.speeds[0],
+            "faster": not run.alive or run.speed == run.speeds[-1],
             "live": playhead.at is None,
             "later": playhead.at is None or typing,
             "zoom_in": playhead.span == SPANS[0],
@@ -325,12 +333,12 @@ class LessonScreen(SizedScreen[None]):
             await self._run_again()
 
     def action_slower(self) -> None:
-        """Let virtual time pass more slowly."""
+        """Let time pass more slowly."""
         self._run.change_speed(-1)
         self._stale = True
 
     def action_faster(self) -> None:
-        """Let virtual time pass faster."""
+        """Let time pass faster."""
         self._run.change_speed(1)
         self._stale = True
 
@@ -341,6 +349,34 @@ class LessonScreen(SizedScreen[None]):
     def action_later(self) -> None:
         """Look less far back."""
         self._move(self._playhead.moved(1, self._run.timeline.end))
+
+    def action_step(self) -> None:
+        """Go on by one scheduling decision, or to the next event of what was looked back to."""
+        if self._playhead.at is None:
+            self._run.step()
+        else:
+            self._move(self._playhead.beside(self._run.timeline, 1))
+
+    def action_step_back(self) -> None:
+        """Look at the event before."""
+        self._move(self._playhead.beside(self._run.timeline, -1))
+
+    def action_go_to_time(self) -> None:
+        """Ask for a moment."""
+        run = self._run
+        end = run.timeline.end
+        self.app.push_screen(
+            MomentScreen(self._playhead.now(end), end, run.alive, self._charset), self._go_to_time
+        )
+
+    def _go_to_time(self, moment: Nanoseconds | None) -> None:
+        """Look back at a moment that has passed; have the run go on to one that has not."""
+        if moment is None:
+            return
+        end = self._run.timeline.end
+        self._move(self._playhead.sought(moment, end))
+        if moment > end and self._run.alive:
+            self._run.run_until(moment)
 
     def action_live(self) -> None:
         """Go back to the present."""
@@ -357,6 +393,22 @@ class LessonScreen(SizedScreen[None]):
     def _move(self, playhead: Playhead) -> None:
         self._playhead = playhead
         self._stale = True
+
+    def action_record(self) -> None:
+        """Begin a recording of this run, or end it."""
+        if self._run.recorded is not None:
+            self._tell(self._run.end_recording())
+        else:
+            try:
+                self._tell(self._run.record())
+            except CannotRecordError as error:
+                self._tell(str(error))
+        self._stale = True
+
+    def _tell(self, sentence: str | None) -> None:
+        """Say something that goes by."""
+        if sentence is not None:
+            self.notify(sentence, markup=False)
 
     def action_prompt(self) -> None:
         """Let the person type a ros2 line."""

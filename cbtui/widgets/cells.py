@@ -13,6 +13,8 @@ BLANK = Ink(Role.TEXT)
 _UNSHOWABLE = {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp", "Zs"}
 _PICTURES = {chr(code): chr(0x2400 + code) for code in range(0x20)} | {"\x7f": "␡", "\xa0": " "}
 
+_TAB = 8
+
 
 def visible(text: str, charset: Charset) -> str:
     """Return text that a terminal shows and never obeys.
@@ -23,6 +25,15 @@ def visible(text: str, charset: Charset) -> str:
     if text.isascii() and text.isprintable():
         return text
     return "".join(_shown(character, charset) for character in unicodedata.normalize("NFC", text))
+
+
+def without_tabs(text: str) -> str:
+    """Return text with blanks up to the next multiple of 8 columns for every tab, as a terminal shows it."""
+    first, *others = text.split("\t")
+    for part in others:
+        column = cell_len(first.rpartition("\n")[2])
+        first += " " * (_TAB - column % _TAB) + part
+    return first
 
 
 def _shown(character: str, charset: Charset) -> str:

@@ -17,7 +17,7 @@ from textual.widgets import Input, Label
 
 from cbtui.actions import Scope, bindings_of
 from cbtui.theme import Charset
-from cbtui.widgets.cells import visible
+from cbtui.widgets.cells import visible, without_tabs
 from cbtui.widgets.following import Following
 from sim.trace.events import LineEnded, LineGiven, LineSaid
 from sim.trace.model import Nanoseconds
@@ -79,7 +79,7 @@ def _rows_of(event: ShellEvent) -> Iterator[_Row]:
             for part in f"$ {text}".split("\n"):
                 yield _Row(t, visible(part, Charset.BRAILLE), "shell--given")
         case LineSaid(t=t, text=text, error=error):
-            for part in text.split("\n"):
+            for part in without_tabs(text).split("\n"):
                 yield _Row(t, visible(part, Charset.BRAILLE), "shell--error" if error else "shell--said")
         case LineEnded(t=t, status=status) if status:
             yield _Row(t, f"(ended with status {status})", "shell--status")

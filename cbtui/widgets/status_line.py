@@ -24,7 +24,11 @@ _GAP = Run("   ", _PLAIN)
 
 @dataclass(frozen=True, slots=True)
 class Status:
-    """What the line tells. ``back`` is how long before the end the moment on screen lies, 0 for live."""
+    """What the line tells.
+
+    ``back`` is how long before the end the moment on screen lies, 0 for live; ``recorded`` how many events
+    have been recorded, None if nothing is being recorded.
+    """
 
     title: str
     state: State
@@ -34,6 +38,7 @@ class Status:
     executor: str
     dropped: int
     lost: int
+    recorded: int | None = None
 
 
 def status_of(title: str, run: LiveRun, playhead: Playhead, usual_executor: str) -> Status:
@@ -49,12 +54,13 @@ def status_of(title: str, run: LiveRun, playhead: Playhead, usual_executor: str)
         executor=executor_label(timeline) or usual_executor,
         dropped=timeline.dropped(at),
         lost=timeline.lost,
+        recorded=run.recorded,
     )
 
 
 def _pace(run: LiveRun) -> str:
     if not run.virtual:
-        return "real"
+        return "real: computing goes on" if run.state is State.PAUSED else f"real ×{run.speed:.1f}"
     return "virtual max" if run.speed is None else f"virtual ×{run.speed:.1f}"
 
 
@@ -92,24 +98,27 @@ def status_row(status: Status, width: int) -> list[Run]:
 
 
 def _state(status: Status) -> Run:
-    if status.state is State.LOST:
-        return Run("✗ LOST", _WARN)
-    if status.back:
+    if status.back and status.state in (State.STARTING, State.LIVE, State.PAUSED, State.ENDED):
         paused = ", paused" if status.state is State.PAUSED else ""
         return Run(f"◂ BACK {duration(status.back)}{paused}", _WARN)
-    match status.state:
-        case State.STARTING:
-            return Run("○ STARTING", _FAINT)
-        case State.LIVE:
-            return Run("● LIVE", _STRONG)
-        case State.PAUSED:
-            return Run("‖ PAUSED", _WARN)
-        case State.ENDED:
-            return Run("■ ENDED", _STRONG)
+    return _STATES[status.state]
+
+
+_STATES = {
+    State.STARTING: Run("○ STARTING", _FAINT),
+    State.LIVE: Run("● LIVE", _STRONG),
+    State.PAUSED: Run("‖ PAUSED", _WARN),
+    State.ENDED: Run("■ ENDED", _STRONG),
+    State.LOST: Run("✗ LOST", _WARN),
+    State.REPLAY_STANDS: Run("‖ REPLAY", _STRONG),
+    State.REPLAY_PLAYS: Run("▶ REPLAY", _STRONG),
+}
 
 
 def _losses(status: Status) -> list[Run]:
     losses = [Run(f"dropped {status.dropped}", _WARN if status.dropped else _FAINT)]
+    if status.recorded is not None:
+        losses.insert(0, Run(f"REC {status.recorded:,}   ", _WARN))
     if status.lost:
         losses += [_GAP, Run(f"trace lost {status.lost}", _WARN)]
     return losses

@@ -14,7 +14,8 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import Any, TypeVar
 
-from sim.clock.virtual import VirtualClock, VirtualSignal, VirtualThread, start_outside
+from sim.clock.outside import start_outside
+from sim.clock.virtual import VirtualClock, VirtualSignal, VirtualThread
 
 _allocate_lock = threading.Lock
 _thread_start = threading.Thread.start

@@ -5,31 +5,27 @@ served; when nobody can, time jumps to the earliest deadline (ties: the one that
 Computing takes no virtual time, so the same inputs give the same run, whatever the machine does.
 
 Paced to a speed, a jump takes as long as the pace says, and what comes from outside (a key pressed in the
-console) takes effect at the moment that the pace has reached.
+console) takes effect at the moment that the pace has reached. Time can stand, between two jumps or in the
+middle of a moment, and go on from there one step at a time.
 """
 
 import threading
-import time
 from collections import deque
 from collections.abc import Callable
 from heapq import heappop, heappush
 from itertools import count
-from typing import Any
 
 from sim.clock.interface import Stopped
+from sim.clock.outside import start_outside
+from sim.clock.pace import Pace
 
 # Kept from before sim.clock.stdlib puts the virtual ones in their place.
 _allocate_lock = threading.Lock
 _get_ident = threading.get_ident
-_monotonic_ns = time.monotonic_ns
 _Thread = threading.Thread
-_start_thread = threading.Thread.start
 
 VIRTUAL_EPOCH = 1_700_000_000 * 1_000_000_000
 """Every virtual run begins at this moment (14 November 2023), so its stamps are the same each time."""
-
-_LAG_FORGIVEN = 250_000_000
-"""Nanoseconds that a paced run may fall behind the wall before it gives up catching up."""
 
 
 class VirtualThread:
@@ -103,12 +99,11 @@ class VirtualClock:
         self._ready: deque[VirtualThread] = deque()
         self._deadlines: list[tuple[int, int, VirtualThread | Callable[[], None]]] = []
         self._inbox: deque[Callable[[], None]] = deque()
+        self._inputs: deque[Callable[[], None]] = deque()
+        self._script: deque[tuple[int, Callable[[], None]]] = deque()
         self._bell = _allocate_lock()
         self._bell.acquire()
-        self._speed = speed
-        self._paused = False
-        self._anchor_virtual = 0
-        self._anchor_real = _monotonic_ns()
+        self.pace = Pace(speed)
         self._stopping = False
         self._threads: set[VirtualThread] = set()
         self.before_jump: Callable[[], int | None] = _nothing
@@ -120,6 +115,8 @@ class VirtualClock:
         """How often a thread came to a wait; a run that neither takes steps nor rests is stuck."""
         self.rests = False
         """Whether the run waits for its pace, for the end of a pause, or for something from outside."""
+        self.in_moment = False
+        """Whether time stands in the middle of a moment: only ``steer`` reaches the run then."""
         self.current = VirtualThread("MainThread")
         self.current.is_main = True
         self.current.ident = _get_ident()
@@ -201,6 +198,29 @@ class VirtualClock:
     def inject(self, action: Callable[[], None]) -> None:
         """Have ``action`` run at the moment the run has reached; it must not wait. Any thread may call it."""
         self._inbox.append(action)
+        self._ring()
+
+    def steer(self, action: Callable[[], None]) -> None:
+        """As ``inject``, and at once where time stands in the middle of a moment; for the pace."""
+        self._inbox.append(_Steering(action))
+        self._ring()
+
+    def give(self, action: Callable[[], None]) -> None:
+        """Have an input carried out at the end of the moment the run has reached; any thread may call this.
+
+        By then every deadline of the moment is served, each thread waits and ``before_jump`` was called, and
+        the inputs given before have had all their effects on that moment. So the moments and the order of its
+        inputs determine a run, whatever their real times were: ``give_at`` repeats it. The action must not
+        wait; a moment that goes on for ever has no end.
+        """
+        self._inputs.append(action)
+        self._ring()
+
+    def give_at(self, moment: int, action: Callable[[], None]) -> None:
+        """Have an input carried out at the end of ``moment``; call it in the order of the moments."""
+        self._script.append((moment, action))
+
+    def _ring(self) -> None:
         if self._bell.locked():
             try:
                 self._bell.release()
@@ -222,22 +242,48 @@ class VirtualClock:
             self.inject(knock)
 
     def set_speed(self, speed: float | None) -> None:
-        """Pass ``speed`` virtual seconds per real second, None: all it can. Call it through ``inject``."""
-        self._anchor_at(self._now)
-        self._speed = speed
+        """Pass ``speed`` virtual seconds per real second, None: all it can. Call it through ``steer``."""
+        self.pace.set_speed(speed, self._now)
 
     def pause(self) -> None:
-        """Stop time at the moment the run has reached; call through ``inject``."""
-        self._paused = True
+        """Stop time at the moment the run has reached; call through ``steer``."""
+        self.pace.stand()
 
     def resume(self) -> None:
-        """Let time go on after ``pause``; call through ``inject``."""
-        self._anchor_at(self._now)
-        self._paused = False
+        """Let time go on after ``pause``; call through ``steer``."""
+        self.pace.go_on(self._now)
+
+    def step(self) -> None:
+        """Go on until time has jumped or ``halt`` is called, and let time stand; call through ``steer``."""
+        self.pace.step()
+
+    def run_until(self, moment: int | None) -> None:
+        """Hurry until everything up to ``moment`` has happened, and let time stand there.
+
+        None: until ``halt`` is called. Call it through ``steer``.
+        """
+        self.pace.hurry(moment)
+
+    def halt(self) -> None:
+        """Let time stand right here, in the middle of this moment, until it is steered on.
+
+        Call it on the thread that has the baton. It may hold locks: no other thread of the run goes on.
+        """
+        if self._stopping:
+            return
+        self.pace.halt()
+        self.in_moment = self.pace.stands
+        while self.pace.stands:
+            self._take_steering()
+            if self.pace.stands:
+                self._rest(None)
+        self.in_moment = False
 
     def stop(self) -> None:
         """End the run: every wait, now and later, raises. Call it from ``call_at`` or ``inject``."""
         self._stopping = True
+        self._script.clear()
+        self.pace.go_on(self._now)
         for thread in sorted(self._threads, key=lambda each: (not each.is_main, each.current_wait)):
             self.unpark(thread)
 
@@ -282,16 +328,54 @@ class VirtualClock:
 
     def _jump(self) -> None:
         """Bring time to the next deadline, or to where something from outside makes a thread able to run."""
-        target = self._earliest_deadline()
-        stopover = self.before_jump() if target is None or target > self._now else None
-        if stopover is not None and self._now < stopover and (target is None or stopover < target):
-            if self._pass_time(stopover):
-                self._now = stopover
-            return
+        deadline = self._earliest_deadline()
+        target = deadline
+        if deadline is None or deadline > self._now:
+            target = self._stopover_before(deadline)
+            if self._input_is_taken():
+                return
+            if self._script:
+                moment, _ = self._script[0]
+                target = moment if target is None else min(moment, target)
+            if self._goal_is_reached_before(target):
+                return
         if not self._pass_time(target):
             return
         assert target is not None
-        self._now = max(self._now, target)
+        if target > self._now:
+            self._now = target
+            if self.pace.steps:
+                self.halt()
+        if target == deadline:
+            self._serve_deadline()
+
+    def _stopover_before(self, deadline: int | None) -> int | None:
+        stopover = self.before_jump()
+        if stopover is None or stopover <= self._now:
+            return deadline
+        return stopover if deadline is None else min(stopover, deadline)
+
+    def _input_is_taken(self) -> bool:
+        """Carry out one input, if there is one for the moment that ends."""
+        if self._script and self._script[0][0] <= self._now:
+            _, action = self._script.popleft()
+        elif self._inputs:
+            action = self._inputs.popleft()
+        else:
+            return False
+        action()
+        return True
+
+    def _goal_is_reached_before(self, target: int | None) -> bool:
+        goal = self.pace.goal_before(target)
+        if goal is not None:
+            self._now = max(self._now, goal)
+        elif target is not None or not self.pace.steps:
+            return False
+        self.pace.halt()
+        return True
+
+    def _serve_deadline(self) -> None:
         _, _, due = heappop(self._deadlines)
         if isinstance(due, VirtualThread):
             due.waiting = False
@@ -308,68 +392,50 @@ class VirtualClock:
         return None
 
     def _pass_time(self, target: int | None) -> bool:
-        """Wait as long as the pace wants; False if something from outside came first and was done."""
+        """Wait as long as the pace wants; False if something from outside came first.
+
+        What was injected has been done then; an input comes when the moment that the run has reached ends.
+        """
         while not self._inbox:
-            delay = self._delay_until(target)
+            if target == self._now:
+                return True  # the moment goes on to its end, even if time stands
+            if self._inputs:
+                break
+            delay = self.pace.delay_until(target)
             if delay is not None and delay <= 0:
                 return True
-            self.rests = True
-            self._bell.acquire(timeout=-1 if delay is None else delay / 1e9)
-            self.rests = False
-        self._now = self._paced_now(target)
-        actions = [self._inbox.popleft() for _ in range(len(self._inbox))]
-        for action in actions:
-            action()
+            self._rest(delay)
+        self._now = self.pace.reached(self._now, target)
+        while self._inbox:
+            self._inbox.popleft()()
         return False
 
-    def _delay_until(self, target: int | None) -> float | None:
-        """Real nanoseconds to wait before ``target`` may come; None: until something happens outside."""
-        if target is None or self._paused:
-            return None
-        if self._speed is None:
-            return 0
-        delay = self._anchor_real + (target - self._anchor_virtual) / self._speed - _monotonic_ns()
-        if delay < -_LAG_FORGIVEN:
-            self._anchor_at(target)
-        return delay
+    def _take_steering(self) -> None:
+        """Do what was to be done at once; the rest stays in its order."""
+        others = []
+        while self._inbox and self.pace.stands:
+            action = self._inbox.popleft()
+            if isinstance(action, _Steering):
+                action()
+            else:
+                others.append(action)
+        self._inbox.extendleft(reversed(others))
 
-    def _paced_now(self, limit: int | None) -> int:
-        """Where the pace has brought the run between two jumps, at most to ``limit``."""
-        if self._speed is None or self._paused:
-            return self._now
-        paced = self._anchor_virtual + int((_monotonic_ns() - self._anchor_real) * self._speed)
-        return max(self._now, paced if limit is None else min(paced, limit))
-
-    def _anchor_at(self, moment: int) -> None:
-        self._anchor_virtual = moment
-        self._anchor_real = _monotonic_ns()
+    def _rest(self, nanoseconds: float | None) -> None:
+        """Wait for something from outside, at most so long."""
+        self.rests = True
+        self._bell.acquire(timeout=-1 if nanoseconds is None else nanoseconds / 1e9)
+        self.rests = False
 
 
-class _Started:
-    """Stands in for a thread's own "has started" event, which is set before the thread lives on the clock."""
+class _Steering:
+    """An action for which a run does not have to come to the end of a moment."""
 
-    def __init__(self) -> None:
-        self._gate = _allocate_lock()
-        self._gate.acquire()
+    def __init__(self, action: Callable[[], None]) -> None:
+        self._action = action
 
-    def set(self) -> None:
-        self._gate.release()
-
-    def is_set(self) -> bool:
-        return not self._gate.locked()
-
-    def wait(self, timeout: float = -1) -> bool:
-        in_time = self._gate.acquire(timeout=timeout)
-        if in_time:
-            self._gate.release()
-        return in_time
-
-
-def start_outside(thread: threading.Thread) -> None:
-    """Start a thread without waiting in virtual time for the moment at which it has started."""
-    inner: Any = thread
-    inner._started = _Started()
-    _start_thread(thread)
+    def __call__(self) -> None:
+        self._action()
 
 
 def _nothing() -> int | None:

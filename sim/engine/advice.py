@@ -1,19 +1,102 @@
 """What a learner most likely has to do about a program that failed or did nothing, in half a sentence."""
 
+import ast
+import builtins
+import sys
+from collections.abc import Iterable
+from difflib import get_close_matches
+from types import FrameType
+
 from sim.ros.process import current_process
 
+_GEOMETRY = "a few lines of math or numpy turn quaternions into angles"
+_TRANSFORMS = "publish tf2_msgs/msg/TFMessage on /tf, or subscribe to it"
+_PICTURES = "numpy.frombuffer(message.data, numpy.uint8) reads a sensor_msgs/msg/Image"
+_TESTS = "test with pytest, where sim.ros.importing.install() makes rclpy importable"
+_ROS_ONLY = {
+    "cv_bridge": _PICTURES,
+    "image_geometry": _PICTURES,
+    "launch_pytest": _TESTS,
+    "launch_testing": _TESTS,
+    "launch_testing_ros": _TESTS,
+    "message_filters": "subscribe to each topic and match the stamps in the callbacks",
+    "nav2_simple_commander": "send the goals with rclpy.action.ActionClient",
+    "rosbag2_py": "cbtui run --events records what happens",
+    "tf2_geometry_msgs": _GEOMETRY,
+    "tf2_py": _TRANSFORMS,
+    "tf2_ros": _TRANSFORMS,
+    "tf_transformations": _GEOMETRY,
+    "transforms3d": _GEOMETRY,
+}
+"""Python packages that ROS programs import and that are not here, with what does the work in their place."""
 
-def advice_on(error: BaseException) -> str:
-    """What to add to an exception's text; empty where that says it all."""
-    if isinstance(error, ModuleNotFoundError) and error.name is not None:
-        return _on_missing(error.name.partition(".")[0])
+
+def advice_on(error: BaseException, frame: FrameType | None) -> str:
+    """What to add to the text of an exception that came up in ``frame``; empty where that says it all."""
+    match error:
+        case ModuleNotFoundError(name=str(name)):
+            advice = _on_missing(name)
+        case ImportError(name=str(module), msg=str(text)) if module in sys.modules:
+            advice = _nearest(text.split("'")[1], dir(sys.modules[module]))
+        case NameError(name=str(name)) if frame is not None:
+            advice = _misplaced_in(frame, name) or _nearest(name, _names_of(frame))
+        case AttributeError(name=str(name), obj=obj):
+            advice = _on_unready_node(name, obj) or _nearest(name, dir(obj))
+        case _:
+            advice = ""
+    return f"; {advice}" if advice else ""
+
+
+def _on_missing(module: str) -> str:
+    from sim.ros.interfaces import known_packages_sentence, packages
+
+    package = module.partition(".")[0]
+    if package in sys.modules and package not in packages():
+        return _nearest(module, (each for each in sys.modules if each.startswith(f"{package}.")))
+    if package in _ROS_ONLY:
+        return f"{package} belongs to a ROS 2 machine and is not modelled here; {_ROS_ONLY[package]}"
+    return known_packages_sentence(package)
+
+
+def _on_unready_node(attribute: str, obj: object) -> str:
+    from sim.ros.node import Node
+
+    if attribute == "_agenda" and isinstance(obj, Node):
+        return f"{type(obj).__name__}.__init__ has to call super().__init__('name of the node') first"
     return ""
 
 
-def _on_missing(package: str) -> str:
-    from sim.ros.interfaces import known_packages_sentence
+def _nearest(name: str, known: Iterable[str]) -> str:
+    close = get_close_matches(name, [each for each in known if not each.startswith("_")], n=1, cutoff=0.7)
+    return f"did you mean {close[0]!r}?" if close else ""
 
-    return f"; {known_packages_sentence(package)}"
+
+def _names_of(frame: FrameType) -> list[str]:
+    return [*frame.f_locals, *frame.f_globals, *dir(builtins)]
+
+
+def _misplaced_in(frame: FrameType, name: str) -> str:
+    """What is to say of a function that a class of the frame's module holds instead of the module."""
+    for owner in frame.f_globals.values():
+        function = vars(owner).get(name) if isinstance(owner, type) else None
+        code = getattr(function, "__code__", None)
+        if code is not None and code.co_filename == frame.f_code.co_filename:
+            return _misplaced(name, code.co_firstlineno, owner.__name__)
+    return ""
+
+
+def misplaced(name: str, source: str) -> str:
+    """What is to say of a function that stands inside a class of a file; empty if none does."""
+    for owner in ast.parse(source).body:
+        if isinstance(owner, ast.ClassDef):
+            for each in owner.body:
+                if isinstance(each, ast.FunctionDef) and each.name == name:
+                    return _misplaced(name, each.lineno, owner.name)
+    return ""
+
+
+def _misplaced(name: str, line: int, owner: str) -> str:
+    return f"the {name}() of line {line} is indented into the class {owner}; move it to the left margin"
 
 
 def silence() -> str:

@@ -14,9 +14,36 @@ class Resume(msgspec.Struct, frozen=True, tag="resume"):
 
 
 class SetSpeed(msgspec.Struct, frozen=True, tag="speed"):
-    """Run ``speed`` virtual seconds per real second; None: as fast as it can."""
+    """Run ``speed`` seconds per real second; None: as fast as it can, which the real clock cannot."""
 
     speed: float | None
+
+
+class Step(msgspec.Struct, frozen=True, tag="step"):
+    """Go on to the next scheduling decision and let time stand there.
+
+    That is where a callback begins, ends, leaves its thread or comes back to it, where a message, request or
+    reply arrives, or where time has jumped. Virtual clock only.
+    """
+
+
+class RunUntil(msgspec.Struct, frozen=True, tag="run_until"):
+    """Go on until all that happens up to ``moment`` (nanoseconds) has happened; let time stand there.
+
+    Virtual time gets there as fast as it can, the real clock at its speed.
+    """
+
+    moment: int
+
+
+class RunUntilCallback(msgspec.Struct, frozen=True, tag="run_until_callback"):
+    """Go on until the next event of an entity and let time stand there; ``name`` is what people call it.
+
+    Its callback begins, ends, leaves its thread or comes back to it, has to wait, or loses a message.
+    """
+
+    entity: int
+    name: str
 
 
 class CallService(msgspec.Struct, frozen=True, tag="call"):
@@ -51,13 +78,24 @@ class ResetWorld(msgspec.Struct, frozen=True, tag="reset_world"):
     """Put the robot back to its start, as a call of ``/reset_world`` would."""
 
 
+class KeepContents(msgspec.Struct, frozen=True, tag="contents"):
+    """Have what published messages hold on the trace from now on, or no longer."""
+
+    wanted: bool
+
+
 class Stop(msgspec.Struct, frozen=True, tag="stop"):
     """End the run."""
 
 
-Command: TypeAlias = (
-    Pause | Resume | SetSpeed | CallService | RunLine | InterruptLine | CompleteLine | ResetWorld | Stop
-)
+PaceCommand: TypeAlias = Pause | Resume | SetSpeed | Step | RunUntil | RunUntilCallback
+
+InputCommand: TypeAlias = CallService | RunLine | InterruptLine | ResetWorld | KeepContents | Stop
+"""What changes a run: given again at the same moments, it brings about the same events."""
+
+WorldCommand: TypeAlias = InputCommand | CompleteLine
+
+Command: TypeAlias = PaceCommand | WorldCommand
 
 _encoder = msgspec.msgpack.Encoder()
 _decoder: msgspec.msgpack.Decoder[Command] = msgspec.msgpack.Decoder(Command)
@@ -75,3 +113,20 @@ def decode(packed: bytes) -> Command:
         msgspec.DecodeError: the bytes are no command.
     """
     return _decoder.decode(packed)
+
+
+_input_decoder: msgspec.json.Decoder[InputCommand] = msgspec.json.Decoder(InputCommand)
+
+
+def input_text(command: InputCommand) -> str:
+    """An input as the trace and set-ups have it: JSON."""
+    return msgspec.json.encode(command).decode()
+
+
+def input_of(text: str) -> InputCommand:
+    """The input of which ``input_text`` made this text.
+
+    Raises:
+        msgspec.DecodeError: the text is no input that this version knows.
+    """
+    return _input_decoder.decode(text)

@@ -55,6 +55,8 @@ class Launching:
         self._later(0, self._run.interrupt)
 
     def _over(self, status: int) -> None:
+        if self._run.error is not None:
+            self._programs.failures.append(str(self._run.error))
         self._on_exit(status)
         self._programs.release()
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from sim.engine.starting import Starter
+from sim.engine.starting import Starter, StartError
 
 if TYPE_CHECKING:
     from sim.packages import Packages
@@ -40,14 +41,27 @@ class LineTools:
         self, package: str, executable: str, arguments: Sequence[str], on_exit: OnExit
     ) -> Running:
         """Start a program of a package."""
-        return self.starter.start_executable(package, executable, arguments, on_exit)
+        with _as_the_line_says_it():
+            return self.starter.start_executable(package, executable, arguments, on_exit)
 
     def launch(
         self, package: str | None, launch_file: str, arguments: Sequence[str], on_exit: OnExit
     ) -> Running:
         """Start a launch file."""
-        return self.starter.launch(package, launch_file, arguments, on_exit)
+        with _as_the_line_says_it():
+            return self.starter.launch(package, launch_file, arguments, on_exit)
 
     def describe_launch(self, package: str | None, launch_file: str) -> str:
         """What ``ros2 launch --show-args`` prints of a launch file."""
-        return self.starter.describe_launch(package, launch_file)
+        with _as_the_line_says_it():
+            return self.starter.describe_launch(package, launch_file)
+
+
+@contextmanager
+def _as_the_line_says_it() -> Iterator[None]:
+    from sim.shell import Failed
+
+    try:
+        yield
+    except StartError as error:
+        raise Failed(str(error)) from error

@@ -25,11 +25,20 @@ class Outbox:
     """Takes events from any thread in order and sends them. Recording never waits on the real clock.
 
     On virtual time the thread that records sends a full batch itself: waiting for a slow reader then costs
-    no virtual time, and nothing is ever lost. ``before_batch`` runs on the sending thread every period.
+    no virtual time, and nothing is ever lost. ``before_batch`` runs on the sending thread every period, and
+    so does ``pack``, which makes bytes of a batch.
     """
 
-    def __init__(self, pipe: Connection, *, may_wait: bool, before_batch: Callable[[], None]) -> None:
+    def __init__(
+        self,
+        pipe: Connection,
+        *,
+        may_wait: bool,
+        before_batch: Callable[[], None],
+        pack: Callable[[list[AnyEvent]], bytes] = encode,
+    ) -> None:
         self._pipe = pipe
+        self._pack = pack
         self._may_wait = may_wait
         self._before_batch = before_batch
         self._waiting: deque[AnyEvent] = deque()
@@ -62,7 +71,7 @@ class Outbox:
                 batch.append(EventsLost(batch[-1].t if batch else 0, self._lost))
             if batch:
                 try:
-                    self._pipe.send_bytes(encode(batch))
+                    self._pipe.send_bytes(self._pack(batch))
                 except OSError:
                     self._closed = True
 

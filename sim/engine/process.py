@@ -15,9 +15,11 @@ from pathlib import Path
 
 import msgspec
 
-from sim.clock import Clock, RealClock, VirtualClock
+from sim.clock import Clock, PacedClock, VirtualClock
+from sim.clock.paced_stdlib import follow
 from sim.clock.stdlib import live_on
 from sim.engine import commands
+from sim.engine.children import allow_children, refuse_children
 from sim.engine.lines import Lines
 from sim.engine.outbox import Outbox
 from sim.engine.output import ProcessStream
@@ -26,14 +28,17 @@ from sim.engine.programs import Programs
 from sim.engine.requests import Requests
 from sim.engine.robot import provide_robot
 from sim.engine.setup import RunSetup
-from sim.engine.starting import Starter, is_launch_file
+from sim.engine.sourced import use_workspace
+from sim.engine.starting import Starter, StartError, is_launch_file
+from sim.engine.time_control import RealControl, VirtualControl
 from sim.engine.watchdog import Watchdog
 from sim.robot.bullet import WorldUnavailable
 from sim.ros import importing
+from sim.ros.contents import Contents
 from sim.ros.host import Host, install
 from sim.ros.probe import Probe
 from sim.ros.process import Process, current_process, share_machine
-from sim.trace.events import CommandGiven, Notice, Printed, RunEnded, RunStarted, Severity
+from sim.trace.events import InputGiven, Notice, Printed, RunEnded, RunStarted, Severity
 
 _GRACE = 0.5
 """Real seconds that a program gets to wind up once its run is over."""
@@ -47,12 +52,25 @@ class Engine:
     def __init__(self, setup: RunSetup, pipe: Connection) -> None:
         self._setup = setup
         self._pipe = pipe
-        self._virtual = VirtualClock(setup.speed) if setup.clock == "virtual" else None
-        self._clock: Clock = self._virtual or RealClock()
-        self._outbox = Outbox(
-            pipe, may_wait=self._virtual is not None, before_batch=self._look_at_waits_of_real_time
+        clock = VirtualClock(setup.speed) if setup.clock == "virtual" else PacedClock(setup.speed or 1.0)
+        self._virtual = clock if isinstance(clock, VirtualClock) else None
+        self._clock: Clock = clock
+        self._contents = Contents(
+            wanted=setup.contents, make_room=None if self._virtual is None else self._make_room
         )
-        self._host = Host(self._clock, Probe(self._clock, self._outbox.record), threads=setup.threads)
+        self._outbox = Outbox(
+            pipe,
+            may_wait=self._virtual is not None,
+            before_batch=self._look_at_waits_of_real_time,
+            pack=self._contents.pack,
+        )
+        self._control = (
+            RealControl(clock, self._outbox.record)
+            if isinstance(clock, PacedClock)
+            else VirtualControl(clock, self._outbox.record)
+        )
+        probe = Probe(self._clock, self._control.record, self._contents)
+        self._host = Host(self._clock, probe, threads=setup.threads)
         self._requests = Requests(self._host, self._outbox.record)
         self._programs = Programs(self._host, self._outbox.record)
         self._starter = Starter(self._programs, self._setup)
@@ -71,13 +89,17 @@ class Engine:
         install(self._host)
         importing.install()
         self._starter.add_own_interfaces()
+        use_workspace(self._starter.packages, self._clock)
         share_machine()
+        self._settle_children()
         provide_robot(self._setup.robot, self._host, self._outbox.record, self._fail)
         if self._virtual is not None:
             self._virtual.before_jump = self._host.explain_waits
             Watchdog(self._virtual, self._outbox.record, self._give_up).start()
             live_on(self._virtual)
             random.seed(0)
+        elif isinstance(self._clock, PacedClock):
+            follow(self._clock)
         self._schedule()
         self._end(self._run_programs())
 
@@ -86,20 +108,26 @@ class Engine:
         if len(self._setup.programs) == 1 and not is_launch_file(self._setup.programs[0].path):
             (only,) = self._setup.programs
             return self._programs.run_only(script(only.path, only.arguments))
-        for place, program in enumerate(self._setup.programs, start=1):
-            if is_launch_file(program.path):
-                self._starter.launch(None, program.path, program.arguments, _nobody_waits)
-            else:
-                label = f"{Path(program.path).stem}-{place}"
-                self._programs.start(script(program.path, program.arguments), label, _nobody_waits)
         try:
+            self._start_programs()
             self._programs.wait_until(lambda: not (self._programs.any_run or self._lines.any_left))
         except KeyboardInterrupt:
             self._lines.interrupt_all()
             self._programs.interrupt_all()
             self._programs.wait_until(lambda: not self._programs.any_run)
             return Outcome("it was stopped", failed=False)
+        except StartError as error:
+            self._programs.interrupt_all()
+            return Outcome(str(error), failed=True, status=1)
         return self._programs.joint_outcome()
+
+    def _start_programs(self) -> None:
+        for place, program in enumerate(self._setup.programs, start=1):
+            if is_launch_file(program.path):
+                self._starter.launch(None, program.path, program.arguments, _nobody_waits)
+            else:
+                label = f"{Path(program.path).stem}-{place}"
+                self._programs.start(script(program.path, program.arguments), label, _nobody_waits)
 
     def _fail(self, sentence: str) -> None:
         self._finish_run(sentence, failed=True)
@@ -111,13 +139,19 @@ class Engine:
         self._lines.schedule(self._setup.lines)
         if self._setup.until is not None:
             self._clock.call_at(self._setup.until, self._time_is_up)
+        if self._virtual is not None:
+            for given in self._setup.inputs:
+                command = commands.input_of(given.command)
+                self._virtual.give_at(given.at, lambda it=command: self._carry_out(it))  # type: ignore[misc]
 
     def _call_service(self, data: bool) -> None:
         service = self._setup.service
         self._requests.set_bool(None if service is None else service.name, data)
 
     def _time_is_up(self) -> None:
-        self._finish_run("its time was up", failed=False)
+        failures = self._programs.failures
+        sentence = "; ".join(["its time was up", *failures[:1]])
+        self._finish_run(sentence, failed=bool(failures))
         self._interrupt()
 
     def _finish_run(self, reason: str, *, failed: bool) -> None:
@@ -133,7 +167,10 @@ class Engine:
         if self._virtual is not None:
             self._virtual.stop()
         else:
-            signal.raise_signal(signal.SIGINT)
+            self._control.let_go()
+            main = threading.main_thread().ident
+            assert main is not None
+            signal.pthread_kill(main, signal.SIGINT)
 
     def _leave_after_grace(self) -> None:
         self._grace_begins.acquire()
@@ -154,7 +191,9 @@ class Engine:
     def _redirect_output(self) -> None:
         def stream(error: bool) -> ProcessStream:
             def take(process: Process, text: str) -> None:
-                if error or process.shows_stdout:
+                if process.take_output is not None:
+                    process.take_output(text, error)
+                elif error or process.shows_stdout:
                     self._outbox.record(Printed(self._clock.now(), text, error, process.number))
                 else:
                     process.keep(self._tell_of_hidden_output)
@@ -163,6 +202,15 @@ class Engine:
 
         sys.stdout = stream(error=False)
         sys.stderr = stream(error=True)
+
+    def _settle_children(self) -> None:
+        def take(text: str, error: bool) -> None:
+            self._outbox.record(Printed(self._clock.now(), text, error))
+
+        if self._virtual is None:
+            allow_children(self._host, self._outbox, take)
+        else:
+            refuse_children()
 
     def _tell_of_hidden_output(self) -> None:
         text = (
@@ -175,6 +223,9 @@ class Engine:
         if self._virtual is None and not self._over:
             self._host.explain_waits()
 
+    def _make_room(self) -> None:
+        self._outbox.flush()
+
     # Commands, read on a thread of their own
 
     def _obey(self) -> None:
@@ -186,12 +237,28 @@ class Engine:
             except msgspec.DecodeError as error:
                 self._outbox.record(Notice(self._clock.now(), Severity.ERROR, f"unreadable command: {error}"))
                 continue
-            if self._virtual is not None:
-                self._virtual.inject(lambda command=command: self._carry_out(command))  # type: ignore[misc]
+            if isinstance(command, commands.PaceCommand):
+                self._control.obey(command)
+            elif self._virtual is not None:
+                self._bring_in(self._virtual, command)
             else:
                 self._carry_out(command)
 
-    def _carry_out(self, command: commands.Command) -> None:
+    def _bring_in(self, clock: VirtualClock, command: commands.WorldCommand) -> None:
+        """Have a command carried out at the end of the moment that the run is in."""
+        if isinstance(command, commands.CompleteLine):
+            clock.steer(lambda: self._carry_out(command))
+            return
+        if clock.in_moment and not isinstance(command, commands.Stop):
+            text = "time stands in the middle of a moment, and this comes at its end: step, or let time go on"
+            self._outbox.record(Notice(clock.now(), Severity.WARN, text))
+        clock.give(lambda: self._carry_out(command))
+        if isinstance(command, commands.Stop):
+            self._control.let_go()
+
+    def _carry_out(self, command: commands.WorldCommand) -> None:
+        if not isinstance(command, commands.CompleteLine):
+            self._outbox.record(InputGiven(self._clock.now(), commands.input_text(command)))
         match command:
             case commands.CallService(name=name, data=data):
                 self._requests.set_bool(name, data)
@@ -203,28 +270,11 @@ class Engine:
                 self._lines.complete(line, text, cursor)
             case commands.ResetWorld():
                 self._requests.reset_world()
+            case commands.KeepContents(wanted=wanted):
+                self._contents.wanted = wanted
             case commands.Stop():
                 self._finish_run("it was stopped", failed=False)
                 self._interrupt()
-            case _:
-                self._change_pace(command)
-
-    def _change_pace(self, command: commands.Pause | commands.Resume | commands.SetSpeed) -> None:
-        if self._virtual is None:
-            text = "the real clock can be neither paused nor slowed; run with the virtual clock for that"
-            self._outbox.record(Notice(self._clock.now(), Severity.WARN, text))
-            return
-        match command:
-            case commands.Pause():
-                self._virtual.pause()
-                text = "pause"
-            case commands.Resume():
-                self._virtual.resume()
-                text = "resume"
-            case commands.SetSpeed(speed=speed):
-                self._virtual.set_speed(speed)
-                text = "speed max" if speed is None else f"speed x{speed:g}"
-        self._outbox.record(CommandGiven(self._clock.now(), text))
 
 
 def _nobody_waits(_end: object) -> None:

@@ -2,9 +2,9 @@
 
 import ast
 import importlib.util
+import inspect
 import sys
 import threading
-import traceback
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,8 +13,10 @@ from types import CodeType, ModuleType
 from typing import Any
 
 from sim.clock import Stopped
-from sim.engine.advice import advice_on, silence
+from sim.engine.advice import misplaced, silence
+from sim.engine.failure import failure, place_of, print_traceback
 from sim.engine.output import ProcessStream
+from sim.engine.source import NothingToRunError, read_source
 
 _INTERRUPTED = 130
 
@@ -31,10 +33,6 @@ class Program:
     arguments: tuple[str, ...] = ()
     module: str = ""
     function: str = ""
-
-
-class NothingToRunError(Exception):
-    """A file that neither does anything nor defines ``main``; the text says which."""
 
 
 def script(path: str, arguments: tuple[str, ...] = ()) -> Program:
@@ -71,40 +69,63 @@ def _outcome_of(program: Program) -> Outcome:
         status = _status(_load(program)())
         _join_left_threads()
     except SystemExit as exit_:
-        return _exited(exit_)
+        return _exited(exit_, program)
     except NothingToRunError as error:
-        return Outcome(f"{error}; add a main(), and call it or not", failed=True, status=1)
+        return Outcome(str(error), failed=True, status=1)
     except (KeyboardInterrupt, Stopped):
         return Outcome("it was stopped", failed=False, status=_INTERRUPTED)
     except BaseException as error:  # noqa: BLE001 -- whatever a learner's program raises ends its run, not the engine
-        _print_traceback(error, program.path)
-        return Outcome(_failure(error, program.path), failed=True, status=1)
+        print_traceback(error, program.path)
+        return Outcome(failure(error, program.path, program.folder), failed=True, status=1)
     return Outcome(silence() or "the program returned", failed=status != 0, status=status)
 
 
 def _load(program: Program) -> Callable[[], object]:
     """What has to be called to run the program."""
     if program.function:
+        source = read_source(Path(program.path))
         names = _namespace(program, program.module)
-        exec(_code(program), names)
-        entry: Callable[[], object] = names[program.function]
-        return entry
+        exec(_code(program, source), names)
+        if not callable(names.get(program.function)):
+            missing = f"defines no {program.function}(), which its package names as its entry point"
+            raise NothingToRunError(_on_no_entry(program, source, program.function, missing))
+        return _entry(program, names[program.function])
     return lambda: _run_script(program)
 
 
 def _run_script(program: Program) -> object:
+    source = read_source(Path(program.path))
     names = _namespace(program, "__main__")
-    exec(_code(program), names)
-    if _starts_itself(Path(program.path)):
+    exec(_code(program, source), names)
+    if _starts_itself(source):
         return None
     if not callable(names.get("main")):
-        name = Path(program.path).name
-        raise NothingToRunError(f"{name} defines no main() and runs nothing at its top level")
-    return names["main"]()
+        missing = "defines no main() and runs nothing at its top level; add a main(), and call it or not"
+        raise NothingToRunError(_on_no_entry(program, source, "main", missing))
+    return _entry(program, names["main"])()
 
 
-def _code(program: Program) -> CodeType:
-    return compile(Path(program.path).read_bytes(), program.path, "exec", dont_inherit=True)
+def _on_no_entry(program: Program, source: str, function: str, otherwise: str) -> str:
+    name = Path(program.path).name
+    found = misplaced(function, source)
+    return f"{name}: {found}" if found else f"{name} {otherwise}"
+
+
+def _entry(program: Program, function: Callable[..., object]) -> Callable[[], object]:
+    """The function, if it can be called as an entry point is."""
+    try:
+        inspect.signature(function).bind()
+    except TypeError as error:
+        line = getattr(getattr(function, "__code__", None), "co_firstlineno", 1)
+        raise NothingToRunError(
+            f"{Path(program.path).name}:{line}: an entry point is called without arguments ({error}); "
+            "give each a default, as in main(args=None)"
+        ) from None
+    return function
+
+
+def _code(program: Program, source: str) -> CodeType:
+    return compile(source, program.path, "exec", dont_inherit=True)
 
 
 def _namespace(program: Program, name: str) -> dict[str, Any]:
@@ -123,10 +144,10 @@ def _status(returned: object) -> int:
     return returned if isinstance(returned, int) else 0 if returned is None else 1
 
 
-def _starts_itself(path: Path) -> bool:
+def _starts_itself(source: str) -> bool:
     """Whether the file does more at its top level than to import, define and assign."""
     passive = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Assign)
-    body = ast.parse(path.read_bytes()).body
+    body = ast.parse(source).body
     return any(not isinstance(each, (*passive, ast.AnnAssign)) and not _is_text(each) for each in body)
 
 
@@ -150,29 +171,11 @@ def _join_left_threads() -> None:
             thread.join()
 
 
-def _exited(exit_: SystemExit) -> Outcome:
+def _exited(exit_: SystemExit, program: Program) -> Outcome:
     if exit_.code in {None, 0}:
         return Outcome("the program returned", failed=False)
+    place = place_of(exit_, program.path, program.folder)
     if isinstance(exit_.code, int):
-        return Outcome(f"the program ended with exit code {exit_.code}", failed=True, status=exit_.code)
-    return Outcome(f"the program ended: {exit_.code}", failed=True, status=1)
-
-
-def _print_traceback(error: BaseException, path: str) -> None:
-    """Print the traceback as Python would, from the learner's first frame on."""
-    trace = error.__traceback__
-    while trace is not None and trace.tb_frame.f_code.co_filename != path:
-        trace = trace.tb_next
-    traceback.print_exception(type(error), error, trace or error.__traceback__)
-
-
-def _failure(error: BaseException, path: str) -> str:
-    name = Path(path).name
-    if isinstance(error, SyntaxError) and error.filename == path:
-        return f"{name}:{error.lineno}: {error.msg}"
-    line = 0
-    for frame, number in traceback.walk_tb(error.__traceback__):
-        if frame.f_code.co_filename == path:
-            line = number
-    place = f"{name}:{line}" if line else name
-    return f"{place}: the program raised {type(error).__name__}: {error}{advice_on(error)}"
+        sentence = f"the program ended with exit code {exit_.code}{place}"
+        return Outcome(sentence, failed=True, status=exit_.code)
+    return Outcome(f"the program ended: {exit_.code}{place}", failed=True, status=1)

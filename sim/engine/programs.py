@@ -16,7 +16,7 @@ from sim.ros.context import end_contexts_by_signal
 from sim.ros.host import Host
 from sim.ros.process import Process
 from sim.ros.signals import deliver_sigint
-from sim.trace.events import AnyEvent, ProcessAppeared, ProcessEnded
+from sim.trace.events import AnyEvent, Notice, ProcessAppeared, ProcessEnded, Severity
 
 Ended = Callable[[Outcome], None]
 
@@ -59,7 +59,8 @@ class Programs:
 
     host: Host
     record: Callable[[AnyEvent], None]
-    ended: list[RunningProgram] = field(default_factory=list)
+    failures: list[str] = field(default_factory=list)
+    """Sentences on the programs, and on what started programs, that failed."""
     _running: list[RunningProgram] = field(default_factory=list)
     _numbers: "count[int]" = field(default_factory=lambda: count(1))
     _held: int = 0
@@ -115,9 +116,11 @@ class Programs:
                 return  # it was killed, and its thread has ended only now
             running.outcome = outcome
             self._running.remove(running)
-            self.ended.append(running)
             now = self.host.clock.now()
             self.record(ProcessEnded(now, running.number, outcome.sentence, outcome.status))
+            if outcome.failed:
+                self.failures.append(f"{running.process.label}: {outcome.sentence}")
+                self.record(Notice(now, Severity.ERROR, self.failures[-1]))
         running.on_exit(outcome)
         self.look()
 
@@ -140,11 +143,8 @@ class Programs:
 
     def joint_outcome(self) -> Outcome:
         """How the programs that ended did, taken together: the first failure speaks for all."""
-        failed = [each for each in self.ended if each.outcome is not None and each.outcome.failed]
-        if failed:
-            first = failed[0]
-            assert first.outcome is not None
-            return Outcome(f"{first.process.label}: {first.outcome.sentence}", failed=True)
+        if self.failures:
+            return Outcome(self.failures[0], failed=True, status=1)
         return Outcome("every program returned", failed=False)
 
     def hold(self) -> None:

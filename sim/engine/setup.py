@@ -35,6 +35,16 @@ class TimedLine(msgspec.Struct, frozen=True):
     text: str
 
 
+class TimedInput(msgspec.Struct, frozen=True):
+    """An input of a run of before, to be carried out at the end of moment ``at`` (nanoseconds).
+
+    ``command`` is what ``sim.engine.commands.input_text`` makes of it.
+    """
+
+    at: int
+    command: str
+
+
 class ProgramSetup(msgspec.Struct, frozen=True):
     """A Python file to run, a node's or a launch file, with its command-line arguments."""
 
@@ -45,12 +55,12 @@ class ProgramSetup(msgspec.Struct, frozen=True):
 class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     """All that an engine needs to know to run some programs.
 
-    ``speed`` is virtual seconds per real second, None for as fast as it can; the real clock ignores it.
+    ``speed`` is seconds of the run per real second, None for as fast as it can: on the real clock that is 1.
     ``until`` is nanoseconds of run time after which the run ends, None for no end. ``threads`` replaces
     the number of threads of the programs' executors, None leaves their own. ``service`` None means the
     first SetBool service that a program offers. ``lines`` get the numbers 1, 2, … on the trace.
     ``packages`` are folders in which packages are looked for, after those around the programs. A run
-    without programs ends with its lines.
+    without programs ends with its lines. ``inputs``, in the order of their moments, need the virtual clock. With ``contents`` the trace has what published messages hold.
     """
 
     title: str
@@ -62,5 +72,7 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     threads: int | None = None
     calls: tuple[TimedCall, ...] = ()
     lines: tuple[TimedLine, ...] = ()
+    inputs: tuple[TimedInput, ...] = ()
     packages: tuple[str, ...] = ()
     robot: RobotUse = RobotUse.ALWAYS
+    contents: bool = False

@@ -6,7 +6,8 @@ packages, and begin the sooner.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -19,6 +20,10 @@ from sim.ros.interfaces import add_definitions, find_definition_folders
 if TYPE_CHECKING:
     from sim.packages import Packages
     from sim.shell import OnExit, Running
+
+
+class StartError(Exception):
+    """Something that cannot be started; the text is a sentence that says why, and where."""
 
 
 class Starter:
@@ -56,9 +61,10 @@ class Starter:
         """Start a program of a package.
 
         Raises:
-            PackageError: there is no such package or executable, or it cannot be read.
+            StartError: there is no such package or executable, or it cannot be read.
         """
-        found = self.packages().package(package).executable(executable)
+        with _told():
+            found = self.packages().package(package).executable(executable)
         program = Program(
             path=str(found.path),
             folder=str(found.folder),
@@ -78,26 +84,40 @@ class Starter:
         """Start a launch file, of a package or (None) by its path, with ``name:=value`` arguments.
 
         Raises:
-            PackageError, LaunchError: there is no such file, or it cannot be carried out.
+            StartError: there is no such file, or it cannot be carried out.
         """
         from sim.engine.launching import Launching
 
-        path = self._launch_path(package, launch_file)
-        return Launching(self._programs, self, path, arguments, on_exit).start()
+        with _told():
+            path = self._launch_path(package, launch_file)
+            return Launching(self._programs, self, path, arguments, on_exit).start()
 
     def describe_launch(self, package: str | None, launch_file: str) -> str:
         """What ``ros2 launch --show-args`` prints of a launch file.
 
         Raises:
-            PackageError, LaunchError: there is no such file, or it cannot be read.
+            StartError: there is no such file, or it cannot be read.
         """
         from sim.launch import describe_arguments
 
-        return describe_arguments(self._launch_path(package, launch_file))
+        with _told():
+            return describe_arguments(self._launch_path(package, launch_file))
 
     def _launch_path(self, package: str | None, launch_file: str) -> Path:
         known = self.packages()  # a launch file asks for packages even when it is named by its path
         return Path(launch_file) if package is None else known.package(package).launch_file(launch_file)
+
+
+@contextmanager
+def _told() -> Iterator[None]:
+    """Turn what can be wrong with packages and launch files into StartError."""
+    from sim.launch import LaunchError
+    from sim.packages import PackageError
+
+    try:
+        yield
+    except (LaunchError, PackageError) as error:
+        raise StartError(str(error)) from error
 
 
 def is_launch_file(path: str) -> bool:

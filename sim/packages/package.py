@@ -56,6 +56,14 @@ class Package:
         return (self.root / MANIFEST).read_text(encoding="utf-8", errors="replace")
 
     @property
+    def module_folder(self) -> Path:
+        """The folder that its Python packages lie in; its own where the build files do not tell."""
+        try:
+            return self.root / self._installed.source_folder
+        except PackageError:
+            return self.root
+
+    @property
     def executables(self) -> Mapping[str, EntryPoint | Path]:
         """The programs by name: entry points, and scripts by their paths.
 

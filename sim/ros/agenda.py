@@ -16,7 +16,6 @@ from sim.trace.events import Reason
 if TYPE_CHECKING:
     from sim.ros.entity import Entity
     from sim.ros.executors import Executor
-    from sim.ros.logging import RcutilsLogger
     from sim.ros.probe import Probe
     from sim.ros.timer import Timer
     from sim.ros.waitable_entity import WaitableEntity
@@ -27,18 +26,17 @@ EntityT = TypeVar("EntityT", bound="Entity")
 class Agenda(WaitsExplained):
     """What an executor has to know of a node. Used with the host's lock held."""
 
-    def __init__(self, host: Host, probe: Probe, logger: RcutilsLogger) -> None:
+    def __init__(self, host: Host, probe: Probe) -> None:
         self.host = host
         self.entities: list[Entity] = []
         self.asked: list[WaitableEntity] = []
         """The waitables that a program wrote: an executor asks them whether they are ready."""
-        self.warnings: list[str] = []
         self._probe = probe
-        self._logger = logger
         self._orders = 0
         self._pending: dict[Entity, None] = {}
         self._timer_queue: list[tuple[int, int, Timer]] = []
         self._executor: weakref.ref[Executor] | None = None
+        self._latest_executor: weakref.ref[Executor] | None = None
         host.explain_waits_of(self)
 
     @property
@@ -49,6 +47,17 @@ class Agenda(WaitsExplained):
     @executor.setter
     def executor(self, executor: Executor | None) -> None:
         self._executor = None if executor is None else weakref.ref(executor)
+        if executor is not None:
+            self._latest_executor = self._executor
+
+    @property
+    def latest_executor(self) -> Executor | None:
+        """The executor that served the node last, or does still."""
+        return None if self._latest_executor is None else self._latest_executor()
+
+    def forget_executors(self) -> None:
+        """Be served by none, as if that had always been so."""
+        self._executor = self._latest_executor = None
 
     def next_order(self) -> int:
         """The place of another entity in the order of creation."""
@@ -140,7 +149,7 @@ class Agenda(WaitsExplained):
         queue = self._timer_queue
         while queue:
             due, _, timer = queue[0]
-            if timer.due == due and not (timer.pending or timer.is_canceled() or timer.destroyed):
+            if timer.due == due and not (timer.pending or timer.destroyed or timer.is_canceled()):
                 return due
             heappop(queue)
         return None
@@ -150,17 +159,6 @@ class Agenda(WaitsExplained):
         executor = self.executor
         if executor is not None:
             executor.wake()
-
-    def warn_when_spinning(self, text: str) -> None:
-        """Log a warning when the executor next looks at what is ready."""
-        self.warnings.append(text)
-        self.wake_executor()
-
-    def speak_warnings(self) -> None:
-        """Log the warnings that wait for it."""
-        warnings, self.warnings = self.warnings, []
-        for text in warnings:
-            self._logger.warning(text)
 
     def explain_waits(self) -> int | None:
         """Record which callbacks wait, and why; returns when the next timer falls due."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import msgspec
 
@@ -20,7 +20,13 @@ from sim.trace.events import EntityKind
 if TYPE_CHECKING:
     from sim.ros.callback_groups import CallbackGroup
     from sim.ros.clock import Clock
+    from sim.ros.context import Context
     from sim.ros.node import Node
+
+SrvType = TypeVar("SrvType")
+SrvTypeRequest = TypeVar("SrvTypeRequest")
+SrvTypeResponse = TypeVar("SrvTypeResponse")
+"""For the type hints of programs, which import these from here as from rclpy."""
 
 _POLL = 0.25
 """Seconds between two looks of ``wait_for_service``, as in rclpy."""
@@ -60,9 +66,15 @@ class Client(Entity):
         self.depth = qos_profile.queue_length or 0
         self._host = node.context.host
         self._probe = node.context.probe
+        self.gid = self._host.new_gid()
         self._introspection: ServiceIntrospection | None = None
         self._pending_requests: dict[int, Future[Any]] = {}
         self._queue: deque[Reply] = deque()
+
+    @property
+    def context(self) -> Context:
+        """The context that its node lives in."""
+        return self.node.context
 
     @property
     def service_name(self) -> str:
@@ -94,6 +106,7 @@ class Client(Entity):
 
         Raises:
             TypeError: the request is not of the service's type.
+            InvalidHandle: the client was destroyed.
         """
         arrived = self._host.clock.signal()
         call, future = self._send(request)
@@ -113,12 +126,14 @@ class Client(Entity):
 
         Raises:
             TypeError: the request is not of the service's type.
+            InvalidHandle: the client was destroyed.
         """
         return self._send(request)[1]
 
     def _send(self, request: Any) -> tuple[int, Future[Any]]:
         if not isinstance(request, self.srv_type.Request):
             raise TypeError(f"Expected {self.srv_type.Request}, got {type(request)}")
+        self.require_alive()
         future: Future[Any] = Future()
         copy = copy_message(request)
         with self._host.lock:
@@ -142,7 +157,8 @@ class Client(Entity):
                     del self._pending_requests[call]
 
     def service_is_ready(self) -> bool:
-        """Whether somebody offers the service."""
+        """Whether somebody offers the service; InvalidHandle if the client was destroyed."""
+        self.require_alive()
         with self._host.lock:
             return self.node.context.network.has_service(self.name, self.srv_type)
 

@@ -9,7 +9,10 @@ _LIMIT = 2**63
 
 
 class Duration:
-    """A length of time in whole nanoseconds; may be negative. Immutable, ordered, hashable."""
+    """A length of time in whole nanoseconds; may be negative. Immutable, ordered, hashable.
+
+    Comparing it with anything but a duration is a TypeError.
+    """
 
     __slots__ = ("_nanoseconds",)
 
@@ -38,7 +41,8 @@ class Duration:
     def __eq__(self, other: object) -> bool:
         if isinstance(other, Duration):
             return self._nanoseconds == other._nanoseconds
-        return NotImplemented
+        # As in rclpy: with NotImplemented, Duration(nanoseconds=5) == 5 would be False and go unnoticed.
+        raise TypeError(f"Can't compare duration with object of type: {type(other)}")
 
     def __lt__(self, other: Duration) -> bool:
         if isinstance(other, Duration):

@@ -77,6 +77,12 @@ class Entity:
     def __exit__(self, *_error: object) -> None:
         self.destroy()
 
+    def require_alive(self) -> None:
+        """Raise InvalidHandle if it was destroyed; while its handle is held it counts as alive."""
+        if self.destroyed:
+            with self.handle:
+                return
+
     def shown_callback(self) -> Callable[..., Any] | None:
         """The function that a learner knows this entity by; None: it has none of its own."""
         raise NotImplementedError

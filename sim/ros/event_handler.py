@@ -1,7 +1,7 @@
 """Events of publishers and subscriptions: matches made, lost or refused, deadlines missed, liveliness lost.
 
 No message is ever lost on the way, so the event that tells of it never comes; a full queue that drops its
-oldest is not meant by it.
+oldest is not meant by it, nor is a message whose lifespan is over.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
 from sim.ros.entity import Entity, Taken
+from sim.ros.logging import get_logger
 from sim.ros.qos_policies import QoSPolicyKind
 from sim.trace.events import EntityKind
 
@@ -158,8 +159,23 @@ class EventHandler(Entity):
         self.node._agenda.remove(self)
 
 
+class DefaultEventHandler(EventHandler):
+    """Logs a warning for an event that the program has no callback for; it is none of the program's own."""
+
+    traced = False
+
+    def __init__(self, node: Node, topic: str, callback_group: CallbackGroup, info: Any) -> None:
+        super().__init__(node, topic, self._warn, callback_group, info)
+        self.warning = ""
+
+    def _warn(self, _info: Any) -> None:
+        get_logger(self.logger_name).warning(self.warning)
+
+
 class EventCallbacks:
-    """Base of the callbacks for events; without one for it, a match refused for its quality is warned of."""
+    """Base of the callbacks for events; without one for it, a match that is refused is warned of,
+    unless ``use_default_callbacks`` is false.
+    """
 
     def __init__(
         self,
@@ -200,7 +216,6 @@ class EndpointEvents:
         wanted = EventCallbacks() if callbacks is None else callbacks
         self.handlers: list[EventHandler] = []
         self._node = node
-        self._warns = wanted.use_default_callbacks
 
         def handler(callback: EventCallback | None, info: Any) -> EventHandler | None:
             if callback is None:
@@ -209,8 +224,15 @@ class EndpointEvents:
             self.add(made)
             return made
 
-        self._incompatible_qos = handler(wanted.incompatible_qos, IncompatibleQoSInfo())
-        self._incompatible_type = handler(wanted.incompatible_type, IncompatibleTypeInfo())
+        def handler_or_default(callback: EventCallback | None, info: Any) -> EventHandler | None:
+            if callback is not None or not wanted.use_default_callbacks:
+                return handler(callback, info)
+            made = DefaultEventHandler(node, topic, callback_group, info)
+            self.add(made)
+            return made
+
+        self._incompatible_qos = handler_or_default(wanted.incompatible_qos, IncompatibleQoSInfo())
+        self._incompatible_type = handler_or_default(wanted.incompatible_type, IncompatibleTypeInfo())
         self._matched = handler(wanted.matched, MatchedInfo())
 
     def add(self, handler: EventHandler) -> None:
@@ -238,23 +260,24 @@ class EndpointEvents:
 
     def qos_refused(self, policy: str, warning: str) -> None:
         """No match for ``policy``; without a callback for that, the warning is given while spinning."""
-        handler = self._incompatible_qos
-        if handler is not None:
-            handler.info.total_count += 1
-            handler.info.total_count_change += 1
-            handler.info.last_policy_kind = QoSPolicyKind[policy]
-            handler.changed()
-        elif self._warns:
-            self._node._agenda.warn_when_spinning(warning)
+        if self._incompatible_qos is not None:
+            self._incompatible_qos.info.last_policy_kind = QoSPolicyKind[policy]
+            _refused(self._incompatible_qos, warning)
 
-    def type_refused(self) -> None:
-        """No match for the type of the messages."""
+    def type_refused(self, warning: str) -> None:
+        """No match for the type of the messages; the warning as for ``qos_refused``."""
         if self._incompatible_type is not None:
-            self._incompatible_type.info.total_count += 1
-            self._incompatible_type.info.total_count_change += 1
-            self._incompatible_type.changed()
+            _refused(self._incompatible_type, warning)
 
     def destroy(self) -> None:
         """Tell of nothing any more."""
         for each in self.handlers:
             each.destroy()
+
+
+def _refused(handler: EventHandler, warning: str) -> None:
+    handler.info.total_count += 1
+    handler.info.total_count_change += 1
+    if isinstance(handler, DefaultEventHandler):
+        handler.warning = warning
+    handler.changed()

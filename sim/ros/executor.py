@@ -1,4 +1,4 @@
-"""What all executors share: waiting until something is ready, running it, and telling why others wait.
+"""What all executors share: waiting until something is ready, and running it.
 
 The order is decided by the wait set, the exclusion by the callback groups; the kinds of executor add the
 threads. Whoever changes what is ready wakes the executor if it waits.
@@ -6,68 +6,39 @@ threads. Whoever changes what is ready wakes the executor if it waits.
 
 from __future__ import annotations
 
-import inspect
 from collections import deque
 from collections.abc import Callable, Generator, Iterable
 from contextlib import contextmanager
-from threading import get_ident
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from sim.clock import Stopped
 from sim.ros.context import Context
-from sim.ros.entity import Entity, Taken
+from sim.ros.entity import Entity
 from sim.ros.handlers import Handler
+from sim.ros.running import RunsWork, Work
 from sim.ros.task import Future, Task
 from sim.ros.utilities import get_default_context, timeout_sec_to_nsec
 from sim.ros.wait_set import WaitSet
 from sim.ros.waitable_entity import WaitableEntity, ask_waitables
-from sim.trace.events import Reason
+from sim.ros.waiting_ends import (
+    ConditionReachedException,
+    ExternalShutdownException,
+    ShutdownException,
+    Timeout,
+    TimeoutException,
+    TimeoutObject,
+    never,
+    seconds_of,
+)
 
 if TYPE_CHECKING:
     from sim.ros.node import Node
     from sim.ros.timer import Timer
 
-Work: TypeAlias = "Entity | Task[Any]"
-"""What a cycle yields."""
-Begun: TypeAlias = "tuple[Entity, Taken] | Task[Any]"
-"""A callback that its group has let in and that has what it needs to run."""
 FoundT = TypeVar("FoundT")
 
 
-class ExternalShutdownException(Exception):
-    """The context ended while its executor was spinning."""
-
-
-class ShutdownException(Exception):
-    """The executor was shut down while something waited for its work."""
-
-
-class TimeoutException(Exception):
-    """Nothing became ready in time."""
-
-
-class ConditionReachedException(Exception):
-    """The condition that ends the waiting holds."""
-
-
-def never() -> bool:
-    """The condition that ends no waiting."""
-    return False
-
-
-class TimeoutObject:
-    """Seconds that are left of a timeout; changing them does not make it another one."""
-
-    def __init__(self, timeout: float) -> None:
-        self.timeout = timeout
-
-
-Timeout: TypeAlias = "float | TimeoutObject | None"
-"""Seconds; None or negative ones stand for ever."""
-
-
-class Executor:
+class Executor(RunsWork):
     """Base of all executors; a program may write its own kind by ``_spin_once_impl`` or ``spin_once``."""
 
     threads = 1
@@ -117,6 +88,7 @@ class Executor:
                 return False
             self._nodes.append(node)
             node.executor = self
+            node._agenda.executor = self
             self._waitables_changed()
             self.wake()
             return True
@@ -126,7 +98,8 @@ class Executor:
         with self._lock:
             if node in self._nodes:
                 self._nodes.remove(node)
-                node.executor = None
+                if node._agenda.executor is self:
+                    node._agenda.executor = None
                 self._waitables_changed()
                 self.wake()
 
@@ -138,6 +111,10 @@ class Executor:
         """Have it look again at what is ready."""
         with self._lock:
             self._wake()
+
+    def create_future(self) -> Future[Any]:
+        """Make a future whose done-callbacks run as tasks of this executor."""
+        return Future(executor=self)
 
     def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task[Any]:
         """Run a function or coroutine soon, before whatever else is ready."""
@@ -209,7 +186,7 @@ class Executor:
         if type(self).spin_once is Executor.spin_once:
             raise NotImplementedError
         # Programs written for Humble say by this method how to spin.
-        self.spin_once(_seconds(timeout_sec))
+        self.spin_once(seconds_of(timeout_sec))
 
     @contextmanager
     def _enter_spin(self) -> Generator[None, None, None]:
@@ -242,7 +219,7 @@ class Executor:
     def _chosen(self, nodes: Iterable[Node]) -> list[Node]:
         chosen = list(nodes)
         for node in chosen:
-            if node.executor is not self:
+            if node not in self._nodes:
                 raise NotImplementedError(
                     "wait_for_ready_callbacks(nodes=...) with a node that was not added is not supported"
                 )
@@ -262,16 +239,16 @@ class Executor:
             ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException:
                 there is none for that reason.
         """
-        nanoseconds = -1 if timeout_sec is None else timeout_sec_to_nsec(_seconds(timeout_sec))
+        nanoseconds = -1 if timeout_sec is None else timeout_sec_to_nsec(seconds_of(timeout_sec))
         deadline = None if nanoseconds < 0 else self._clock.now() + nanoseconds
         while True:
             asked = self._asks_waitables and self._about_to_look() and self._ask_waitables()
             with self._lock:
                 self._waiting = False
-                if not self._context.ok():
-                    raise ExternalShutdownException
                 if self._is_shutdown:
                     raise ShutdownException
+                if not self._context.ok():
+                    raise ExternalShutdownException
                 if condition():
                     raise ConditionReachedException
                 now = self._clock.now()
@@ -323,9 +300,6 @@ class Executor:
             return self._due_tasks.popleft()
         if not self._looked:
             self._looked = True
-            for node in self._nodes_in_view:
-                if node._agenda.warnings:
-                    node._agenda.speak_warnings()
             self._wait_set.look(self._nodes_in_view, now)
             if self._chooses_entities:
                 self._wait_set.keep(self.can_execute)
@@ -396,156 +370,6 @@ class Executor:
         with self._lock:
             self._foreign_awaits.append(task)
 
-    # Running
-
-    def _begin(self, work: Work, now: int) -> Begun | None:
-        """Enter the group and take what is there; None: refused, or nothing there. With the lock held."""
-        if isinstance(work, Task):
-            self._at_work += 1
-            return work
-        taken = self._enter(work, now)
-        return None if taken is None else (work, taken)
-
-    def _enter(self, entity: Entity, now: int) -> Taken | None:
-        entity.handed_out = False
-        if self._is_shutdown or entity.destroyed or not entity.callback_group.beginning_execution(entity):
-            self.wake()
-            return None
-        taken = entity.take(now)
-        if taken is None:
-            entity.callback_group.ending_execution(entity)
-            self.wake()
-            return None
-        self._running.append(entity)
-        self._at_work += 1
-        if entity.wait_shown is not None:
-            self._probe.wait_ended(entity)
-        if entity.pending and entity.callback_group.can_execute(entity):
-            self._wake()
-        return taken
-
-    def _run(self, begun: Begun) -> None:
-        """Run what has begun, on this thread; what it raises is raised."""
-        if isinstance(begun, Task):
-            self._run_task(begun)
-        else:
-            self._run_callback(*begun)
-
-    def _run_callback(self, entity: Entity, taken: Taken) -> None:
-        outer = self._probe.callback_started(entity, taken.message, taken.age, taken.left)
-        try:
-            outcome = entity.invoke(taken)
-        except BaseException as error:
-            self._fail(entity, error, outer)
-            raise
-        if outcome is not None and inspect.iscoroutine(outcome):
-            task: Task[Any] = Task(outcome, executor=self)
-            self._coroutines[task] = entity
-            self._step(task, entity, outer)
-        else:
-            self._end(entity, outer)
-
-    def _run_task(self, task: Task[Any]) -> None:
-        """Run a task as far as it gets."""
-        entity = self._coroutines.get(task)
-        if entity is None:
-            self._task_threads.append(get_ident())
-            try:
-                task()
-            finally:
-                with self._lock:
-                    self._task_threads.remove(get_ident())
-                    self._leave()
-            error = task.exception() if task._settled() else None
-            if error is not None:
-                raise error
-        else:
-            with self._lock:
-                self._running.append(entity)
-            self._step(task, entity, self._probe.callback_resumed(entity))
-
-    def _step(self, task: Task[Any], entity: Entity, outer: int) -> None:
-        awaited = task._advance()
-        if not task._settled():
-            with self._lock:
-                self._running.remove(entity)
-                self._probe.callback_suspended(entity, outer)
-            task._arm(awaited)
-            with self._lock:
-                self._leave()
-            return
-        del self._coroutines[task]
-        error = task.exception()
-        if error is not None:
-            self._fail(entity, error, outer)
-            raise error
-        self._end(entity, outer)
-
-    def _fail(self, entity: Entity, error: BaseException, outer: int) -> None:
-        if not isinstance(error, (Stopped, KeyboardInterrupt)):
-            with self._lock:
-                self._probe.callback_failed(entity, error)
-        self._end(entity, outer)
-
-    def _end(self, entity: Entity, outer: int) -> None:
-        with self._lock:
-            self._running.remove(entity)
-            self._probe.callback_ended(entity, outer)
-            entity.callback_group.ending_execution(entity)
-            self._wake_sharers(entity)
-            self._leave()
-
-    def _wake_sharers(self, entity: Entity) -> None:
-        """The group is free: wake this executor if it waits, and any other that serves its members."""
-        if self._waiting or self._foreign_awaits:
-            self._look_again()
-        for node in entity.callback_group.other_nodes(entity.node):
-            executor = node.executor
-            if executor is not None and executor is not self:
-                executor.wake()
-
-    def _leave(self) -> None:
-        """A thread is done with its work. With the lock held."""
-        self._at_work -= 1
-        if self._at_work == 0 and self._idle_signals:
-            signals, self._idle_signals = self._idle_signals, []
-            for signal in signals:
-                signal.set()
-
-    def _runs_here(self) -> bool:
-        """Whether the calling thread runs a callback or a task of this executor."""
-        here = self._probe.callback_here()
-        is_callback = here != 0 and any(each.trace_id == here for each in self._running)
-        return is_callback or get_ident() in self._task_threads
-
-    def _wait_for_the_running(self, nanoseconds: int) -> bool:
-        with self._lock:
-            if self._at_work == 0:
-                return True
-            signal = self._clock.signal()
-            self._idle_signals.append(signal)
-        return signal.wait(None if nanoseconds < 0 else self._clock.now() + nanoseconds)
-
-    # Telling why something waits; with the host's lock held
-
-    def _explain_wait(self, entity: Entity) -> None:
-        """Record why a ready callback of this executor does not run; nothing if it is about to."""
-        busy = self._workers_busy()
-        if not self._spinning and not entity.handed_out:
-            self._probe.waits(entity, Reason.NOBODY_SPINS, None, workers_busy=False)
-        elif not entity.callback_group.can_execute(entity):
-            self._probe.waits(entity, Reason.GROUP_HELD, self._holder_of(entity), workers_busy=busy)
-        elif busy:
-            culprit = self._running[0] if self._running else None
-            self._probe.waits(entity, Reason.NO_FREE_WORKER, culprit, workers_busy=True)
-
-    def _workers_busy(self) -> bool:
-        return self._at_work >= self.threads
-
-    def _holder_of(self, entity: Entity) -> Entity | None:
-        holder: Entity | None = getattr(entity.callback_group, "holder", None)
-        return holder
-
     # For executors written by a program
 
     def can_execute(self, entity: Entity) -> bool:
@@ -595,10 +419,6 @@ class Executor:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.shutdown()
-
-
-def _seconds(timeout: Timeout) -> float | None:
-    return timeout.timeout if isinstance(timeout, TimeoutObject) else timeout
 
 
 def _earliest(times: Iterable[int | None]) -> int | None:

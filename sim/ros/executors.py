@@ -9,9 +9,11 @@ from contextlib import contextmanager, suppress
 from typing import Any, Self
 
 from sim.ros.context import Context
-from sim.ros.executor import (
+from sim.ros.executor import Executor
+from sim.ros.task import Future
+from sim.ros.utilities import get_available_threads, get_default_context
+from sim.ros.waiting_ends import (
     ConditionReachedException,
-    Executor,
     ExternalShutdownException,
     ShutdownException,
     Timeout,
@@ -19,8 +21,6 @@ from sim.ros.executor import (
     TimeoutObject,
     never,
 )
-from sim.ros.task import Future
-from sim.ros.utilities import get_available_threads, get_default_context
 from sim.ros.workers import WorkerPool
 
 __all__ = [
@@ -96,10 +96,16 @@ class MultiThreadedExecutor(Executor):
         """The pool, by the name that rclpy has for it."""
         return self._pool
 
-    def shutdown(self, timeout_sec: float | None = None) -> bool:
-        """Yield nothing more, wait for what runs, and end the workers."""
+    def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool = True) -> bool:
+        """Yield nothing more, wait for what runs, and end the workers.
+
+        False if what ran took longer than ``timeout_sec`` seconds. Even then it waits for the end of all
+        workers, as rclpy does, unless ``wait_for_threads`` is False.
+        """
         done = super().shutdown(timeout_sec)
         self._pool.dismiss()
+        if wait_for_threads:
+            self._pool.wait_for_end()
         return done
 
     def spin(self) -> None:

@@ -25,7 +25,8 @@ class GuardCondition(Entity):
         self._host = node.context.host
 
     def trigger(self) -> None:
-        """Have the callback run."""
+        """Have the callback run; InvalidHandle if it was destroyed."""
+        self.require_alive()
         with self._host.lock:
             self.become_ready(self._host.clock.now())
 

@@ -6,8 +6,10 @@ on wall time that keeps no trace, so that the model works as a plain library too
 
 import threading
 import time
+from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
+from itertools import count
 from weakref import ref
 
 from sim.clock import Clock, RealClock
@@ -53,6 +55,7 @@ class Host:
     lock: AbstractContextManager[bool] = field(default_factory=HostLock)
     default_domain: int = field(default_factory=domain_of_machine)
     takes_signals: bool = False
+    _gids: Iterator[int] = field(default_factory=lambda: count(1))
     _networks: dict[int, Network] = field(default_factory=dict)
     _waiters: "list[ref[WaitsExplained]]" = field(default_factory=list)
 
@@ -65,6 +68,10 @@ class Host:
         """The network of a domain."""
         with self.lock:
             return self._networks.setdefault(domain, Network())
+
+    def new_gid(self) -> bytes:
+        """16 bytes that no other publisher, subscription or client has; the same in every run alike."""
+        return next(self._gids).to_bytes(16, "little")
 
     def explain_waits(self) -> int | None:
         """Put on the trace which callbacks wait now, and why; call it before time passes.

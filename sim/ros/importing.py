@@ -2,10 +2,15 @@
 
 import importlib
 import sys
+from collections.abc import Sequence
+from importlib.machinery import ModuleSpec
 from types import ModuleType
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
 
 from sim.ros.interfaces.finder import InterfaceFinder
+
+if TYPE_CHECKING:
+    from importlib.abc import Loader
 
 _MODULES = (
     "_rclpy_pybind11",
@@ -17,6 +22,7 @@ _MODULES = (
     "client",
     "clock",
     "clock_type",
+    "constants",
     "context",
     "duration",
     "event_handler",
@@ -66,6 +72,8 @@ _MODULES = (
     "wait_for_message",
     "waitable",
 )
+_HELPERS = ("sensor_msgs_py", "sensor_msgs_py.point_cloud2", "test_msgs.message_fixtures")
+"""Modules that are only loaded when a program imports them."""
 _ROSIDL_MODULES = (
     "rosidl_runtime_py",
     "rosidl_runtime_py.convert",
@@ -81,7 +89,8 @@ def install() -> None:
     package = importlib.import_module("sim.ros")
     sys.modules["rclpy"] = package
     for name in _MODULES:
-        sys.modules[f"rclpy.{name}"] = importlib.import_module(f"sim.ros.{name}")
+        module = sys.modules[f"rclpy.{name}"] = importlib.import_module(f"sim.ros.{name}")
+        _name_exceptions(module, f"rclpy.{name}")
     parser: Any = ModuleType("rosidl_parser", "The types that the slots of messages are made of.")
     parser.definition = importlib.import_module("sim.ros.interfaces.field_types")
     sys.modules["rosidl_parser"] = parser
@@ -89,4 +98,32 @@ def install() -> None:
     for name in _ROSIDL_MODULES:
         sys.modules[name] = importlib.import_module(f"sim.ros.interfaces.{name}")
     if not any(isinstance(finder, InterfaceFinder) for finder in sys.meta_path):
-        sys.meta_path.insert(0, InterfaceFinder())
+        sys.meta_path[:0] = (InterfaceFinder(), _HelperFinder())
+
+
+class _HelperFinder:
+    """Finds the helpers, and loads the model's modules in their place."""
+
+    def find_spec(
+        self, fullname: str, _path: Sequence[str] | None = None, _target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """Return the spec of a helper, ``None`` for any other name."""
+        if fullname not in _HELPERS:
+            return None
+        return ModuleSpec(fullname, cast("Loader", self), is_package="." not in fullname)
+
+    def create_module(self, _spec: ModuleSpec) -> None:
+        """Leave it to Python: the module is replaced when it is filled."""
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Put the model's module in its place."""
+        sys.modules[module.__name__] = importlib.import_module(f"sim.ros.{module.__name__}")
+
+
+def _name_exceptions(module: ModuleType, name: str) -> None:
+    """Have exceptions called by rclpy's name for the module that they come from: a traceback shows it."""
+    for each in vars(module).values():
+        if isinstance(each, type) and issubclass(each, BaseException):
+            home = each.__module__.removeprefix("sim.ros.")
+            if home != each.__module__ and (home == name.removeprefix("rclpy.") or home not in _MODULES):
+                each.__module__ = name

@@ -74,6 +74,11 @@ class LogConsole:
             line = f"{_COLOUR_OF[record.severity]}{line}{_PLAIN}"
         print(line, file=stream, flush=True)
 
+    def hand_to(self, take: Callable[[str, bool], None], record: LogRecord) -> None:
+        """Give ``take`` each line of a record without colours, and whether it belongs on stderr."""
+        for line in self.line(record).split("\n"):
+            take(line, not self._to_stdout)
+
     def line(self, record: LogRecord) -> str:
         """The line without colours; a token that is not known stands for itself."""
 

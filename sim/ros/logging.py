@@ -57,7 +57,7 @@ class _Console(LogConsole):
     """The terminal as the environment of a process wants it."""
 
     def __init__(self) -> None:
-        super().__init__(os.environ | current_process().environment)
+        super().__init__({**os.environ, **current_process().environment})
 
 
 class RcutilsLogger:
@@ -126,7 +126,9 @@ class RcutilsLogger:
         loggers = process.keep(Loggers)
         if loggers.console_enabled:
             probe = process.probe or process.host.probe
-            if probe.visible:
+            if process.take_output is not None:
+                process.keep(_Console).hand_to(process.take_output, record)
+            elif probe.visible:
                 probe.logged(_SHOWN[record.severity], record.logger, record.text)
             else:
                 process.keep(_Console).write(record)
@@ -167,7 +169,7 @@ def get_logger(name: str) -> RcutilsLogger:
     """
     if not name:
         raise ValueError("Logger name must not be empty.")
-    return RcutilsLogger(name)
+    return _root_logger.get_child(name)
 
 
 def set_logger_level(name: str, level: LoggingSeverity | int, detailed_error: bool = False) -> None:  # noqa: ARG001

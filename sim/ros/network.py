@@ -132,8 +132,9 @@ class Network:
 
     def _match(self, publisher: Publisher, subscription: Subscription) -> bool:
         if publisher.msg_type is not subscription.msg_type:
-            publisher.events.type_refused()
-            subscription.events.type_refused()
+            refused = f"Incompatible type on topic '{publisher.topic_name}', no messages will be"
+            publisher.events.type_refused(f"{refused} sent to it.")
+            subscription.events.type_refused(f"{refused} received from it.")
             return False
         problems = list(mismatches(publisher.qos_profile, subscription.qos_profile))
         if problems:

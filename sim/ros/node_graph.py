@@ -5,13 +5,17 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections import defaultdict
 from collections.abc import Callable, Iterable
+from copy import copy
 from itertools import chain
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from sim.ros.agenda import Agenda
+from sim.ros.duration import Duration, Infinite
 from sim.ros.exceptions import NodeNameNonExistentError
 from sim.ros.expand_topic_name import expand_topic_name
+from sim.ros.handle import Handle
 from sim.ros.interfaces import type_name
+from sim.ros.qos import LivelinessPolicy, QoSProfile
 from sim.ros.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 from sim.ros.type_description import type_hash
 from sim.ros.validate_full_topic_name import validate_full_topic_name
@@ -37,7 +41,7 @@ def publishers_of(node: Node) -> tuple[Publisher, ...]:
 class GraphQueries:
     """The questions about the graph; a node answers them for its whole network.
 
-    Names are expanded as the node means them, and not remapped.
+    Names are expanded as the node means them, and not remapped. A destroyed node answers with InvalidHandle.
     """
 
     _agenda: Agenda
@@ -46,6 +50,11 @@ class GraphQueries:
     @abstractmethod
     def context(self) -> Context:
         """The node's context."""
+
+    @property
+    @abstractmethod
+    def handle(self) -> Handle:
+        """The node's handle."""
 
     @abstractmethod
     def get_name(self) -> str:
@@ -161,8 +170,9 @@ class GraphQueries:
         return [_info(each, kind) for each in every if each.topic_name == full]
 
     def __nodes(self) -> tuple[Node, ...]:
-        with self._agenda.host.lock:
-            return self.context.network.nodes()
+        with self.handle, self._agenda.host.lock:
+            # A program that has ended is gone, also if it left its nodes undestroyed.
+            return tuple(node for node in self.context.network.nodes() if node.context.ok())
 
     def __node(self, name: str, namespace: str, what: str) -> Node:
         for node in self.__nodes():
@@ -196,6 +206,17 @@ def _info(end: Publisher | Subscription, kind: TopicEndpointTypeEnum) -> TopicEn
         topic_type=type_name(end.msg_type),
         topic_type_hash=type_hash(end.msg_type),
         endpoint_type=kind,
-        endpoint_gid=list(id(end).to_bytes(16, "little")),
-        qos_profile=end.qos_profile,
+        endpoint_gid=list(end.gid),
+        qos_profile=_as_discovered(end.qos_profile),
     )
+
+
+def _as_discovered(profile: QoSProfile) -> QoSProfile:
+    """A profile as others see it: what was left open has become what DDS takes for it."""
+    seen = copy(profile)
+    for name in ("lifespan", "deadline", "liveliness_lease_duration"):
+        if getattr(seen, name) == Duration():
+            setattr(seen, name, Infinite)
+    if seen.liveliness is LivelinessPolicy.SYSTEM_DEFAULT:
+        seen.liveliness = LivelinessPolicy.AUTOMATIC
+    return seen

@@ -289,7 +289,8 @@ class NodeParameters:
         self._parameters[parameter.name] = parameter
 
     def __drop(self, parameter: AnyParameter, change: ParameterChange) -> None:
-        change.deleted.append(parameter)
+        if self.get_parameter_or(parameter.name).type_ is not _NOT_SET:
+            change.deleted.append(parameter)
         self._parameters.pop(parameter.name, None)
         self._descriptors.pop(parameter.name, None)
 

@@ -5,7 +5,8 @@ from __future__ import annotations
 import array
 from collections.abc import Mapping
 from enum import IntEnum
-from typing import Any, Generic, TypeAlias, TypeVar
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 from sim.ros import parameter_yaml, rcl_interfaces
 from sim.ros.parameter_yaml import ParameterYamlError, PlainValue
@@ -23,6 +24,20 @@ AllowableParameterValueT = TypeVar("AllowableParameterValueT")
 
 _SEQUENCES = (list, tuple)
 _NUMBER_SEQUENCES = (list, tuple, array.array)
+
+_MESSAGES_TOO = {
+    "ParameterMsg": "Parameter",
+    "ParameterType": "ParameterType",
+    "ParameterValue": "ParameterValue",
+}
+"""Messages that programs also import from here, by the names that rclpy's module has them under."""
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Any:
+        if name in _MESSAGES_TOO:
+            return getattr(rcl_interfaces, _MESSAGES_TOO[name])
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
 
 
 class Parameter(Generic[AllowableParameterValueT]):
@@ -129,7 +144,9 @@ class Parameter(Generic[AllowableParameterValueT]):
         """The value as an rcl_interfaces/msg/ParameterValue."""
         message = rcl_interfaces.ParameterValue(type=self._type_.value)
         if self._type_ is not Parameter.Type.NOT_SET:
-            setattr(message, _field(self._type_), self._value)
+            # An array.array of another type code than the message's is converted, as a list is.
+            value = list(self._value) if isinstance(self._value, array.array) else self._value
+            setattr(message, _field(self._type_), value)
         return message
 
     def to_parameter_msg(self) -> Any:
@@ -198,9 +215,10 @@ def parameter_dict_from_yaml_file(
 
     Raises:
         RuntimeError: a node is not in the file, or nothing is selected.
+        OSError: the file cannot be read.
         ParameterYamlError: it is no parameter file.
     """
-    by_node = parameter_yaml.read_file(parameter_file)
+    by_node = parameter_yaml.read_nodes(Path(parameter_file).read_text(encoding="utf-8"))
     chosen = ["/**"] if use_wildcard and "/**" in by_node else []
     for node in target_nodes or ():
         if node not in by_node:

@@ -57,6 +57,15 @@ def read_file(path: str) -> NodeParameters:
     except (OSError, UnicodeDecodeError) as error:
         reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8"
         raise ParameterYamlError(f"Error opening YAML file: {reason}") from None
+    return read_nodes(text)
+
+
+def read_nodes(text: str) -> NodeParameters:
+    """Read the text of a parameter file.
+
+    Raises:
+        ParameterYamlError: it is none.
+    """
     root = _compose(text)
     found: NodeParameters = {}
     if root is not None:

@@ -17,7 +17,9 @@ from sim.trace.events import AnyEvent, CallbackEnded, CallbackStarted, GroupKind
 
 if TYPE_CHECKING:
     from sim.clock import Clock
+    from sim.ros.contents import Contents
     from sim.ros.entity import Entity
+    from sim.ros.interfaces import Message
 
 
 class _Here(threading.local):
@@ -28,13 +30,19 @@ class _Here(threading.local):
 
 
 class Probe:
-    """Records a traced program's doings. ``sink`` takes events in order; appending must be thread-safe."""
+    """Records a traced program's doings. ``sink`` takes events in order; appending must be thread-safe.
+
+    ``contents`` makes the events that tell what messages hold (None: nobody ever wants that).
+    """
 
     visible = True
 
-    def __init__(self, clock: "Clock", sink: Callable[[AnyEvent], None]) -> None:
+    def __init__(
+        self, clock: "Clock", sink: Callable[[AnyEvent], None], contents: "Contents | None" = None
+    ) -> None:
         self._now = clock.now
         self._sink = sink
+        self._contents = contents
         self._here = _Here()
         self._threads = count(1)
         self._nodes = count(1)
@@ -111,7 +119,7 @@ class Probe:
             self._sink(events.EntityReady(self._now(), entity.trace_id, depth, message))
 
     def dropped(self, entity: "Entity", depth: int, message: int) -> None:
-        """A full queue lost its oldest message."""
+        """A full queue lost its oldest message, or one expired in it."""
         if entity.traced:
             self._sink(events.MessageDropped(self._now(), entity.trace_id, depth, message))
 
@@ -169,9 +177,18 @@ class Probe:
             events.CallbackFailed(self._now(), entity.trace_id, self.thread(), text, file, line),
         )
 
-    def published(self, message: int, topic: str, node: int) -> None:
+    @property
+    def keeps_messages(self) -> bool:
+        """Whether published messages are looked at later, so that nobody may be handed them to change."""
+        return self._contents is not None and self._contents.keeps_messages
+
+    def published(self, message: int, topic: str, node: int, data: "Message") -> None:
         """A message left a publisher."""
-        self._sink(events.Published(self._now(), message, topic, node, self._here.entity))
+        now = self._now()
+        self._sink(events.Published(now, message, topic, node, self._here.entity))
+        if self._contents is not None and self._contents.wanted:
+            for event in self._contents.events(now, message, topic, data):
+                self._sink(event)
 
     def service_called(self, call: int, service: str, request: object) -> None:
         """A request left for a service."""
@@ -230,13 +247,26 @@ class PublishingProbe(SilentProbe):
         """A new id for a service call, among the program's."""
         return self._program.call_id()
 
-    def published(self, message: int, topic: str, node: int) -> None:
+    @property
+    def keeps_messages(self) -> bool:
+        """Whether published messages are looked at later."""
+        return self._program.keeps_messages
+
+    def published(self, message: int, topic: str, node: int, data: "Message") -> None:
         """A message left a publisher; the trace names no node for it."""
-        self._program.published(message, topic, 0)
+        self._program.published(message, topic, 0, data)
 
     def service_replied(self, call: int, service: str, response: object) -> None:
         """A service answered."""
         self._program.service_replied(call, service, response)
+
+
+class LineProbe(PublishingProbe):
+    """Records what a line sends: its messages and its service calls."""
+
+    def service_called(self, call: int, service: str, request: object) -> None:
+        """A request left for a service."""
+        self._program.service_called(call, service, request)
 
 
 def _forget(_event: AnyEvent) -> None:

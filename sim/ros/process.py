@@ -11,10 +11,10 @@ import os
 import sys
 import threading
 from collections import UserList
-from collections.abc import Callable, Iterator, MutableMapping
+from collections.abc import Callable, Iterator, Mapping, MutableMapping
 from dataclasses import dataclass, field
 from itertools import count
-from typing import Any, SupportsIndex, TypeVar
+from typing import Any, Self, SupportsIndex, TypeVar
 
 from sim.ros.host import Host, current_host
 from sim.ros.probe import Probe
@@ -29,6 +29,8 @@ class Process:
     ``number`` and ``label`` tell it from others on the trace, 0 and empty for the only one. ``arguments``
     is what its ``sys.argv`` shows, ``environment`` the variables that differ from the others'. ``probe`` None
     stands for the host's; ``shows_stdout`` tells whether what it prints is for the person to see.
+    ``take_output`` gets every line that it prints or logs, and whether it belongs on stderr, in place of the
+    run; None: the run has them.
     ``pool_numbers`` numbers its thread pools in the order of their making; ``callbacks`` and ``spins`` count
     the callbacks made and the spins begun so far.
     """
@@ -40,6 +42,7 @@ class Process:
     environment: dict[str, str] = field(default_factory=dict)
     probe: Probe | None = None
     shows_stdout: bool = True
+    take_output: Callable[[str, bool], None] | None = None
     pool_numbers: Iterator[int] = field(default_factory=count)
     callbacks: int = 0
     spins: int = 0
@@ -157,6 +160,16 @@ class _Environment(MutableMapping[str, str]):
 
     def __len__(self) -> int:
         return len({**self._machine, **self._own()})
+
+    def __or__(self, other: Mapping[str, str]) -> dict[str, str]:
+        return {**self, **other}
+
+    def __ror__(self, other: Mapping[str, str]) -> dict[str, str]:
+        return {**other, **self}
+
+    def __ior__(self, other: Mapping[str, str]) -> Self:
+        self.update(other)
+        return self
 
     def copy(self) -> dict[str, str]:
         """A plain dictionary of it."""

@@ -102,7 +102,7 @@ class ProgramWaitSet:
 def _is_ready(waited: Waited, watcher: Watcher, now: int) -> bool:
     if isinstance(waited, BareEntity):
         return waited.look(watcher, now)
-    if waited.node.executor is not watcher:
+    if waited.node._agenda.executor is not watcher:
         raise NotImplementedError("waiting for an entity that another executor serves is not supported")
     return waited.still_ready(now) if isinstance(waited, Timer) else waited.pending
 

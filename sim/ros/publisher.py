@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from types import GenericAlias, TracebackType
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from sim.ros.delivery import Delivery, ExpiringDelivery
 from sim.ros.duration import Duration
@@ -26,6 +26,9 @@ if TYPE_CHECKING:
     from sim.ros.callback_groups import CallbackGroup
     from sim.ros.node import Node
     from sim.ros.subscription import Subscription
+
+MsgType = TypeVar("MsgType")
+"""For the type hints of programs, which import it from here as from rclpy."""
 
 
 _FOR_EVER = Duration(seconds=-1)
@@ -55,6 +58,7 @@ class Publisher:
         self.qos_profile = qos_profile
         self._host = node.context.host
         self._probe = node.context.probe
+        self.gid = self._host.new_gid()
         self._reached: tuple[Subscription, ...] = ()
         self._kept: deque[Delivery] | None = None
         self._sent = 0
@@ -119,9 +123,9 @@ class Publisher:
             raise InvalidHandle("Cannot publish: the publisher was destroyed")
         with self._host.lock:
             message = self._probe.message_id()
-            self._probe.published(message, self.topic_name, self.node.trace_id)
+            self._probe.published(message, self.topic_name, self.node.trace_id, copy)
             reached = self._reached
-            shared = len(reached) > 1 or self._kept is not None
+            shared = len(reached) > 1 or self._kept is not None or self._probe.keeps_messages
             self._sent += 1
             delivery = Delivery(copy, message, self._host.clock.now(), shared, self._sent)
             if self._timing is not None:

@@ -17,6 +17,13 @@ if TYPE_CHECKING:
     from sim.ros.publisher import Publisher
     from sim.ros.subscription import Subscription
 
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Any:
+        if name == "QosCallbackResult":
+            return rcl_interfaces.SetParametersResult
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+
 
 class InvalidQosOverridesError(Exception):
     """The program's callback refused the overridden profile."""

@@ -60,8 +60,10 @@ class RosoutPublisher(Publisher):
             expires = sent + ROSOUT_LIFESPAN.nanoseconds
             if expires > now:
                 message = self._probe.message_id()
-                self._probe.published(message, self.topic_name, self.node.trace_id)
-                subscription.deliver(ExpiringDelivery(_message(record), message, sent, False, 0, expires))
+                data = _message(record)
+                self._probe.published(message, self.topic_name, self.node.trace_id, data)
+                shared = self._probe.keeps_messages
+                subscription.deliver(ExpiringDelivery(data, message, sent, shared, 0, expires))
 
 
 def offer_rosout(node: Node) -> RosoutPublisher | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from sim.ros.entity import Entity, Taken
 from sim.ros.interfaces import copy_message
@@ -18,6 +18,11 @@ if TYPE_CHECKING:
     from sim.ros.callback_groups import CallbackGroup
     from sim.ros.clock import Clock
     from sim.ros.node import Node
+
+SrvType = TypeVar("SrvType")
+SrvTypeRequest = TypeVar("SrvTypeRequest")
+SrvTypeResponse = TypeVar("SrvTypeResponse")
+"""For the type hints of programs, which import these from here as from rclpy."""
 
 
 class Service(Entity):

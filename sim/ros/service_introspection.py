@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from sim.ros.service import Service
 
 _TOPIC_SUFFIX = "/_service_event"
+_NO_GID = bytes(16)
 
 
 class ServiceIntrospectionState(IntEnum):
@@ -42,29 +43,29 @@ class ServiceIntrospection:
         """Tell nothing any more."""
         self._publisher.node.destroy_publisher(self._publisher)
 
-    def request_sent(self, client: object, call: int, request: Any) -> None:
+    def request_sent(self, client: Client, call: int, request: Any) -> None:
         """The client sent a request."""
         self._tell("REQUEST_SENT", client, call, request=request)
 
-    def request_received(self, client: object, call: int, request: Any) -> None:
+    def request_received(self, client: Client | None, call: int, request: Any) -> None:
         """The service took a request."""
         self._tell("REQUEST_RECEIVED", client, call, request=request)
 
-    def response_sent(self, client: object, call: int, response: Any) -> None:
+    def response_sent(self, client: Client | None, call: int, response: Any) -> None:
         """The service answered a request."""
         self._tell("RESPONSE_SENT", client, call, response=response)
 
-    def response_received(self, client: object, call: int, response: Any) -> None:
+    def response_received(self, client: Client, call: int, response: Any) -> None:
         """The client took the answer to its request."""
         self._tell("RESPONSE_RECEIVED", client, call, response=response)
 
-    def _tell(self, step: str, client: object, call: int, **contents: Any) -> None:
+    def _tell(self, step: str, client: Client | None, call: int, **contents: Any) -> None:
         info_type: Any = message("service_msgs", "ServiceEventInfo")
         event: Any = self._event_type()
         event.info = info_type(
             event_type=getattr(info_type, step),
             stamp=self._clock.now().to_msg(),
-            client_gid=np.frombuffer(id(client).to_bytes(16, "little"), np.uint8),
+            client_gid=np.frombuffer(_NO_GID if client is None else client.gid, np.uint8),
             sequence_number=call,
         )
         if self._with_contents:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from enum import Enum
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from sim.ros.delivery import Delivery
 from sim.ros.entity import Entity, Taken
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
     from sim.ros.node import Node
     from sim.ros.publisher import Publisher
 
+MsgType = TypeVar("MsgType")
+"""For the type hints of programs, which import it from here as from rclpy."""
+
 
 class Subscription(Entity):
     """Keeps the newest messages of a topic until its callback takes them, the oldest first.
@@ -36,6 +40,12 @@ class Subscription(Entity):
     Raises:
         RuntimeError: the callback takes neither a message, nor a message and its info.
     """
+
+    class CallbackType(Enum):
+        """What a callback takes."""
+
+        MessageOnly = 0
+        WithMessageInfo = 1
 
     kind = EntityKind.SUBSCRIPTION
     rank = 1
@@ -61,6 +71,7 @@ class Subscription(Entity):
         self.qos_profile = qos_profile
         self.depth = qos_profile.queue_length or 0
         self._probe = node.context.probe
+        self.gid = node.context.host.new_gid()
         self._clock = node.context.host.clock
         self._queue: deque[Delivery] = deque()
         self._received = 0
@@ -92,6 +103,11 @@ class Subscription(Entity):
     def callback(self, value: Callable[..., Any]) -> None:
         self._with_info = wants_message_info(value)
         self._callback = value
+
+    @property
+    def _callback_type(self) -> CallbackType:
+        """What the callback takes, by the name that rclpy has for it."""
+        return self.CallbackType.WithMessageInfo if self._with_info else self.CallbackType.MessageOnly
 
     @property
     def event_handlers(self) -> list[EventHandler]:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import inspect
+import sys
 import threading
 import warnings
 import weakref
 from collections.abc import Callable, Coroutine, Generator
 from types import CodeType
 from typing import TYPE_CHECKING, Any, Generic, TypeGuard, TypeVar
+
+from sim.ros.asyncio_waits import Resumable, driven_by_asyncio, wait_in_asyncio
 
 if TYPE_CHECKING:
     from sim.ros.executors import Executor
@@ -31,7 +34,7 @@ class Future(Generic[T]):
         self._exception: BaseException | None = None
         self._exception_fetched = False
         self._callbacks: list[Callable[[Future[T]], None]] = []
-        self._waiting_tasks: list[Task[Any]] = []
+        self._waiting_tasks: list[Resumable] = []
         self._lock = _allocate_lock()
         self._executor: weakref.ref[Executor] | None = None
         if executor is not None:
@@ -39,11 +42,14 @@ class Future(Generic[T]):
 
     def __del__(self) -> None:
         if self._exception is not None and not self._exception_fetched:
-            warnings.warn(f"The following exception was never retrieved: {self._exception}", stacklevel=2)
+            sys.stderr.write(f"The following exception was never retrieved: {self._exception}\n")
 
     def __await__(self) -> Generator[Any, None, T | None]:
         while not self._settled():
-            yield self
+            if driven_by_asyncio():
+                yield from wait_in_asyncio(self._wake_when_done)
+            else:
+                yield self
         return self.result()
 
     def cancel(self) -> None:
@@ -114,7 +120,7 @@ class Future(Generic[T]):
     def _set_executor(self, executor: Executor) -> None:
         self._executor = weakref.ref(executor)
 
-    def _wake_when_done(self, task: Task[Any]) -> None:
+    def _wake_when_done(self, task: Resumable) -> None:
         with self._lock:
             if not self._settled():
                 self._waiting_tasks.append(task)

@@ -12,7 +12,10 @@ _LIMIT = 2**63
 
 
 class Time:
-    """A point in time on one kind of clock, in whole nanoseconds. Immutable, ordered, hashable."""
+    """A point in time on one kind of clock, in whole nanoseconds. Immutable, ordered, hashable.
+
+    Comparing it with anything but a time of the same kind of clock is a TypeError.
+    """
 
     __slots__ = ("_clock_type", "_nanoseconds")
 
@@ -86,7 +89,8 @@ class Time:
     def __eq__(self, other: object) -> bool:
         if isinstance(other, Time):
             return self._nanoseconds == self._same_clock(other, "compare times")
-        return NotImplemented
+        # As in rclpy: with NotImplemented, Time(nanoseconds=5) == 5 would be False and go unnoticed.
+        raise TypeError(f"Can't compare time with object of type: {type(other)}")
 
     def __lt__(self, other: Time) -> bool:
         if isinstance(other, Time):

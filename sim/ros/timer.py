@@ -73,6 +73,8 @@ class Timer(Entity):
 
     A callback with a parameter annotated as TimerInfo gets one.
 
+    Whatever is asked of it or done with it after it was destroyed raises InvalidHandle.
+
     Raises:
         ValueError: the period is negative.
     """
@@ -129,12 +131,14 @@ class Timer(Entity):
 
     def cancel(self) -> None:
         """Call back no more until ``reset``."""
+        self.require_alive()
         with self._host.lock:
             self._canceled = True
             self.nothing_left()
 
     def reset(self) -> None:
         """Be due one period from now, cancelled or not."""
+        self.require_alive()
         with self._host.lock:
             self._canceled = False
             self.nothing_left()
@@ -147,14 +151,17 @@ class Timer(Entity):
 
     def is_canceled(self) -> bool:
         """Whether it was cancelled."""
+        self.require_alive()
         return self._canceled
 
     def is_ready(self) -> bool:
         """Whether it is due."""
+        self.require_alive()
         return self.still_ready(self._host.clock.now())
 
     def time_until_next_call(self) -> int | None:
         """Nanoseconds until it is due, negative when late; None while cancelled."""
+        self.require_alive()
         if self._canceled:
             return None
         if self._ros_schedule is not None:
@@ -163,6 +170,7 @@ class Timer(Entity):
 
     def time_since_last_call(self) -> int:
         """Nanoseconds since the last call, or since it was made."""
+        self.require_alive()
         if self._ros_schedule is not None:
             return self.clock.now().nanoseconds - self._ros_schedule.last_call
         return self._host.clock.now() - self._last_call
@@ -285,18 +293,19 @@ def _info_parameter(callback: Callable[..., Any] | None) -> str | None:
 
 
 class Rate:
-    """Sleeps in step with a timer; needs somebody else to spin the node. Thread-safe.
+    """Sleeps in step with a timer, whose callback it becomes; needs somebody else to spin the timer's node.
 
-    A tick that nobody slept for ends the next sleep at once.
+    A tick that nobody slept for ends the next sleep at once. Thread-safe.
     """
 
-    def __init__(self, context: Context) -> None:
+    def __init__(self, timer: Timer, *, context: Context) -> None:
         self._context = context
         self._host = context.host
         self._sleepers: list[Signal] = []
         self._ticked = False
         self._destroyed = False
-        self.timer: Timer | None = None
+        self._timer = timer
+        timer.callback = self.tick
         context._wake_at_end(self._let_all_go)
 
     def tick(self) -> None:

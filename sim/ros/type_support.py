@@ -16,7 +16,7 @@ SrvEventT = TypeVar("SrvEventT", bound=Message)
 
 
 class NoTypeSupportImportedException(Exception):
-    """A type's support could not be loaded; never raised here, where every type has it."""
+    """A type's support could not be loaded; the types made here need none."""
 
 
 def check_for_type_support(msg_or_srv_type: Any) -> None:
@@ -24,13 +24,21 @@ def check_for_type_support(msg_or_srv_type: Any) -> None:
 
     Raises:
         AttributeError: it is something else.
+        NoTypeSupportImportedException: it is a foreign interface class that cannot load its support.
     """
-    if not (_is_message(msg_or_srv_type) or isinstance(msg_or_srv_type, ServiceType)):
+    if _is_message(msg_or_srv_type) or isinstance(msg_or_srv_type, ServiceType):
+        return
+    kind = type(msg_or_srv_type)
+    if not hasattr(kind, "_TYPE_SUPPORT"):
         raise AttributeError(
-            f"type object '{type(msg_or_srv_type).__name__}' has no attribute '_TYPE_SUPPORT' "
+            f"type object '{kind.__name__}' has no attribute '_TYPE_SUPPORT' "
             "This might be a ROS 1 message type but it should be a ROS 2 message type. "
             "Make sure to source your ROS 2 workspace after your ROS 1 workspace."
         )
+    if kind._TYPE_SUPPORT is None:
+        kind.__import_type_support__()
+    if kind._TYPE_SUPPORT is None:
+        raise NoTypeSupportImportedException
 
 
 def check_is_valid_msg_type(msg_type: Any) -> None:

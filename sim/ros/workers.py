@@ -8,25 +8,32 @@ over what the called ones are late for, so that a busy executor needs no hand-ov
 
 from __future__ import annotations
 
+import threading
 from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from sim.clock import Signal
-from sim.ros.executor import Begun, Work, never
+from sim.ros.running import Begun, Work
+from sim.ros.waiting_ends import never
 
 if TYPE_CHECKING:
     from sim.ros.executors import MultiThreadedExecutor
 
 
+# Kept from before sim.clock.stdlib puts the virtual one in its place.
+_join = threading.Thread.join
+
+
 class Worker:
     """A thread of the pool; ``called`` while it is on its way to begin something."""
 
-    __slots__ = ("called", "signal")
+    __slots__ = ("called", "signal", "thread")
 
     def __init__(self, signal: Signal) -> None:
         self.signal = signal
         self.called = False
+        self.thread: threading.Thread | None = None
 
 
 class WorkerPool:
@@ -51,6 +58,8 @@ class WorkerPool:
         self._look_owed = False
         self._errors: list[BaseException] = []
         self._dismissed = False
+        self._living = 0
+        self._end_signals: list[Signal] = []
 
     @property
     def _max_workers(self) -> int:
@@ -96,6 +105,7 @@ class WorkerPool:
         elif len(self._workers) < self._executor.threads:
             worker = Worker(self._clock.signal())
             self._workers.append(worker)
+            self._living += 1
             self._expect(worker, now)
             self._clock.start_thread(lambda: self._work(worker), f"{self._name}_{len(self._workers) - 1}")
 
@@ -109,8 +119,12 @@ class WorkerPool:
             self.error_surfaces = True
 
     def _work(self, worker: Worker) -> None:
-        while (begun := self._next(worker)) is not None:
-            self._run(begun)
+        worker.thread = threading.current_thread()
+        try:
+            while (begun := self._next(worker)) is not None:
+                self._run(begun)
+        finally:
+            self._leave()
 
     def _next(self, worker: Worker) -> Begun | None:
         """Wait for the worker's next callback and begin it; None once the pool is dismissed."""
@@ -211,3 +225,25 @@ class WorkerPool:
             self._dismissed = True
             for worker in self._workers:
                 worker.signal.set()
+
+    def _leave(self) -> None:
+        """A worker has nothing more to do; whoever waits for the end of the last goes on."""
+        with self._lock:
+            self._living -= 1
+            if self._living == 0:
+                for signal in self._end_signals:
+                    signal.set()
+
+    def wait_for_end(self) -> None:
+        """Wait until every worker's thread is gone, after ``dismiss``; a worker itself waits for nobody."""
+        if any(worker.thread is threading.current_thread() for worker in self._workers):
+            return
+        ended = self._clock.signal()
+        with self._lock:
+            self._end_signals.append(ended)
+            if self._living == 0:
+                ended.set()
+        if ended.wait(None):
+            for worker in self._workers:
+                if worker.thread is not None:
+                    _join(worker.thread)

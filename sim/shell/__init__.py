@@ -3,10 +3,12 @@
 from sim.packages import Packages
 from sim.shell.completion import complete, word_start
 from sim.shell.line import Line
+from sim.shell.session import Failed
 from sim.shell.splitting import LineError, split
 from sim.shell.tools import OnExit, Running, Tools
 
 __all__ = [
+    "Failed",
     "Line",
     "LineError",
     "OnExit",

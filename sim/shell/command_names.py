@@ -1,6 +1,6 @@
 """Which commands of ``ros2`` are carried out here, and which belong to a ROS 2 machine."""
 
-COMMANDS = ("action", "interface", "launch", "node", "param", "pkg", "run", "service", "topic")
+COMMANDS = ("action", "interface", "launch", "lifecycle", "node", "param", "pkg", "run", "service", "topic")
 
 ELSEWHERE = (
     "bag",
@@ -10,7 +10,6 @@ ELSEWHERE = (
     "doctor",
     "extension_points",
     "extensions",
-    "lifecycle",
     "multicast",
     "plugin",
     "security",

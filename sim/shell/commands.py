@@ -8,6 +8,7 @@ from typing import Any
 from sim.shell.action import ACTION
 from sim.shell.interface import INTERFACE
 from sim.shell.launch import LAUNCH
+from sim.shell.lifecycle import LIFECYCLE
 from sim.shell.node import NODE
 from sim.shell.param import PARAM
 from sim.shell.parser import HelpAsked, Parser, UsageError
@@ -17,7 +18,7 @@ from sim.shell.service import SERVICE
 from sim.shell.topic import TOPIC
 from sim.shell.verb import Command, Verb, no_arguments
 
-COMMANDS = (ACTION, INTERFACE, LAUNCH, NODE, PARAM, PKG, RUN, SERVICE, TOPIC)
+COMMANDS = (ACTION, INTERFACE, LAUNCH, LIFECYCLE, NODE, PARAM, PKG, RUN, SERVICE, TOPIC)
 
 
 def parse(words: list[str]) -> Namespace:

@@ -25,6 +25,7 @@ class Line:
         self._host = host
         self._text = text
         self._session = Session(host, tools)
+        self._session.process.take_output = tools.say
 
     def start(self) -> None:
         """Begin. It does not wait; call it on a thread that has the run's time (see ``Clock.call_at``)."""

@@ -10,7 +10,7 @@ from sim.plain_yaml import YamlError
 from sim.ros.interfaces import Message, ServiceType, UnknownInterfaceError, action, message, service
 from sim.ros.interfaces.base import ActionType
 from sim.ros.interfaces.rosidl_runtime_py import message_to_yaml, set_message_fields
-from sim.shell.quoting import backslashed, double_quoted
+from sim.shell.quoting import double_quoted, quoted
 from sim.shell.session import Failed
 
 T = TypeVar("T")
@@ -52,9 +52,9 @@ def prototype_of(cls: type[Message]) -> str:
 
 def prototype_word(cls: type[Message]) -> str:
     """A message with its default values, as YAML on one line and quoted for a shell."""
-    text = prototype_of(cls).removesuffix("\n")
-    if "\n" not in text:
-        return backslashed(text)
+    text = prototype_of(cls)
+    if text.count("\n") == 1:
+        return quoted(text)
     return double_quoted(message_to_yaml(cls(), flow_style=True).removesuffix("\n"))
 
 

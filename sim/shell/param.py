@@ -295,6 +295,8 @@ def _load(session: Session, arguments: Namespace) -> None:
         parameters = parameter_dict_from_yaml_file(
             arguments.parameter_file, not arguments.no_use_wildcard, target_nodes=[name]
         )
+    except OSError as error:
+        raise Failed(f"{arguments.parameter_file}: {error.strerror}") from None
     except (RuntimeError, ParameterYamlError) as error:
         raise Failed(f"{arguments.parameter_file}: {error}") from None
     results = _reply(session, client.set_parameters(list(parameters.values()))).results

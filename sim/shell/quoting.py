@@ -9,11 +9,17 @@ _TO_ESCAPE = re.compile(r"[^\w@%+=:,./~-]", re.ASCII)
 _TO_ESCAPE_IN_DOUBLE_QUOTES = re.compile(r'[$`"\\]')
 
 
-def backslashed(text: str) -> str:
-    """The word with backslashes, as a shell completes it."""
-    if _PLAIN.fullmatch(text):
-        return text
-    return _TO_ESCAPE.sub(_backslashed, text) if text else "''"
+def quoted(text: str) -> str:
+    """The word with backslashes, as a shell completes it; text of several lines in double quotes.
+
+    The line end after a single line is left out.
+    """
+    line = text.removesuffix("\n")
+    if "\n" in line:
+        return double_quoted(text)
+    if _PLAIN.fullmatch(line):
+        return line
+    return _TO_ESCAPE.sub(_backslashed, line) if line else "''"
 
 
 def double_quoted(text: str) -> str:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from argparse import Namespace
 from typing import Any
 
+from sim import plain_yaml
 from sim.ros.client import Client
-from sim.ros.interfaces.rosidl_runtime_py import message_to_csv, message_to_yaml
+from sim.ros.interfaces.rosidl_runtime_py import message_to_csv, message_to_ordereddict
 from sim.ros.qos import qos_profile_services_default
 from sim.shell.graph import known_services, type_of_given, without_hidden
 from sim.shell.interface import known_service_types, service_prototype
@@ -16,6 +17,8 @@ from sim.shell.session import Failed, Session
 from sim.shell.verb import Command, Verb, add_graph_options
 
 _EVENTS = "/_service_event"
+_EVENT_NAMES = ("REQUEST_SENT", "REQUEST_RECEIVED", "RESPONSE_SENT", "RESPONSE_RECEIVED")
+"""The kinds of service_msgs/msg/ServiceEventInfo by their numbers."""
 
 
 def _types(surroundings: Surroundings) -> list[str]:
@@ -171,7 +174,9 @@ def _echo(session: Session, arguments: Namespace) -> None:
         if arguments.csv:
             session.say(message_to_csv(event))
         else:
-            session.say(f"{message_to_yaml(event, flow_style=arguments.flow_style)}---")
+            values = message_to_ordereddict(event)
+            values["info"]["event_type"] = _EVENT_NAMES[event.info.event_type]
+            session.say(f"{plain_yaml.dump(values, flow_style=arguments.flow_style)}---")
 
     session.node.create_subscription(event_type, topic, show, qos_profile_services_default)
     if not session.node.get_publishers_info_by_topic(topic):

@@ -9,7 +9,8 @@ from sim.ros.context import Context
 from sim.ros.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
 from sim.ros.host import Host
 from sim.ros.node import Node
-from sim.ros.probe import PublishingProbe
+from sim.ros.node_parameters import ParameterChange
+from sim.ros.probe import LineProbe
 from sim.ros.process import Process
 from sim.ros.task import Future
 from sim.shell.tools import Tools
@@ -40,12 +41,11 @@ class Interrupted(Exception):  # noqa: N818
     """Ctrl-C, or the end of the context."""
 
 
-class LineProbe(PublishingProbe):
-    """Records what a line sends: its messages and its service calls."""
+class _LineNode(Node):
+    """A line's node: its parameters are set before any other program could have discovered it."""
 
-    def service_called(self, call: int, service: str, request: object) -> None:
-        """A request left for a service."""
-        self._program.service_called(call, service, request)
+    def _tell_parameter_change(self, change: ParameterChange) -> None:
+        """Tell nobody."""
 
 
 class Session:
@@ -80,7 +80,7 @@ class Session:
 
     def make_node(self, name: str) -> None:
         """Make the line's node under another name than the one it gets by itself."""
-        self._made_node = Node(
+        self._made_node = _LineNode(
             name, context=self._context, start_parameter_services=False, enable_rosout=False
         )
         self._executor.add_node(self._made_node)

@@ -19,6 +19,7 @@ MessageId: TypeAlias = int
 CallId: TypeAlias = int
 ProcessId: TypeAlias = int
 LineId: TypeAlias = int
+TopicId: TypeAlias = int
 
 
 class EntityKind(StrEnum):
@@ -168,7 +169,11 @@ class EntityReady(Event, frozen=True, tag="ready"):
 
 
 class MessageDropped(Event, frozen=True, tag="message_drop"):
-    """A full queue lost its oldest message, ``message``, to a newer one; ``depth`` stay."""
+    """A queue lost ``message``; ``depth`` stay.
+
+    A full queue loses its oldest message to a newer one, and any queue what stays longer than the lifespan
+    that its publisher gave it.
+    """
 
     entity: EntityId
     depth: int
@@ -248,6 +253,30 @@ class Published(Event, frozen=True, tag="publish"):
     topic: str
     node: NodeId
     entity: EntityId
+
+
+class TopicAppeared(Event, frozen=True, tag="topic"):
+    """The first message of a topic was published of which the trace is to have the contents.
+
+    ``message_type`` is a full name (``std_msgs/msg/Int32``), ``definition`` its text with all that it
+    contains, in the ``ros2msg`` form of MCAP schemas.
+    """
+
+    topic: TopicId
+    name: str
+    message_type: str
+    definition: str
+
+
+class MessageSent(Event, frozen=True, tag="message"):
+    """What a published message holds, as little-endian CDR; None where it could not be encoded.
+
+    Only in runs that are set up to keep contents.
+    """
+
+    message: MessageId
+    topic: TopicId
+    data: bytes | None
 
 
 class ServiceCalled(Event, frozen=True, tag="service_call"):
@@ -352,6 +381,22 @@ class CommandGiven(Event, frozen=True, tag="command"):
     text: str
 
 
+class InputGiven(Event, frozen=True, tag="input"):
+    """Something was told to the run from outside, and is carried out now: what a repetition has to be told.
+
+    ``command`` is a command of the engine as JSON. What the set-up of the run foresaw is not among these, nor
+    is what is done to the run's time.
+    """
+
+    command: str
+
+
+class TimeHalted(Event, frozen=True, tag="halt"):
+    """Time stands again: what the run was to go on to has come; ``text`` is the command that said so."""
+
+    text: str
+
+
 class LineGiven(Event, frozen=True, tag="line"):
     """A ``ros2`` line was given, at the prompt, on the command line or by the run's set-up."""
 
@@ -395,6 +440,12 @@ class EventsLost(Event, frozen=True, tag="lost"):
     count: int
 
 
+class ContentsLost(Event, frozen=True, tag="contents_lost"):
+    """Messages were published faster than they could be encoded: ``count`` in all are without contents."""
+
+    count: int
+
+
 AnyEvent: TypeAlias = (
     RunStarted
     | RunEnded
@@ -416,6 +467,8 @@ AnyEvent: TypeAlias = (
     | CallbackResumed
     | CallbackFailed
     | Published
+    | TopicAppeared
+    | MessageSent
     | ServiceCalled
     | ServiceReplied
     | CallBlocked
@@ -427,12 +480,15 @@ AnyEvent: TypeAlias = (
     | Scanned
     | VelocityCommanded
     | CommandGiven
+    | InputGiven
+    | TimeHalted
     | LineGiven
     | LineSaid
     | LineEnded
     | LineCompleted
     | Notice
     | EventsLost
+    | ContentsLost
 )
 
 _encoder = msgspec.msgpack.Encoder()

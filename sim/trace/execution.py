@@ -105,6 +105,7 @@ class Execution:
         self._suspended: defaultdict[EntityId, Lane] = defaultdict(lambda: Lane(self._gaps))
         self._awaiting: defaultdict[EntityId, deque[tuple[Row, Row]]] = defaultdict(deque)
         self._resumed_at: defaultdict[EntityId, array[int]] = defaultdict(lambda: array("q"))
+        self._resumed: set[Row] = set()
         self._doubtful = 0
 
     # folding
@@ -146,6 +147,7 @@ class Execution:
             self._gaps.close(gap, event.t)
             message, age = self._spans.messages[row], self._spans.ages[row]
         insort(self._resumed_at[event.entity], event.t)
+        self._resumed.add(len(self._spans))
         self._begin(event.t, event.entity, event.thread, message, age)
 
     def fail(self, event: CallbackFailed) -> None:
@@ -168,6 +170,13 @@ class Execution:
     def of(self, entity: EntityId, window: Window) -> Sequence[Span]:
         """Spans of an entity."""
         return self._made(self._entities[entity], window)
+
+    def begun(self, entity: EntityId, window: Window) -> Sequence[Span]:
+        """The spans of an entity with which its calls begin."""
+        rows = self._entities[entity].overlapping(window)
+        starts = self._spans.starts
+        first = [row for row in rows if starts[row] >= window.start and row not in self._resumed]
+        return Answer(first, self._spans.span)
 
     def inside(self, group: GroupId, window: Window) -> Sequence[Span]:
         """Spans of a group."""

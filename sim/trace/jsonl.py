@@ -10,8 +10,7 @@ import msgspec
 
 from sim.trace import events as ev
 from sim.trace.cast import Cast
-from sim.trace.events import AnyEvent, EntityId, GroupId, MessageId, NodeId, ThreadId
-from sim.trace.words import spoken_name
+from sim.trace.events import AnyEvent, EntityId, GroupId, MessageId, NodeId, ThreadId, TopicId
 
 Line: TypeAlias = dict[str, object]
 
@@ -29,6 +28,7 @@ class JsonLines:
     def __init__(self) -> None:
         self._cast = Cast()
         self._about: dict[EntityId, Line] = {}
+        self._topics: dict[TopicId, str] = {}
         self._encode = msgspec.json.Encoder().encode
         self._fields = {kind: (kind.__struct_config__.tag, fields) for kind, fields in self._table().items()}
 
@@ -61,6 +61,8 @@ class JsonLines:
             ev.CallbackResumed: self._on_thread,
             ev.CallbackFailed: self._callback_failed,
             ev.Published: self._published,
+            ev.TopicAppeared: self._topic_appeared,
+            ev.MessageSent: self._message_sent,
             ev.ServiceCalled: self._service_called,
             ev.ServiceReplied: _service_replied,
             ev.CallBlocked: self._call_blocked,
@@ -72,12 +74,15 @@ class JsonLines:
             ev.Scanned: _scanned,
             ev.VelocityCommanded: _velocity_commanded,
             ev.CommandGiven: _command_given,
+            ev.InputGiven: _input_given,
+            ev.TimeHalted: _time_halted,
             ev.LineGiven: _line_given,
             ev.LineSaid: _line_said,
             ev.LineEnded: _line_ended,
             ev.LineCompleted: _line_completed,
             ev.Notice: _notice,
-            ev.EventsLost: _events_lost,
+            ev.EventsLost: _lost,
+            ev.ContentsLost: _lost,
         }
 
     # the cast
@@ -115,7 +120,7 @@ class JsonLines:
         if entity.callback:
             about["callback"] = entity.callback
         about["kind"] = entity.kind.value
-        about["entity"] = entity.name or spoken_name(entity)
+        about["entity"] = entity.name or entity.spoken_name
         about |= self._group(entity.group)
         self._about[event.entity] = about
         return {
@@ -140,7 +145,7 @@ class JsonLines:
 
     def _callback(self, entity: EntityId) -> str | None:
         known = self._cast.entities.get(entity)
-        return None if known is None else spoken_name(known)
+        return None if known is None else known.spoken_name
 
     # entities and their callbacks
 
@@ -193,6 +198,15 @@ class JsonLines:
             "entity": event.topic,
             "message_id": event.message,
         }
+
+    def _topic_appeared(self, event: ev.TopicAppeared) -> Line:
+        self._topics[event.topic] = event.name
+        return {"entity": event.name, "type": event.message_type, "definition": event.definition}
+
+    def _message_sent(self, event: ev.MessageSent) -> Line:
+        topic = self._topics.get(event.topic, f"topic {event.topic}")
+        size: Line = {} if event.data is None else {"size": len(event.data)}
+        return {"entity": topic, "message_id": event.message, **size}
 
     def _service_called(self, event: ev.ServiceCalled) -> Line:
         return {
@@ -283,6 +297,14 @@ def _command_given(event: ev.CommandGiven) -> Line:
     return {"message": event.text}
 
 
+def _input_given(event: ev.InputGiven) -> Line:
+    return {"message": event.command}
+
+
+def _time_halted(event: ev.TimeHalted) -> Line:
+    return {"message": event.text}
+
+
 def _line_given(event: ev.LineGiven) -> Line:
     return {"line": event.line, "message": event.text}
 
@@ -303,5 +325,5 @@ def _notice(event: ev.Notice) -> Line:
     return {"message": event.text, "severity": event.severity.value}
 
 
-def _events_lost(event: ev.EventsLost) -> Line:
+def _lost(event: ev.EventsLost | ev.ContentsLost) -> Line:
     return {"count": event.count}

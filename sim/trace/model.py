@@ -82,6 +82,11 @@ class Entity:
         """The shortest name a person would call it by: its topic or service, else its callback."""
         return self.name.rsplit("/", 1)[-1] or self.callback
 
+    @property
+    def spoken_name(self) -> str:
+        """The function a person wrote, else the topic, service or action, else what kind of thing it is."""
+        return self.callback or self.name or self.kind.value
+
 
 @dataclass(slots=True)
 class Span:

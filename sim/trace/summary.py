@@ -9,7 +9,7 @@ from itertools import groupby, pairwise
 from sim.trace.events import EntityId, RobotMoved
 from sim.trace.model import Call, Entity, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
-from sim.trace.words import spoken_name, why_waiting
+from sim.trace.words import why_waiting
 
 TURNING = 0.02
 """From how many rad/s on the robot counts as turning, and not as drifting while it drives straight."""
@@ -124,7 +124,7 @@ def _callbacks(timeline: Timeline, whole: Window) -> Iterator[CallbackFigures]:
 
 def _names(timeline: Timeline) -> dict[EntityId, str]:
     """What each entity is called: its callback, with its topic, service or node where others share that."""
-    spoken = {entity.id: spoken_name(entity) for entity in timeline.entities.values()}
+    spoken = {entity.id: entity.spoken_name for entity in timeline.entities.values()}
     shared = Counter(spoken.values())
     return {
         entity.id: spoken[entity.id]

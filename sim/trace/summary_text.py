@@ -82,13 +82,14 @@ def _rest(summary: Summary) -> Iterator[str]:
     yield f"threads  {summary.threads_used} ran callbacks, at most {summary.threads_at_once} at once"
     label = "calls"
     for service in summary.services:
-        yield f"{label:<7}  {_service(service)}"
+        yield f"{label:<7}  {service_line(service)}"
         label = ""
     if summary.robot:
-        yield f"robot    {_robot(summary.robot)}"
+        yield f"robot    {robot_line(summary.robot)}"
 
 
-def _service(figures: ServiceFigures) -> str:
+def service_line(figures: ServiceFigures) -> str:
+    """The calls of a service in words: ``/motor_power  2 calls, answered after 5.0 s``."""
     trips = figures.round_trips
     if not trips:
         return f"{figures.service}  {_counted(figures.calls, 'call')}, no reply"
@@ -98,7 +99,8 @@ def _service(figures: ServiceFigures) -> str:
     return f"{figures.service}  {_counted(figures.calls, 'call')}, {answered} after {span}"
 
 
-def _robot(figures: RobotFigures) -> str:
+def robot_line(figures: RobotFigures) -> str:
+    """What the robot did, in words: ``2 turns (3.1 rad), 0.85 m travelled, at x 0.85 y 0.00 heading 0°``."""
     turns = _counted(figures.turns, "turn") + (f" ({figures.turned:.1f} rad)" if figures.turns else "")
     x, y, heading = _rounded(figures.x, 2), _rounded(figures.y, 2), _rounded(math.degrees(figures.yaw), 0)
     pose = f"at x {x:.2f} y {y:.2f} heading {heading:.0f}°"

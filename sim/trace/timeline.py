@@ -51,6 +51,7 @@ class Timeline:
         self.ended: ev.RunEnded | None = None
         self.arena: ev.ArenaShown | None = None
         self.lost = 0
+        self.contents_lost = 0
         self._end = 0
         self._cast = Cast()
         self._execution = Execution()
@@ -143,6 +144,10 @@ class Timeline:
     def calls_of(self, entity: EntityId, window: Window) -> int:
         """How many calls of an entity's callback began in the window; going on after a suspension is none."""
         return self._execution.calls(entity, window)
+
+    def calls_begun(self, entity: EntityId, window: Window) -> Sequence[Span]:
+        """Where those calls begin, in order of start: the whole of each, or what lies before a suspension."""
+        return self._execution.begun(entity, window)
 
     def busy(self, thread: ThreadId, window: Window) -> float:
         """Share of the window, 0 to 1, in which the thread ran callbacks; nothing is known past the end."""
@@ -266,6 +271,8 @@ class Timeline:
             ev.CallbackResumed: self._execution.resume,
             ev.CallbackFailed: self._callback_failed,
             ev.Published: self._published,
+            ev.TopicAppeared: _pass_over,
+            ev.MessageSent: _pass_over,
             ev.ServiceCalled: self._service_called,
             ev.ServiceReplied: self._service_replied,
             ev.CallBlocked: _pass_over,
@@ -277,12 +284,15 @@ class Timeline:
             ev.Scanned: self._scanned,
             ev.VelocityCommanded: self._velocities.add,
             ev.CommandGiven: self._command_given,
+            ev.InputGiven: _pass_over,
+            ev.TimeHalted: _pass_over,
             ev.LineGiven: self._line_given,
             ev.LineSaid: self._shell.add,
             ev.LineEnded: self._shell.add,
             ev.LineCompleted: self._line_completed,
             ev.Notice: self._noticed,
             ev.EventsLost: self._events_lost,
+            ev.ContentsLost: self._contents_lost,
         }
 
     def _run_started(self, event: ev.RunStarted) -> None:
@@ -321,7 +331,7 @@ class Timeline:
     def _callback_failed(self, event: ev.CallbackFailed) -> None:
         self._execution.fail(event)
         entity = self.entities.get(event.entity)
-        who = entity.callback if entity else "a callback"
+        who = entity.spoken_name if entity else "a callback"
         self._marks.add(Mark(event.t, "error", f"{who} raised {event.error}"))
 
     def _published(self, event: ev.Published) -> None:
@@ -383,6 +393,9 @@ class Timeline:
     def _events_lost(self, event: ev.EventsLost) -> None:
         self.lost = max(self.lost, event.count)
         self._execution.doubt()
+
+    def _contents_lost(self, event: ev.ContentsLost) -> None:
+        self.contents_lost = max(self.contents_lost, event.count)
 
     def _holders(self, group: GroupId, at: Nanoseconds) -> tuple[EntityId, ...]:
         members = self._cast.members(group)

@@ -1,16 +1,12 @@
 """How things of a run are called in a sentence."""
 
+from sim.trace.cast import Cast
 from sim.trace.events import EntityId, Reason
-from sim.trace.model import Entity, Wait
+from sim.trace.model import Wait
 from sim.trace.timeline import Timeline
 
 
-def spoken_name(entity: Entity) -> str:
-    """The function a person wrote, else the topic or service, else what kind of thing it is."""
-    return entity.callback or entity.name or entity.kind.value
-
-
-def why_waiting(wait: Wait, timeline: Timeline) -> str:
+def why_waiting(wait: Wait, timeline: Timeline | Cast) -> str:
     """The reason of a wait in words: ``group A held by timer_callback``."""
     if wait.reason is not Reason.GROUP_HELD:
         return wait.reason.value
@@ -20,7 +16,7 @@ def why_waiting(wait: Wait, timeline: Timeline) -> str:
     return f"{what} held by {name_of(wait.holder, timeline)}"
 
 
-def name_of(entity: EntityId, timeline: Timeline) -> str:
+def name_of(entity: EntityId, timeline: Timeline | Cast) -> str:
     """The spoken name of an entity by its id."""
     known = timeline.entities.get(entity)
-    return "another callback" if known is None else spoken_name(known)
+    return "another callback" if known is None else known.spoken_name

@@ -8,6 +8,7 @@ from cbtui.app import CbtuiApp
 from cbtui.screens.help import HelpScreen
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
+from cbtui.screens.moment import MomentScreen
 from cbtui.screens.threads import ThreadsScreen
 from cbtui.theme import Charset
 from cbtui.widgets.shell import Prompt
@@ -18,6 +19,7 @@ HOMES: dict[Scope, type[DOMNode]] = {
     Scope.LESSON: LessonScreen,
     Scope.PROMPT: Prompt,
     Scope.THREADS: ThreadsScreen,
+    Scope.MOMENT: MomentScreen,
     Scope.HELP: HelpScreen,
 }
 

@@ -186,7 +186,7 @@ async def test_leaving_the_console_ends_the_run() -> None:
 
 
 async def test_the_help_lists_every_key_and_closes_again() -> None:
-    async with console(size=(140, 60)) as (app, pilot):
+    async with console(size=(140, 70)) as (app, pilot):
         for key in ("question_mark", "escape", "q"):
             await press(pilot, "question_mark")
             assert isinstance(app.screen, HelpScreen)

@@ -1,9 +1,19 @@
 import pytest
+from msgspec import structs
 
 from cbtui.live_run import Deliver, Ended, LiveRun, State
-from sim.engine.commands import CallService, Pause, ResetWorld, Resume, SetSpeed
+from sim.engine.commands import (
+    CallService,
+    Pause,
+    ResetWorld,
+    Resume,
+    RunUntil,
+    RunUntilCallback,
+    SetSpeed,
+    Step,
+)
 from sim.engine.setup import ProgramSetup, RunSetup, ServiceChoice
-from sim.trace.events import AnyEvent, RunEnded, RunStarted
+from sim.trace.events import AnyEvent, RunEnded, RunStarted, TimeHalted
 from tests.support.fake_session import FakeEngines, FakeSession
 
 SETUP = RunSetup(
@@ -103,3 +113,29 @@ def test_speed_ends_at_a_tenth(run: LiveRun) -> None:
     for _ in range(10):
         run.change_speed(-1)
     assert run.speed == 0.1
+
+
+def test_a_run_that_goes_on_to_a_goal_is_live_until_the_engine_says_that_time_stands(
+    run: LiveRun, session: FakeSession
+) -> None:
+    session.play(0)
+    run.pause()
+    run.run_until(9)
+    assert state_of(run) is State.LIVE
+    run.take([TimeHalted(9, "run until")])
+    assert state_of(run) is State.PAUSED
+    run.step()
+    assert state_of(run) is State.PAUSED
+    run.run_until_callback(3)
+    assert state_of(run) is State.LIVE
+    assert session.commands == [Pause(), RunUntil(9), Step(), RunUntilCallback(3, "another callback")]
+
+
+def test_the_real_clock_has_speeds_but_none_without_limit() -> None:
+    engines = FakeEngines([], until=-1)
+    setup = structs.replace(SETUP, clock="real", speed=None)
+    run = LiveRun(setup, engines, lambda _: None, lambda _: None)
+    assert run.speed == 1.0
+    for _ in range(10):
+        run.change_speed(1)
+    assert run.speed == 20.0

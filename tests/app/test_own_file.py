@@ -29,7 +29,7 @@ async def test_a_file_is_run_with_its_arguments_and_shown_like_a_lesson(tmp_path
         assert "print('mine')" in text_of(app)
 
 
-async def test_in_a_file_s_calls_the_first_service_it_offers_and_real_time_has_no_pause(
+async def test_in_a_file_s_calls_the_first_service_it_offers_and_real_time_can_be_paused(
     tmp_path: Path,
 ) -> None:
     file = tmp_path / "my_node.py"
@@ -40,5 +40,4 @@ async def test_in_a_file_s_calls_the_first_service_it_offers_and_real_time_has_n
         await settle(pilot)
         await pilot.press("s", "space", "n")
         await settle(pilot)
-        assert engines.latest.commands == [CallService(None, True)]
-        assert not any(isinstance(command, Pause) for command in engines.latest.commands)
+        assert engines.latest.commands == [CallService(None, True), Pause()]

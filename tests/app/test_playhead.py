@@ -3,6 +3,9 @@ from hypothesis import strategies as st
 
 from cbtui.playhead import SPANS, Playhead
 from sim.trace.model import Window
+from tests.support.builder import ns
+from tests.support.runs import dummy_server_run
+from tests.widgets.pictures import told
 
 SECOND = 1_000_000_000
 
@@ -46,3 +49,34 @@ def test_now_is_always_on_screen_and_never_after_the_end(end: int, moves: list[i
     assert 0 <= now <= end
     assert window.start <= now <= window.end
     assert window.length == playhead.span
+
+
+def test_a_moment_is_sought_between_the_beginning_and_the_end() -> None:
+    end = 20 * SECOND
+    assert Playhead().sought(7 * SECOND, end).at == 7 * SECOND
+    assert Playhead().sought(-5, end).at == 0
+    assert Playhead().sought(end, end).at is None
+    assert Playhead(at=3).sought(30 * SECOND, end).at is None
+
+
+def test_events_are_gone_through_one_by_one_both_ways() -> None:
+    timeline = told(dummy_server_run())
+    back, places = Playhead(), []
+    while (further := back.beside(timeline, -1)) != back:
+        back = further
+        places.append(back.at)
+    assert places == sorted(places, key=lambda at: -(at or 0))
+    assert len(places) > 5
+    forth = []
+    while back.at is not None:
+        forth.append(back.at)
+        back = back.beside(timeline, 1)
+    assert forth == places[::-1]
+
+
+def test_events_of_one_callback_are_gone_through_alone() -> None:
+    timeline = told(dummy_server_run())
+    entity = next(iter(timeline.entities))
+    found = timeline.neighbour(ns(5.0), entity, -1)
+    assert found is not None
+    assert Playhead(at=ns(5.0)).beside(timeline, -1, entity).at == found

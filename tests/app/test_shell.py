@@ -72,6 +72,16 @@ async def test_what_lines_wrote_is_shown_with_control_characters_made_visible() 
         assert "/scan" in text
 
 
+async def test_a_tab_that_a_line_wrote_is_shown_as_blanks() -> None:
+    shown = LineSaid(ns(1.0), 1, "float64 x\n\tint32 sec", False)
+    async with console() as (app, pilot):
+        await press(pilot, "5")
+        await deliver(app, pilot, [LineGiven(ns(1.0), 1, "ros2 interface show a/msg/B"), shown])
+        (first,) = (line for line in lines_of(app) if "float64 x" in line)
+        (second,) = (line for line in lines_of(app) if "int32 sec" in line)
+        assert second.index("int32") == first.index("float64") + 8
+
+
 async def test_looking_back_shows_what_had_been_written_by_then() -> None:
     async with console() as (app, pilot):
         await press(pilot, "5")

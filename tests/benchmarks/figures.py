@@ -10,11 +10,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from statistics import median
 
-from tests.benchmarks import scenes
+from tests.benchmarks import exporting, recording, scenes
 from tests.benchmarks.scenes import MakeExecutor, Scene, multi, pinned, single
 
 CALLS = 5_000
 FEW_CALLS = 1_000
+MANY_EVENTS = 200_000
 
 
 def unit() -> float:
@@ -118,4 +119,12 @@ FIGURES = (
     Figure(
         "five idle 100 Hz timers", "% of a core", 2.7, "", lambda n: scenes.idle_timers(single, n) * 1e2, 1000
     ),
+    Figure("recording an event", "µs", 5, "", lambda n: recording.event(n) * 1e6),
+    Figure("a lesson slowed by recording", "%", 10, "", lambda n: recording.slowing(n) * 1e2, 120),
+    Figure("opening an hour's recording", "ms", 2000, "", lambda n: recording.opening(n) * 1e3, 3600),
+    Figure("reading all of an hour's recording", "ms", 3000, "", lambda n: recording.reading(n) * 1e3, 3600),
+    Figure("export to perfetto", "s a million", 15, "", exporting.perfetto, MANY_EVENTS),
+    Figure("export to chrome", "s a million", 15, "", exporting.chrome, MANY_EVENTS),
+    Figure("export to csv", "s a million", 15, "", exporting.csv, MANY_EVENTS),
+    Figure("export of picture and report", "s a million", 15, "", exporting.pages, MANY_EVENTS),
 )

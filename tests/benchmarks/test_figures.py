@@ -1,6 +1,7 @@
 """The table of figures: every one can be measured, has a record, and is told against its goal."""
 
 from dataclasses import replace
+from math import isfinite
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,7 @@ from tests.benchmarks.figures import FIGURES, Figure
 
 @pytest.mark.parametrize("figure", FIGURES, ids=lambda figure: figure.name)
 def test_every_figure_can_be_measured(figure: Figure) -> None:
-    assert figure.measure(20) >= 0
+    assert isfinite(figure.measure(20))  # a difference of two timings can come out below 0
 
 
 def test_every_figure_has_a_name_of_its_own_and_is_recorded() -> None:

@@ -43,7 +43,6 @@ def test_list_names_every_lesson_in_order(capsys: pytest.CaptureFixture[str]) ->
             "a call at 5 s comes when the run of 5 s is over",
         ),
         (["run", "single-thread", "--speed", "0"], "time cannot pass 0 times as fast"),
-        (["run", "single-thread", "--clock", "real", "--speed", "2"], "--speed needs the virtual clock"),
         (["run", "single-thread", "--call-data", "perhaps"], "invalid choice: 'perhaps'"),
         (["run", "single-thread", "--events", "/no/such/folder/x.jsonl"], "cannot write events"),
         (["run", "nothing_here.py"], "there is no file nothing_here.py"),

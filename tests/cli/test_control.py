@@ -83,8 +83,9 @@ def test_nonsense_on_the_socket_does_no_harm(server: ControlServer, sent: "Queue
     nonsense = connect(None)
     nonsense.send_bytes(b"\xff\x00nonsense")
     nonsense.close()
-    RemoteLine(connect(None), "ros2 topic list")
+    asked = RemoteLine(connect(None), "ros2 topic list")
     assert given(sent).text == "ros2 topic list"
+    asked.interrupt()
 
 
 def test_without_a_run_there_is_nothing_to_connect_to(sent: "Queue[Command]") -> None:

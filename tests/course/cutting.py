@@ -51,7 +51,7 @@ class Block(NamedTuple):
 def course_text() -> str | None:
     """The text of the course's unit; None where the environment does not say where it is."""
     path = os.environ.get(VARIABLE)
-    return None if path is None else Path(path).read_text(encoding="utf-8")
+    return Path(path).read_text(encoding="utf-8") if path else None
 
 
 def make_package(text: str, folder: Path) -> Path:
@@ -71,6 +71,13 @@ def make_package(text: str, folder: Path) -> Path:
     *_, setup = (block for block in blocks if "setup(" in block.parts[0])
     (root / "setup.py").write_text("".join(setup.parts))
     return root
+
+
+def shell_line(text: str, beginning: str) -> str:
+    """The first printed block that begins so, as one would paste it into a shell."""
+    return next(
+        part.rstrip() for block in _blocks(text) for part in block.parts if part.startswith(beginning)
+    )
 
 
 def mended(parts: tuple[str, ...]) -> str:

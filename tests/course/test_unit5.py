@@ -7,8 +7,17 @@ from pathlib import Path
 import pytest
 
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup, TimedCall, TimedLine
-from sim.trace.events import LineEnded, LineSaid, Logged, MessageDropped, Printed, ProcessAppeared
-from tests.course.cutting import PACKAGE, VARIABLE, course_text, make_package
+from sim.trace.events import (
+    LineEnded,
+    LineSaid,
+    Logged,
+    MessageDropped,
+    Printed,
+    ProcessAppeared,
+    RobotMoved,
+    VelocityCommanded,
+)
+from tests.course.cutting import PACKAGE, VARIABLE, course_text, make_package, shell_line
 from tests.support.builder import ns
 from tests.support.engine_runs import Run, run_to_end
 
@@ -74,9 +83,7 @@ def run_lines(package: Path, seconds: float, *lines: tuple[float, str]) -> Run:
 
 
 def options(group: str, threads: int) -> str:
-    return (
-        f"-service_wait_time 5.0 -timer_period 1.0 -callback_group_type {group} -threads {threads}"
-    )
+    return f"-service_wait_time 5.0 -timer_period 1.0 -callback_group_type {group} -threads {threads}"
 
 
 def texts(run: Run) -> list[str]:
@@ -191,7 +198,7 @@ def test_the_options_that_the_course_gives_are_the_programs_and_wrong_ones_end_i
     path = package / PACKAGE / "callback_groups_examples.py"
     setup = RunSetup(title="x", programs=(ProgramSetup(str(path)),), speed=None, until=ns(2))
     run = run_to_end(setup)
-    assert run.ending.reason == "the program ended with exit code 2"
+    assert run.ending.reason == "the program ended with exit code 2 (callback_groups_examples.py:52)"
     printed = [event.text for event in run.events if isinstance(event, Printed)]
     assert printed[-1].endswith("error: the following arguments are required: -service_wait_time")
 
@@ -215,3 +222,22 @@ def test_the_courses_launch_files_start_its_nodes(package: Path, name: str, turn
     assert process.label == f"{name}-1"
     assert {event.logger for event in run.events if isinstance(event, Logged)} == {"sub_node"}
     assert texts(run).count("STOP ROTATE") == turns
+
+
+def test_the_courses_shell_lines_stop_the_robot_and_put_it_back(package: Path) -> None:
+    assert _TEXT is not None
+    stop = shell_line(_TEXT, "ros2 topic pub /cmd_vel")
+    reset = shell_line(_TEXT, "ros2 service call /reset_world")
+    assert len(stop.splitlines()) > 6
+    launch = f"ros2 launch {PACKAGE} exercise51.launch.py"
+    run = run_lines(package, 8, (0, launch), (3.2, stop), (6.3, reset))
+    commands = [event for event in run.events if isinstance(event, VelocityCommanded)]
+    assert {each.linear for each in commands if each.t < ns(3.2)} == {0.08}
+    stops = [each.t / 1e9 for each in commands if (each.linear, each.angular) == (0, 0)]
+    assert {3.2, 4.2, 5.2, 6.2, 7.2} <= set(stops)
+    places = {event.t: (event.x, event.y) for event in run.events if isinstance(event, RobotMoved)}
+    start, before, after = (
+        next(place for t, place in places.items() if t >= ns(at)) for at in (0, 6.2, 6.35)
+    )
+    assert before != pytest.approx(start, abs=0.05)
+    assert after == pytest.approx(start, abs=0.02)

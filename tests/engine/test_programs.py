@@ -119,7 +119,17 @@ def test_the_run_fails_with_the_first_program_that_does_and_ends_with_the_last(t
     run = run_files(tmp_path, "def main():\n    raise ValueError('no')", "import time\ntime.sleep(2)")
     ended = run.events[-1]
     assert ended.t == 2 * SECOND
+    told = [event.text for event in run.events if isinstance(event, Notice)]
+    assert told == ["program0-1: program0.py:2: the program raised ValueError: no"]
     assert getattr(ended, "reason", "") == "program0-1: program0.py:2: the program raised ValueError: no"
+
+
+def test_a_program_that_failed_fails_the_run_even_when_its_time_is_up(tmp_path: Path) -> None:
+    run = run_files(tmp_path, "def main():\n    raise ValueError('no')", TALKER)
+    assert run.ending.failed
+    assert run.ending.reason == (
+        "its time was up; program0-1: program0.py:2: the program raised ValueError: no"
+    )
 
 
 def test_log_levels_are_each_programs_own(tmp_path: Path) -> None:
@@ -179,6 +189,26 @@ def test_lines_are_carried_out_at_their_moments(tmp_path: Path) -> None:
     assert said == ["/numbers", "/parameter_events", "/rosout"]
     ends = {event.line: event.status for event in run.events if isinstance(event, LineEnded)}
     assert ends == {1: 0, 2: 2}
+
+
+def test_the_environment_can_be_joined_with_other_variables(tmp_path: Path) -> None:
+    source = """
+import os
+os.environ |= {"COLOUR": "blue"}
+print((os.environ | {"SIZE": "2"})["COLOUR"], ({"COLOUR": "red"} | os.environ)["COLOUR"])
+"""
+    run = run_files(tmp_path, source, TALKER)
+    assert "blue blue" in [event.text for event in run.events if isinstance(event, Printed)]
+
+
+def test_what_a_line_logs_and_prints_is_its_own_output(tmp_path: Path) -> None:
+    offer = "topic pub -1 -w 0 --qos-reliability best_effort /numbers std_msgs/msg/Int32"
+    run = run_files(tmp_path, LISTENER, lines=(TimedLine(SECOND, offer),), seconds=3.0)
+    (warning,) = (each for each in run.events if isinstance(each, LineSaid) and "[WARN]" in each.text)
+    assert warning.error
+    assert "incompatible QoS" in warning.text
+    others = [each.text for each in run.events if isinstance(each, Printed | Logged)]
+    assert not any("_ros2cli" in text for text in others)
 
 
 def test_a_run_without_programs_ends_with_its_lines(tmp_path: Path) -> None:

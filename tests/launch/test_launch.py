@@ -92,6 +92,14 @@ def test_names_namespaces_remaps_and_arguments_stand_in_launch_ros_order(root: P
     assert machine.spec(1).arguments == ("--ros-args", "-r", "__ns:=/z")
 
 
+def test_a_managed_node_is_started_like_any_other(root: Path) -> None:
+    body = (
+        "import launch_ros; return [launch_ros.actions.LifecycleNode("
+        "package='unit5_pkg', executable='exercise51', name='n', namespace='')]"
+    )
+    assert launch(root, body).machine.spec().arguments == ("--ros-args", "-r", "__node:=n")
+
+
 def test_launch_arguments_reach_conditions_and_expressions(root: Path) -> None:
     body = (
         "n = LaunchConfiguration('n')\n"

@@ -128,6 +128,11 @@ def _threads() -> st.SearchStrategy[int | None]:
 
 def play(system: System) -> Trace:
     """Run a system for a while."""
+    return simulate(program_of(system), until=SECONDS)
+
+
+def program_of(system: System) -> Callable[[Simulation], None]:
+    """The program that makes a system and spins it."""
 
     def program(simulation: Simulation) -> None:
         nodes = [Node(f"n{number}") for number in range(system.nodes)]
@@ -144,7 +149,7 @@ def play(system: System) -> Trace:
             executor.add_node(node)
         executor.spin()
 
-    return simulate(program, until=SECONDS)
+    return program
 
 
 def _make(

@@ -2,7 +2,10 @@
 
 from typing import Any
 
+import pytest
+
 import sim.ros as rclpy
+from sim.ros import logging
 from sim.ros.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from sim.ros.interfaces import message
 from sim.ros.node import Node
@@ -24,7 +27,7 @@ def test_matches_are_told_with_their_changes_since_the_last_event() -> None:
 
     def program(_: Simulation) -> None:
         node = Node("n")
-        events = PublisherEventCallbacks(matched=told.append)
+        events = PublisherEventCallbacks(matched=told.append, use_default_callbacks=False)
         publisher = node.create_publisher(Int32, "t", 10, event_callbacks=events)
         assert [each.callback for each in publisher.event_handlers] == [events.matched]
         first = node.create_subscription(Int32, "t", lambda _: None, 10)
@@ -105,3 +108,23 @@ def test_events_of_every_node_come_before_the_timers_of_the_first() -> None:
     trace = simulate(program)
     assert order == ["matched", "timer", "message"]
     assert len(trace.calls()) == 3
+
+
+def test_warnings_without_a_callback_go_through_the_root_logger(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[str] = []
+
+    class Root(logging.RcutilsLogger):
+        def get_child(self, name: str) -> logging.RcutilsLogger:
+            asked.append(name)
+            return super().get_child(name)
+
+    monkeypatch.setattr(logging, "_root_logger", Root())
+
+    def program(simulation: Simulation) -> None:
+        node = Node("listener")
+        node.create_subscription(Int32, "t", lambda _: None, 10)
+        simulation.outside_node().create_publisher(Int32, "t", BEST_EFFORT)
+        drain(node)
+
+    assert "incompatible QoS" in "".join(simulate(program).said())
+    assert asked[-1] == "listener"

@@ -234,8 +234,12 @@ def test_what_runs_may_shut_its_own_executor_down(make: Callable[[], Executor], 
     assert ended == [True, []]
 
 
-@every_executor
-def test_shutting_down_gives_up_on_a_callback_after_its_timeout(make: Callable[[], Executor]) -> None:
+@pytest.mark.parametrize(
+    ("make", "given_up_at"), [(SingleThreadedExecutor, 1.5), (two_threads, 2.0)], ids=["single", "multi"]
+)
+def test_shutting_down_gives_up_on_a_callback_after_its_timeout_but_waits_for_a_pools_threads(
+    make: Callable[[], Executor], given_up_at: float
+) -> None:
     told: list[Any] = []
 
     def program(simulation: Simulation) -> None:
@@ -254,7 +258,7 @@ def test_shutting_down_gives_up_on_a_callback_after_its_timeout(make: Callable[[
         simulation.sleep_until(4.0)
 
     simulate(program)
-    assert told == [(False, 1.5), (True, 2.0)]
+    assert told == [(False, given_up_at), (True, 2.0)]
 
 
 def test_an_executor_that_was_shut_down_spins_no_more() -> None:

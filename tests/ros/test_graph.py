@@ -89,12 +89,26 @@ def test_ends_are_counted_by_a_name_as_the_node_means_it() -> None:
     with_graph(check)
 
 
+def test_the_id_of_an_end_is_the_same_in_every_run_alike() -> None:
+    found: list[list[int]] = []
+
+    def check(talker: Node, listener: Node) -> None:
+        found.extend(each.endpoint_gid for each in listener.get_publishers_info_by_topic("/a/t"))
+
+    with_graph(check)
+    with_graph(check)
+    first, second = found
+    assert first == second
+    assert len(first) == 16
+
+
 def test_the_ends_of_a_topic_are_described() -> None:
     def check(talker: Node, listener: Node) -> None:
         (publisher,) = listener.get_publishers_info_by_topic("/a/t")
         assert (publisher.node_name, publisher.node_namespace) == ("talker", "/a")
         assert publisher.endpoint_type is TopicEndpointTypeEnum.PUBLISHER
-        assert publisher.qos_profile == QoSProfile(depth=3)
+        assert publisher.qos_profile.depth == 3
+        assert "  Lifespan: Infinite\n  Deadline: Infinite\n  Liveliness: AUTOMATIC\n" in str(publisher)
         (subscription,) = talker.get_subscriptions_info_by_topic("t")
         assert subscription.endpoint_type.name == "SUBSCRIPTION"
         assert subscription.endpoint_gid != publisher.endpoint_gid

@@ -1,46 +1,18 @@
 """The sheet of what real rclpy was measured to do with a service that sleeps 5 s beside a 1 s timer."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import pytest
 
-from sim.ros.callback_groups import (
-    CallbackGroup,
-    MutuallyExclusiveCallbackGroup,
-    ReentrantCallbackGroup,
-)
+from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
 from sim.ros.executors import MultiThreadedExecutor
-from sim.ros.interfaces import service
-from sim.ros.node import Node
 from sim.trace.events import ServiceReplied
+from tests.ros.measured_nodes import DummyServer, Groups, SetBool, default, reentrant
 from tests.support.simulation import Simulation, Trace, simulate
-
-SetBool = service("std_srvs", "SetBool")
-
-
-class DummyServer(Node):
-    """Serves ``/dummy_server_srv`` by sleeping 5 × 1 s, and says TICK and TACK by turns each second."""
-
-    def __init__(self, simulation: Simulation, groups: Callable[[], CallbackGroup | None]) -> None:
-        super().__init__("dummy_server")
-        self.sleep = simulation.sleep
-        self.ticks = 0
-        self.create_service(SetBool, "/dummy_server_srv", self.serve, callback_group=groups())
-        self.create_timer(1.0, self.timer, callback_group=groups())
-
-    def serve(self, request: object, response: object) -> object:
-        for _ in range(5):
-            self.sleep(1.0)
-        response.message = "TURNING"  # type: ignore[attr-defined]
-        return response
-
-    def timer(self) -> None:
-        self.get_logger().info("TICK" if self.ticks % 2 == 0 else "TACK")
-        self.ticks += 1
 
 
 def run(
-    groups: Callable[[], CallbackGroup | None],
+    groups: Groups,
     threads: int,
     until: float,
     calls: Sequence[float] = (2.55,),
@@ -57,11 +29,6 @@ def run(
         executor.spin()
 
     return simulate(program, until)
-
-
-def reentrant() -> Callable[[], CallbackGroup]:
-    group = ReentrantCallbackGroup()
-    return lambda: group
 
 
 def replies(trace: Trace) -> list[float]:
@@ -113,7 +80,7 @@ def test_reentrant_with_one_thread_has_one_late_tick_after_the_call_and_the_old_
 
 
 def test_the_default_group_with_two_threads_replies_first_and_then_has_one_late_tick() -> None:
-    trace = run(lambda: None, 2, until=9.5)
+    trace = run(default, 2, until=9.5)
     assert trace.times("timer") == seconds(1, 2, 7.55, 8, 9)
     reply = next(index for index, each in enumerate(trace.events) if isinstance(each, ServiceReplied))
     before = Trace(trace.events[:reply])

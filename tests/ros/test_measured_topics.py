@@ -1,47 +1,21 @@
 """The sheet of what real rclpy was measured to do with two 100 Hz topics and a timer that sleeps once."""
 
 from collections.abc import Callable
+from itertools import pairwise
 
 import pytest
 
 import sim.ros as rclpy
-from sim.ros.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
+from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
 from sim.ros.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
-from sim.ros.interfaces import message
-from sim.ros.node import Node
+from tests.ros.measured_nodes import Groups, SubNode, default, shared
 from tests.support.simulation import Simulation, Trace, simulate
 
-Int32 = message("std_msgs", "Int32")
 BEGIN, END = 0.5, 10.5
 
 
-class SubNode(Node):
-    """Hears ``odom`` and ``scan``, and once sleeps ten times a second in its timer's callback."""
-
-    def __init__(self, simulation: Simulation, groups: Callable[[], CallbackGroup | None]) -> None:
-        super().__init__("sub_node")
-        self.sleep = simulation.sleep
-        self.rested = False
-        self.heard: dict[str, list[int]] = {"odom": [], "scan": []}
-        self.create_subscription(Int32, "odom", self.odom, 10, callback_group=groups())
-        self.create_subscription(Int32, "scan", self.scan, 10, callback_group=groups())
-        self.create_timer(0.5, self.timer, callback_group=groups())
-
-    def odom(self, msg: object) -> None:
-        self.heard["odom"].append(msg.data)  # type: ignore[attr-defined]
-
-    def scan(self, msg: object) -> None:
-        self.heard["scan"].append(msg.data)  # type: ignore[attr-defined]
-
-    def timer(self) -> None:
-        if not self.rested:
-            self.rested = True
-            for _ in range(10):
-                self.sleep(1.0)
-
-
 def run(
-    groups: Callable[[], CallbackGroup | None],
+    groups: Groups,
     make_executor: Callable[[], Executor] | None,
     until: float = 12.1,
 ) -> tuple[Trace, dict[str, list[int]]]:
@@ -62,11 +36,6 @@ def run(
     return simulate(program, until), nodes[0].heard
 
 
-def shared() -> Callable[[], CallbackGroup]:
-    group = MutuallyExclusiveCallbackGroup()
-    return lambda: group
-
-
 def during(trace: Trace, name: str) -> int:
     return sum(BEGIN < at < END for at in trace.times(name))
 
@@ -78,15 +47,15 @@ def just_after(trace: Trace) -> list[str]:
 ALTERNATING = ["odom", "scan"]
 
 ONE_AT_A_TIME = [
-    pytest.param(lambda: None, None, id="default group, rclpy.spin"),
-    pytest.param(lambda: None, SingleThreadedExecutor, id="default group, single"),
+    pytest.param(default, None, id="default group, rclpy.spin"),
+    pytest.param(default, SingleThreadedExecutor, id="default group, single"),
     pytest.param(shared(), lambda: MultiThreadedExecutor(4), id="shared group, multi(4)"),
 ]
 
 
 @pytest.mark.parametrize(("groups", "make_executor"), ONE_AT_A_TIME)
 def test_in_one_group_nothing_runs_while_the_timer_sleeps_and_the_queues_keep_ten(
-    groups: Callable[[], CallbackGroup | None], make_executor: Callable[[], Executor] | None
+    groups: Groups, make_executor: Callable[[], Executor] | None
 ) -> None:
     trace, _ = run(groups, make_executor)
     assert (during(trace, "odom"), during(trace, "scan"), during(trace, "timer")) == (0, 0, 0)
@@ -95,7 +64,7 @@ def test_in_one_group_nothing_runs_while_the_timer_sleeps_and_the_queues_keep_te
 
 @pytest.mark.parametrize(("groups", "make_executor"), ONE_AT_A_TIME)
 def test_in_one_group_the_late_timer_comes_first_and_then_what_was_kept_by_turns(
-    groups: Callable[[], CallbackGroup | None], make_executor: Callable[[], Executor] | None
+    groups: Groups, make_executor: Callable[[], Executor] | None
 ) -> None:
     trace, heard = run(groups, make_executor)
     assert just_after(trace) == ["timer", *ALTERNATING * 10]
@@ -130,6 +99,12 @@ def test_callbacks_of_one_shared_group_run_on_the_pools_workers_and_never_on_the
     assert all(each.thread.startswith("ThreadPoolExecutor-0_") for each in trace.calls())
 
 
+def test_after_the_block_callbacks_of_one_shared_group_change_their_workers() -> None:
+    trace, _ = run(shared(), lambda: MultiThreadedExecutor(4))
+    workers = [each.thread for each in trace.calls() if each.at == END]
+    assert any(one != other for one, other in pairwise(workers))
+
+
 def test_with_rclpy_spin_every_callback_runs_on_the_main_thread() -> None:
-    trace, _ = run(lambda: None, None, until=2.0)
+    trace, _ = run(default, None, until=2.0)
     assert {each.thread for each in trace.calls()} == {"MainThread"}

@@ -1,5 +1,6 @@
 """What a node is, has, and refuses."""
 
+import importlib
 from collections.abc import Callable
 from typing import Any
 from unittest.mock import Mock
@@ -143,3 +144,16 @@ def test_a_node_is_gone_after_its_with_block() -> None:
         assert Node("m").get_node_names() == ["m"]
 
     simulate(program)
+
+
+@pytest.mark.parametrize("method", ["create_publisher", "declare_parameters", "count_publishers"])
+def test_a_wrong_call_is_told_as_one_of_node(method: str) -> None:
+    with pytest.raises(TypeError, match=rf"^Node\.{method}\(\) missing"):
+        getattr(Node, method)()
+
+
+@pytest.mark.parametrize(
+    "name", ["Timer", "Rate", "Client", "Service", "Subscription", "Publisher", "ParameterValue"]
+)
+def test_classes_that_programs_import_from_the_nodes_module_are_there(name: str) -> None:
+    assert getattr(importlib.import_module("sim.ros.node"), name).__name__ == name

@@ -50,6 +50,14 @@ def test_messages_about_parameters_come_from_the_nodes_module_too() -> None:
         module.Nothing  # noqa: B018
 
 
+def test_messages_about_parameters_come_from_the_module_of_parameters_too() -> None:
+    module = importlib.import_module("sim.ros.parameter")
+    assert module.ParameterType is rcl_interfaces.ParameterType
+    assert module.ParameterMsg is rcl_interfaces.Parameter
+    with pytest.raises(AttributeError, match="no attribute 'Nothing'"):
+        module.Nothing  # noqa: B018
+
+
 def test_the_old_module_of_events_works_and_warns() -> None:
     sys.modules.pop("sim.ros.qos_event", None)
     with pytest.warns(DeprecationWarning, match=r"use rclpy.event_handler instead"):

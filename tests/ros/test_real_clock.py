@@ -2,44 +2,20 @@
 
 import threading
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 
 import pytest
 
 import sim.ros as rclpy
-from sim.clock import RealClock
 from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from sim.ros.executors import Executor, ExternalShutdownException, MultiThreadedExecutor
 from sim.ros.interfaces import message, service
 from sim.ros.node import Node
-from tests.support.simulation import Simulation, Trace, installed, no_thread_left
+from tests.support.simulation import Trace
+from tests.support.wall_time import on_wall_time, spin_for
 
 Int32 = message("std_msgs", "Int32")
 SetBool = service("std_srvs", "SetBool")
-
-
-@contextmanager
-def on_wall_time() -> Iterator[Simulation]:
-    """A program's surroundings on the real clock."""
-    simulation = Simulation(RealClock())
-    with no_thread_left(), installed(simulation.host):
-        yield simulation
-
-
-def spin_for(node: Node, seconds: float, executor: Executor | None = None) -> None:
-    """Spin until so many seconds have passed."""
-    chosen = rclpy.get_global_executor() if executor is None else executor
-    chosen.add_node(node)
-    timer = threading.Timer(seconds, rclpy.shutdown)
-    timer.start()
-    try:
-        chosen.spin()
-    except ExternalShutdownException:
-        pass
-    finally:
-        timer.join()
-        chosen.shutdown()
 
 
 def test_a_blocked_timer_drops_ticks_and_messages_wait_in_the_order_of_rclpy() -> None:

@@ -59,6 +59,14 @@ def test_the_four_steps_of_a_call_are_told_in_order() -> None:
     assert not any(each.request or each.response for each in events)
 
 
+def test_the_id_of_a_client_is_the_same_in_every_run_alike() -> None:
+    first, second = (
+        [bytes(each.info.client_gid) for each in told(ServiceIntrospectionState.METADATA)] for _ in range(2)
+    )
+    assert first == second
+    assert len(first[0]) == 16
+
+
 def test_contents_come_with_the_steps_if_wanted() -> None:
     events = told(ServiceIntrospectionState.CONTENTS)
     request, response = SetBool.Request(data=True), SetBool.Response(message="served")

@@ -45,11 +45,11 @@ def test_a_line_that_is_none_is_refused_by_usage(line: str, complaint: str) -> N
     assert (result.out, result.status) == ("", 2)
 
 
-@pytest.mark.parametrize("command", ["bag record", "doctor", "lifecycle set /n activate", "daemon stop"])
+@pytest.mark.parametrize("command", ["bag record", "doctor", "daemon stop"])
 def test_commands_of_a_ros_2_machine_are_named_with_what_there_is(command: str) -> None:
     result = carry_out(f"ros2 {command}")
     assert result.err == (
-        f"ros2 {command.split(maxsplit=1)[0]} is not carried out here; action, interface, launch, node, param, pkg, run, "  # noqa: E501
+        f"ros2 {command.split(maxsplit=1)[0]} is not carried out here; action, interface, launch, lifecycle, node, param, pkg, run, "  # noqa: E501
         "service and topic are\n"
     )
     assert result.status == 1

@@ -115,3 +115,18 @@ def test_a_node_that_nobody_spins_keeps_the_line_waiting() -> None:
     assert (result.out, result.status) == ("", 2)
     result = carry_out("param list", lambda _: Node("n"))
     assert result.err == "Exception while calling service of node '/n': None\n"
+
+
+def test_a_line_tells_nobody_of_its_own_parameters() -> None:
+    heard: list[str] = []
+
+    def setup(simulation: Simulation) -> None:
+        node = Node("n")
+        node.declare_parameter("speed", 0.5)
+        node.create_subscription(
+            rcl_interfaces.ParameterEvent, "/parameter_events", lambda event: heard.append(event.node), 10
+        )
+        spin(simulation, node)
+
+    carry_out("param set /n speed 0.75", setup)
+    assert heard == ["/n"]

@@ -128,7 +128,7 @@ def test_echo_prints_what_an_introspected_service_tells() -> None:
         simulation.at(1.0, lambda: client.call_async(Empty.Request()))
 
     result = carry_out("service echo /s", introspected, interrupt_at=2.0)
-    assert result.out.startswith("info:\n  event_type: 1\n")
+    assert result.out.startswith("info:\n  event_type: REQUEST_RECEIVED\n")
     assert result.out.count("---\n") == 2
     assert (result.err, result.status) == ("", 2)
 

@@ -46,7 +46,7 @@ def test_words_are_those_of_a_shell_without_prompt_and_ros2(text: str, words: li
         ('ros2 topic pub /t a/B "x: 1', 'a quote is not closed: there is no second " in the line'),
         ("topic list | grep x", "put | in quotes"),
         ("topic list\nnode list", "put the second line in quotes"),
-        ("cd ~/ros2_ws", "cd: command not found; known here is ros2 with action, interface, launch, node"),
+        ("cd ~/ros2_ws", "cd: command not found; known here is ros2 with action, interface, launch"),
     ],
 )
 def test_what_cannot_be_read_is_said_in_one_sentence(text: str, sentence: str) -> None:

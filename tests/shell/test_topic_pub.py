@@ -89,8 +89,9 @@ def test_quality_of_service_is_as_asked_for() -> None:
         hear(node, Int32, "/t", heard)
         spin(simulation, node)
 
-    carry_out("topic pub -1 -w 0 --qos-reliability best_effort /t std_msgs/msg/Int32", listener)
+    unheard = carry_out("topic pub -1 -w 0 --qos-reliability best_effort /t std_msgs/msg/Int32", listener)
     assert heard == []
+    assert "requesting incompatible QoS. No messages will be sent to it." in unheard.err
     carry_out("topic pub -1 -w 0 --qos-profile services_default /t std_msgs/msg/Int32", listener)
     assert len(heard) == 1
 

@@ -52,6 +52,8 @@ def test_golden_lines() -> None:
     about += ',"group_type":"exclusive"'
     assert b"".join(JsonLines().lines(FULL)).decode().splitlines()[len(CAST) + 1 :] == [
         '{"t":1.5,"event":"publish","node":"robot","callback":"timer_callback","entity":"/odom","message_id":7}',
+        '{"t":1.5,"event":"topic","entity":"/odom","type":"std_msgs/msg/Bool","definition":"bool data\\n"}',
+        '{"t":1.5,"event":"message","entity":"/odom","message_id":7,"size":5}',
         f'{{"t":1.502,"event":"ready",{about},"depth":1,"message_id":7}}',
         f'{{"t":1.502,"event":"wait_start",{about},"reason":"group held","held_by":"timer_callback",'
         '"since":1.502,"workers_busy":true}',
@@ -80,6 +82,7 @@ def test_golden_lines() -> None:
         '{"t":2.35,"event":"scan","beams":4,"front":0.5,"message_id":8}',
         '{"t":2.4,"event":"cmd_vel","linear":0.08,"angular":-0.2}',
         '{"t":2.5,"event":"command","message":"/motor_power SetBool data=True"}',
+        '{"t":2.5,"event":"halt","message":"step"}',
         '{"t":2.5,"event":"line","line":1,"message":"ros2 topic list"}',
         '{"t":2.5,"event":"line_text","line":1,"message":"/odom","error":false}',
         '{"t":2.5,"event":"line_end","line":1,"status":0}',
@@ -87,6 +90,7 @@ def test_golden_lines() -> None:
         '{"t":2.5,"event":"process_end","process":"talker-1","reason":"the program returned","status":0}',
         '{"t":2.6,"event":"notice","message":"The robot touches the wall.","severity":"WARN"}',
         '{"t":2.7,"event":"lost","count":12}',
+        '{"t":2.7,"event":"contents_lost","count":3}',
         f'{{"t":2.8,"event":"entity_gone",{about}}}',
         '{"t":3.0,"event":"run_end","reason":"its time was up","failed":false}',
     ]

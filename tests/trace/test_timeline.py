@@ -52,6 +52,16 @@ def test_asking_of_what_is_not_known_adds_nothing_to_the_cast() -> None:
     assert timeline.moment(5) == Moment(5)
 
 
+def test_a_failure_of_what_has_no_callback_is_told_by_its_name() -> None:
+    run = Run()
+    thread = run.thread("MainThread")
+    client = run.client(run.exclusive(run.node("/node")), "/turn")
+    run.start(client, thread, 1.0)
+    run.fail(client, thread, 2.0, "ValueError: no")
+    (mark,) = (each for each in timeline_of(run).marks(ALWAYS) if each.kind == "error")
+    assert mark.text.startswith("/turn raised ValueError")
+
+
 def test_every_kind_of_event_is_understood() -> None:
     assert {type(event) for event in FULL} == set(get_args(AnyEvent))
     timeline = Timeline()

@@ -1,11 +1,12 @@
 """Text as cells: strange text is shown and never obeyed, and widths add up."""
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from rich.cells import cell_len
 
 from cbtui.theme import Charset, Ink, Role
-from cbtui.widgets.cells import Row, fit, to_cells, visible
+from cbtui.widgets.cells import Row, fit, to_cells, visible, without_tabs
 
 
 def test_escape_sequences_become_pictures() -> None:
@@ -24,6 +25,21 @@ def test_no_text_reaches_the_terminal_as_a_control(text: str, charset: Charset) 
 @given(st.text(max_size=30), st.integers(0, 40), st.sampled_from(Charset))
 def test_fitted_text_has_exactly_the_width(text: str, width: int, charset: Charset) -> None:
     assert cell_len(fit(text, width, charset)) == width
+
+
+@pytest.mark.parametrize(
+    ("text", "shown"),
+    [
+        ("\tx", "        x"),
+        ("abc\tx\ty", "abc     x       y"),
+        ("12345678\tx", "12345678        x"),
+        ("回\tx", "回      x"),
+        ("first\n\tsecond", "first\n        second"),
+        ("no tab", "no tab"),
+    ],
+)
+def test_a_tab_goes_on_to_the_next_multiple_of_eight_columns(text: str, shown: str) -> None:
+    assert without_tabs(text) == shown
 
 
 def test_a_wide_character_takes_two_cells() -> None:

@@ -46,6 +46,17 @@ def test_one_shared_group_shows_everybody_waiting_for_the_timer() -> None:
     )
 
 
+def test_what_has_no_callback_of_its_own_goes_by_its_name() -> None:
+    run = Run()
+    thread, group = run.thread("MainThread"), run.exclusive(run.node("/n"))
+    action = run.client(group, "/turn/_action")
+    run.subscription(group, "/a", "a_callback")
+    run.callback(action, thread, 1.0, 9.0)
+    text = Painter().text(told(run, until=10.0), *last(10, 10.0), 100, 8)
+    assert "A /turn/_action" in text
+    assert "held by /turn/_action on MainThread" in text
+
+
 def test_the_same_in_ascii_has_no_other_glyph() -> None:
     timeline = told(shared_group_run(), until=12.9)
     assert Painter(Charset.ASCII).text(timeline, *last(10, 12.9), 80, 8) == drawn(

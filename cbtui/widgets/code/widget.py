@@ -32,9 +32,16 @@ class CodeView(Inked):
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {kind.value for kind in Kind}
 
-    def __init__(self, path: Path, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
+    def __init__(
+        self,
+        path: Path,
+        source: str | None = None,
+        *,
+        id: str | None = None,  # noqa: A002 Textual's name for it
+    ) -> None:
         super().__init__(id=id)
-        self._lines = highlight(path.read_text(encoding="utf-8", errors="replace"))
+        text = path.read_text(encoding="utf-8", errors="replace") if source is None else source
+        self._lines = highlight(text)
         self._marks = Marks(path)
         self._marked: list[Marked] = []
         self._long: tuple[int, ...] = ()

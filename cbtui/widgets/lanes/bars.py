@@ -50,7 +50,7 @@ class Bars:
                 row.put(stretch.first, self.glyphs.point, ink)
                 continue
             row.fill(stretch.first, stretch.after, self.glyphs.line, ink)
-            callback = self.timeline.entities[stretch.top.entity].callback
+            callback = self.timeline.entities[stretch.top.entity].spoken_name
             thread = self.timeline.threads[stretch.top.thread].name
             held = f"held by {callback}"
             texts = (f"{held} on {short_thread(thread)}", held, f"by {short(callback)}")
@@ -63,7 +63,7 @@ class Bars:
                 row.put(stretch.first, self.glyphs.point, ink)
                 continue
             self._line(row, stretch, ink)
-            callback = self.timeline.entities[stretch.top.entity].callback
+            callback = self.timeline.entities[stretch.top.entity].spoken_name
             most = max(column.at_once for column in stretch.columns)
             texts = (f"{most} at once",) if most > 1 else (f"runs {callback}", f"runs {short(callback)}")
             self._words(row, stretch.first, stretch.after, texts)
@@ -148,7 +148,8 @@ class Bars:
             return
         entity = self.timeline.entities[stretch.top.entity]
         letter = self.timeline.groups[entity.group].letter
-        for text in (f"{letter} {entity.callback}", f"{letter} {short(entity.callback)}", letter):
+        name = entity.spoken_name
+        for text in (f"{letter} {name}", f"{letter} {short(name)}", letter):
             if len(text) + 3 <= len(whole) or text == letter:
                 row.write(whole[0], f"{text} ", ink)
                 return

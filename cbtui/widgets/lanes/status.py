@@ -54,7 +54,7 @@ class Status:
 
     def _caller(self, span: Span) -> str:
         entity = self.timeline.entities[span.entity]
-        return f"{self.timeline.groups[entity.group].letter} {short(entity.callback)}"
+        return f"{self.timeline.groups[entity.group].letter} {short(entity.spoken_name)}"
 
     def _group(self, group: Group) -> Run:
         entities = self.timeline.entities

@@ -7,7 +7,6 @@ from collections.abc import Callable
 from enum import Enum
 from functools import partial
 from typing import TYPE_CHECKING, Any
-from weakref import ref
 
 from sim.ros.action.cancelling import goals_meant, uuid_of
 from sim.ros.action.execution import GoalExecution
@@ -109,7 +108,6 @@ class ActionServer(ActionWaitable):
         super().__init__(node, action_type, action_name, callback_group)
         self._result_timeout = int(result_timeout * 1e9)
         self._goal_handles: dict[bytes, ServerGoalHandle] = {}
-        self._last_executor: ref[Executor] | None = None
         self._goal_info = message("action_msgs", "GoalInfo")
         self._goal_status = message("action_msgs", "GoalStatus")
         self._logger = node.get_logger().get_child("action_server")
@@ -169,12 +167,6 @@ class ActionServer(ActionWaitable):
         taken.data.append(PartTaken(self._forget_goals, expired))
         return taken
 
-    async def invoke(self, taken: Taken) -> None:
-        """Handle what was taken."""
-        executor = self._node.executor
-        self._last_executor = None if executor is None else ref(executor)
-        await super().invoke(taken)
-
     def get_num_entities(self) -> NumberOfEntities:
         """How many entities of each kind it is made of; the timer is the one of the results' ends."""
         return super().get_num_entities() + NumberOfEntities(num_timers=1)
@@ -228,8 +220,7 @@ class ActionServer(ActionWaitable):
 
     def _executor(self) -> Executor:
         """The executor that serves the node, or that did last."""
-        last = None if self._last_executor is None else self._last_executor()
-        executor = self._node.executor or last
+        executor = self._node.executor
         if executor is None:
             raise RCLError(f"no executor serves {self._node.get_name()}, so no goal of {self.name} can run")
         return executor

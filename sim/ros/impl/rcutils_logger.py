@@ -1,5 +1,21 @@
-"""The class of loggers, where rclpy keeps it."""
+"""The class of loggers and what holds back their lines, where rclpy keeps them."""
 
+from sim.ros.log_filters import (
+    LoggingFilter,
+    Once,
+    SkipFirst,
+    Throttle,
+    get_filters_from_kwargs,
+    supported_filters,
+)
 from sim.ros.logging import RcutilsLogger
 
-__all__ = ["RcutilsLogger"]
+__all__ = [
+    "LoggingFilter",
+    "Once",
+    "RcutilsLogger",
+    "SkipFirst",
+    "Throttle",
+    "get_filters_from_kwargs",
+    "supported_filters",
+]

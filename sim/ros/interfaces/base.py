@@ -50,11 +50,13 @@ class Message(metaclass=MessageType):
 
     Its classes come from `message` and `service`. As in rclpy, the constructor takes field values
     by keyword, every field has a default, values are stored in slots named ``_<field>`` behind
-    properties of the fields' names, and every assignment is checked.
+    properties of the fields' names, and every assignment is checked; ``check_fields=True``, which
+    asks rosidl's newer classes for that, is taken too.
 
     Raises:
         AssertionError: on construction or assignment, if a value does not fit the field or the
             field does not exist; the text is the one of rosidl's generated code.
+        NotImplementedError: construction with ``check_fields=False``.
         AttributeError: assignment to an attribute that is no field.
     """
 
@@ -63,6 +65,9 @@ class Message(metaclass=MessageType):
     __type_name__: ClassVar[str]
     SLOT_TYPES: ClassVar[tuple[FieldType, ...]] = ()
     """The type of every field, in the order of definition."""
+    _fields_and_field_types: ClassVar[dict[str, str]] = {}
+    """What ``get_fields_and_field_types`` returns a copy of; code made for rosidl's classes reads it too."""
+    _check_fields: ClassVar[bool] = True
 
     if TYPE_CHECKING:
         # Fields are made at run time from definitions.
@@ -73,7 +78,7 @@ class Message(metaclass=MessageType):
     @classmethod
     def get_fields_and_field_types(cls) -> dict[str, str]:
         """Return the type of every field as text: ``{"ranges": "sequence<float>", …}``."""
-        return {name: str(of) for name, of in cls.__interface__.types.items()}
+        return dict(cls._fields_and_field_types)
 
     def __repr__(self) -> str:
         package = type(self).__module__.rpartition(".")[0]

@@ -84,6 +84,7 @@ def _bare_class(
             "__doc__": f"Message class for {definition.type_name}; see `Message`.",
             "__type_name__": definition.type_name,
             "SLOT_TYPES": tuple(types.values()),
+            "_fields_and_field_types": {name: str(of) for name, of in types.items()},
             **constant_values(definition),
             **defaults,
         },
@@ -110,12 +111,18 @@ def _initialiser(handlings: Mapping[str, Handling], puts: _Puts) -> Callable[...
 
     def initialise(self: Message, /, **values: Any) -> None:
         if not values.keys() <= known:
-            unknown = ", ".join(sorted(values.keys() - known))
-            raise AssertionError(f"Invalid arguments passed to constructor: {unknown}")
+            _require_known(values, known)
         for name, put, make, check in steps:
             put(self, check(values[name]) if name in values else make())
 
     return initialise
+
+
+def _require_known(values: Mapping[str, Any], known: frozenset[str]) -> None:
+    if unknown := values.keys() - known - {"check_fields"}:
+        raise AssertionError(f"Invalid arguments passed to constructor: {', '.join(sorted(unknown))}")
+    if not values["check_fields"]:
+        raise NotImplementedError("check_fields=False is not supported: every field is always checked")
 
 
 def _copier(cls: type[Message], handlings: Mapping[str, Handling], puts: _Puts) -> Callable[[Any], Any]:

@@ -42,7 +42,7 @@ def to_cdr(message: Message) -> bytes:
     Wide strings become their number of UTF-16 units and these units in four bytes each, as in
     rosidl_typesupport_fastrtps.
     """
-    store = _wire(_message_class(message))
+    store = _wire_of(type(message))
     return bytes(store.serialize_cdr(_outward(message), message.__type_name__, little_endian=True))
 
 
@@ -98,9 +98,10 @@ def _on_wire(of: FieldDesc) -> FieldDesc:
     return cast("FieldDesc", (of[0], (_on_wire(cast("FieldDesc", inner)), size)))
 
 
-def _message_class(message: Message) -> type[Message]:
-    """Return the class made from the definition; the message may be of a subclass."""
-    return next(cls for cls in type(message).__mro__ if "__interface__" in vars(cls))
+@cache
+def _wire_of(kind: type[Message]) -> Typestore:
+    """Return the typestore of the class made from the definition, of which a message's may be a subclass."""
+    return _wire(next(cls for cls in kind.__mro__ if "__interface__" in vars(cls)))
 
 
 @frozen

@@ -6,9 +6,10 @@ them to everyone in ``SLOT_TYPES``. ``str()`` of a type is its text in ``get_fie
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Final, TypeAlias
 
-from attrs import frozen
+from attrs import field, frozen
 
 INTEGER_LIMITS: Final = {
     **{f"int{bits}": (-(2 ** (bits - 1)), 2 ** (bits - 1) - 1) for bits in (8, 16, 32, 64)},
@@ -68,11 +69,15 @@ class BasicType(AbstractNestableType):
         return self.typename
 
 
+def _as_tuple(names: Iterable[str]) -> tuple[str, ...]:
+    return tuple(names)
+
+
 @frozen
 class NamespacedType(AbstractNestableType):
     """Another message: ``NamespacedType(("geometry_msgs", "msg"), "Point")``."""
 
-    namespaces: tuple[str, ...]
+    namespaces: tuple[str, ...] = field(converter=_as_tuple)
     name: str
 
     def namespaced_name(self) -> tuple[str, ...]:

@@ -25,11 +25,16 @@ class LifecycleNodeMixin(ManagedEntity):
 
     The ``trigger_…`` methods and the service ``~/change_state`` lead from state to state. On the way the
     ``on_…`` methods are called, which a program overrides; those here ask the managed entities.
+
+    Raises:
+        TypeError: ``enable_communication_interface`` is neither True nor False.
     """
 
     def __init__(
         self, *, enable_communication_interface: bool = True, callback_group: CallbackGroup | None = None
     ) -> None:
+        if not isinstance(enable_communication_interface, bool):
+            raise TypeError("enable_communication_interface must be True or False")
         self._state_machine = LifecycleStateMachine()
         self._managed_entities: dict[int, ManagedEntity] = {}
         self._callbacks: dict[int, Callable[[LifecycleState], TransitionCallbackReturn]] = {

@@ -90,6 +90,11 @@ class LifecycleStateMachine:
         self._state = UNCONFIGURED
 
     @property
+    def initialized(self) -> bool:
+        """True: it can be used from the first."""
+        return True
+
+    @property
     def current_state(self) -> tuple[int, str]:
         """Number and label of the state."""
         return self._state, STATES[self._state]

@@ -1,5 +1,6 @@
 """``launch_ros.actions``."""
 
+from sim.launch.launch_ros.actions.lifecycle_node import LifecycleNode
 from sim.launch.launch_ros.actions.node import Node
 from sim.launch.launch_ros.actions.settings import (
     PushROSNamespace,
@@ -10,7 +11,6 @@ from sim.launch.launch_ros.actions.settings import (
 )
 from sim.launch.launch_ros.actions.unsupported import (
     ComposableNodeContainer,
-    LifecycleNode,
     LifecycleTransition,
     LoadComposableNodes,
     ROSTimer,

@@ -17,18 +17,14 @@ class LoadComposableNodes:
         raise NotImplementedError("LoadComposableNodes is not supported: components are compiled from C++")
 
 
-class LifecycleNode:
-    """Not supported: there are no managed nodes."""
-
-    def __init__(self, *_: object, **__: object) -> None:
-        raise NotImplementedError("LifecycleNode is not supported: there are no managed nodes here")
-
-
 class LifecycleTransition:
-    """Not supported: there are no managed nodes."""
+    """Not supported: a launch does not follow the states of its nodes."""
 
     def __init__(self, *_: object, **__: object) -> None:
-        raise NotImplementedError("LifecycleTransition is not supported: there are no managed nodes here")
+        raise NotImplementedError(
+            "LifecycleTransition is not supported: a launch does not follow the states of its nodes; "
+            "use ros2 lifecycle set"
+        )
 
 
 class ROSTimer:

@@ -1,0 +1,112 @@
+"""``cbtui info``: what is in a recording, as plain text."""
+
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from sim.trace.events import AnyEvent, ContentsLost, EventsLost, RunEnded, RunStarted
+from sim.trace.recording import Recording, RecordingError, Topic, read
+
+_SECOND = 1_000_000_000
+_LABEL = "{:<11}{}\n"
+
+
+def tell(path: Path) -> int:
+    """Print a summary; returns the exit code: 0 all can be read, 1 some of it, 2 nothing."""
+    try:
+        recording = read(path)
+        tally = _tally_of(recording)
+        topics = recording.topics()
+        size = path.stat().st_size
+    except RecordingError as error:
+        sys.stderr.write(f"cbtui: {error}\n")
+        return 2
+    except OSError as error:
+        sys.stderr.write(f"cbtui: {path} cannot be read to its end: {error.strerror}\n")
+        return 2
+    sys.stdout.writelines(_lines(recording, tally, topics, size))
+    if recording.damage is not None:
+        sys.stderr.write(f"cbtui: {recording.damage}\n")
+        return 1
+    return 0
+
+
+@dataclass
+class _Tally:
+    """What is counted in one pass over the events."""
+
+    events: int = 0
+    last: int = 0
+    lost: int = 0
+    contents_lost: int = 0
+    started: RunStarted | None = None
+    ended: RunEnded | None = None
+
+    def take(self, events: list[AnyEvent]) -> None:
+        """Count a batch."""
+        self.events += len(events)
+        for event in events:
+            self.last = max(self.last, event.t)
+            match event:
+                case RunStarted():
+                    self.started = event
+                case RunEnded():
+                    self.ended = event
+                case EventsLost(count=count):
+                    self.lost = max(self.lost, count)
+                case ContentsLost(count=count):
+                    self.contents_lost = max(self.contents_lost, count)
+
+
+def _tally_of(recording: Recording) -> _Tally:
+    tally = _Tally()
+    for events in recording.batches():
+        tally.take(events)
+    return tally
+
+
+def _lines(recording: Recording, tally: _Tally, topics: list[Topic], size: int) -> Iterator[str]:
+    about = recording.about
+    started = tally.started
+    title = about.title or (started.target if started else "a run")
+    clock = about.clock or (started.clock if started else "unknown")
+    yield _line("run", f"{title}, {clock} clock")
+    if about.recorded:
+        yield _line("recorded", f"{_moment(about.recorded)} by cbtui {about.version}")
+    for program in about.programs:
+        yield _line("program", program + (", with its source" if program in recording.sources else ""))
+    if about.arguments:
+        yield _line("arguments", " ".join(about.arguments))
+    ending = "it was going on" if tally.ended is None else tally.ended.reason
+    yield _line("lasts", f"{tally.last / _SECOND:.3f} s; {ending}")
+    yield _line("events", f"{tally.events:,}; the file has {size:,} bytes")
+    if tally.lost:
+        yield _line("lost", f"{tally.lost:,} events came too fast to be kept")
+    if tally.contents_lost:
+        yield _line("lost", f"{tally.contents_lost:,} messages came too fast for their contents to be kept")
+    yield from _topic_lines(topics)
+
+
+def _moment(nanoseconds: int) -> str:
+    try:
+        return f"{datetime.fromtimestamp(nanoseconds // _SECOND, UTC):%Y-%m-%d %H:%M:%S} UTC"
+    except (ValueError, OverflowError, OSError):
+        return "at no time that there is"
+
+
+def _topic_lines(topics: list[Topic]) -> Iterator[str]:
+    if not topics:
+        yield _line("topics", "none")
+        return
+    names = max(len(topic.name) for topic in topics)
+    types = max(len(topic.type) for topic in topics)
+    for place, topic in enumerate(sorted(topics, key=lambda topic: topic.name)):
+        text = f"{topic.name:{names}}  {topic.type:{types}}  {topic.count:>9,}"
+        yield _line("topics" if place == 0 else "", text)
+
+
+def _line(label: str, text: str) -> str:
+    printable = "".join(character if character.isprintable() else "?" for character in text)
+    return _LABEL.format(label, printable)

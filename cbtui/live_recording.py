@@ -1,0 +1,74 @@
+"""Recording a run that is on screen, from when the person asks for it until they have had enough."""
+
+import re
+import time
+from pathlib import Path
+
+from cbtui.record import start_recording
+from sim.engine.setup import RunSetup
+from sim.trace.events import AnyEvent
+from sim.trace.recording import Beginning, Recorder
+
+_LONGEST_TITLE = 60
+_TRIES = 1000
+
+
+class LiveRecording:
+    """Records none or any number of stretches of a run, each to a file of its own.
+
+    It follows the run all the time, since a stretch has to tell what was there when it began. Not
+    thread-safe.
+    """
+
+    def __init__(self, setup: RunSetup) -> None:
+        self._setup = setup
+        self._beginning = Beginning()
+        self._recorder: Recorder | None = None
+        self._count = 0
+
+    @property
+    def count(self) -> int | None:
+        """How many events have been recorded; None if nothing is being recorded."""
+        return None if self._recorder is None else self._count
+
+    def begin(self) -> str:
+        """Begin a recording in the current folder, and say so.
+
+        Raises:
+            CannotRecordError: it cannot be made.
+        """
+        self._recorder = start_recording(unused_name(self._setup.title), self._setup)
+        self._count = 0
+        self._record(self._beginning.events())
+        return f"Recording to {self._recorder.path}; R again ends it"
+
+    def take(self, events: list[AnyEvent]) -> str | None:
+        """Follow the run; a sentence if its recording came to an end for it cannot be written."""
+        self._beginning.take(events)
+        self._record(events)
+        if self._recorder is not None and self._recorder.failure is not None:
+            return self.end()
+        return None
+
+    def end(self) -> str | None:
+        """Finish the recording, and say what it holds; None if there is none."""
+        recorder, self._recorder = self._recorder, None
+        if recorder is None:
+            return None
+        recorder.close()
+        if recorder.failure is not None:
+            return f"The recording {recorder.path} is not whole: {recorder.failure}"
+        return f"Recorded {self._count:,} events in {recorder.path}"
+
+    def _record(self, events: list[AnyEvent]) -> None:
+        if self._recorder is not None and events:
+            self._recorder.take(events)
+            self._count += len(events)
+
+
+def unused_name(title: str) -> Path:
+    """A name with the title and the time of day that no file in the current folder has."""
+    plain = re.sub(r"[^A-Za-z0-9_-]+", "-", title).strip("-")[:_LONGEST_TITLE] or "run"
+    stem = f"{plain}-{time.strftime('%Y%m%d-%H%M%S')}"
+    names = (Path(f"{stem}{'' if number == 1 else f'-{number}'}.mcap") for number in range(1, _TRIES))
+    return next((name for name in names if not name.exists()), Path(f"{stem}.mcap"))

@@ -1,0 +1,101 @@
+"""A recording on screen: what a lesson shows, with a moment that can be played but a run that is over."""
+
+import threading
+from time import monotonic_ns
+from typing import NoReturn
+
+from textual import on
+from textual.message import Message
+
+from cbtui.live_run import Deliver, Ended, LiveRun
+from cbtui.replay import ReplayRun, of_recording
+from cbtui.screens.lesson import FRAMES_A_SECOND, LessonScreen
+from cbtui.theme import Charset
+from cbtui.widgets.shell import Prompt
+from sim.trace.recording import Recording
+
+_AHEAD = 2
+"""Deliveries that may wait for the screen: more would keep it from drawing."""
+_PATIENCE = 0.5
+"""Seconds after which the reader goes on although the screen has taken nothing: it may be gone."""
+_REFUSED = frozenset(
+    {"call_service", "call_service_off", "prompt", "reset_world", "run_again", "threads", "record"}
+)
+"""Actions that need an engine."""
+
+
+class ReplayScreen(LessonScreen):
+    """Shows a recording: as far as it has been read at once, the rest while it is being read."""
+
+    def __init__(self, recording: Recording, charset: Charset) -> None:
+        self._recording = recording
+        self._room = threading.Semaphore(_AHEAD)
+        self._played_at = 0
+        super().__init__(of_recording(recording), _no_engine, charset)
+
+    def on_mount(self) -> None:
+        """Start the clock that plays; there is nobody to carry out a line."""
+        prompt = self.query_one(Prompt)
+        prompt.disabled = True
+        prompt.display = False
+        self.set_interval(1 / FRAMES_A_SECOND, self.play)
+
+    def _new_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
+        return ReplayRun(self._recording, self._subject.set_up(None, speed), deliver, ended)
+
+    @property
+    def replay_run(self) -> ReplayRun:
+        """The run on screen."""
+        assert isinstance(self._run, ReplayRun)
+        return self._run
+
+    # reading
+
+    def _hand_over(self, message: Message) -> None:
+        """Hold the reader up while the screen has enough to do."""
+        self._room.acquire(timeout=_PATIENCE)
+        super()._hand_over(message)
+
+    @on(LessonScreen.Delivered)
+    def _make_room(self) -> None:
+        self._room.release()
+
+    @on(LessonScreen.Over)
+    def _make_room_again(self) -> None:
+        self._room.release()
+
+    # playing
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Offer what has a meaning for a recording."""
+        run = self.replay_run
+        match action:
+            case _ if action in _REFUSED:
+                return False
+            case "pause":
+                return not run.paused
+            case "resume":
+                return run.paused and run.timeline.end > 0
+            case "slower":
+                return run.speed != run.speeds[0]
+            case "faster":
+                return run.speed != run.speeds[-1]
+        return super().check_action(action, parameters)
+
+    def action_resume(self) -> None:
+        """Play from the moment on screen; from the beginning, if that is the end."""
+        if self._playhead.at is None:
+            self._move(self._playhead.sought(0, self._run.timeline.end))
+        self._played_at = monotonic_ns()
+        super().action_resume()
+
+    def play(self) -> None:
+        """Show the moment that playing has come to by now."""
+        if not self._run.paused:
+            now = monotonic_ns()
+            elapsed, self._played_at = now - self._played_at, now
+            self._move(self.replay_run.played(self._playhead, elapsed))
+
+
+def _no_engine(*_: object) -> NoReturn:
+    raise NotImplementedError("a recording is shown without an engine")

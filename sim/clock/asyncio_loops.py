@@ -1,0 +1,127 @@
+"""Event loops of asyncio that live on a run's clock, and the loops of programs that run on threads."""
+
+import asyncio
+import math
+import selectors
+import threading
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any
+
+from sim.clock.interface import Clock
+from sim.clock.paced import PacedClock
+from sim.clock.virtual import VirtualClock, VirtualSignal
+
+if TYPE_CHECKING:
+    from _typeshed import FileDescriptorLike
+
+_Ready = list[tuple[selectors.SelectorKey, int]]
+_MAIN = "MainThread"
+_SLICE = 0.02
+"""Real seconds after which a wait on a paced clock is looked at again: the pace may have changed."""
+
+
+class ProgramLoops(asyncio.DefaultEventLoopPolicy):
+    """Python's policy, for programs whose main threads are threads of one process.
+
+    Each of these gets a loop when it first asks, as a main thread does. Loops wait on ``clock``: those of
+    threads that live on a virtual one let its time pass, those on a paced one keep its pace.
+    """
+
+    def __init__(self, clock: Clock) -> None:
+        super().__init__()
+        self._clock = clock
+        self._thread = threading.local()
+
+    def get_event_loop(self) -> asyncio.AbstractEventLoop:
+        """The calling thread's loop; a main thread that has none gets one."""
+        if threading.current_thread().name == _MAIN and not getattr(self._thread, "was_set", False):
+            self.set_event_loop(self.new_event_loop())
+        return super().get_event_loop()
+
+    def set_event_loop(self, loop: asyncio.AbstractEventLoop | None) -> None:
+        """Make ``loop`` the calling thread's."""
+        self._thread.was_set = True
+        super().set_event_loop(loop)
+
+    def new_event_loop(self) -> asyncio.AbstractEventLoop:
+        """A new loop on the calling thread's time."""
+        if isinstance(self._clock, VirtualClock) and self._clock.owns_current_thread():
+            return VirtualEventLoop(self._clock)
+        if isinstance(self._clock, PacedClock):
+            return asyncio.SelectorEventLoop(_PacedSelector(self._clock))
+        return super().new_event_loop()
+
+
+class VirtualEventLoop(asyncio.SelectorEventLoop):
+    """An event loop whose waits pass virtual time. It serves timers, tasks and threads, but no sockets."""
+
+    def __init__(self, clock: VirtualClock) -> None:
+        self._waiting = _VirtualSelector(clock)
+        super().__init__(self._waiting)
+
+    def _write_to_self(self) -> None:
+        """Called by asyncio when another thread has something for this loop."""
+        self._waiting.wake()
+
+
+class _PacedSelector(selectors.DefaultSelector):
+    """Python's selector, with timeouts in seconds of a paced clock."""
+
+    def __init__(self, clock: PacedClock) -> None:
+        super().__init__()
+        self._clock = clock
+
+    def select(self, timeout: float | None = None) -> _Ready:
+        """Wait until something is ready, or ``timeout`` seconds have passed on the clock."""
+        if timeout is None or timeout <= 0:
+            return super().select(timeout)
+        deadline = self._clock.now() + round(timeout * 1e9)
+        while True:
+            seconds = self._clock.wall_seconds_until(deadline)
+            ready = super().select(min(max(seconds, 0.0), _SLICE))
+            if ready or self._clock.now() >= deadline:
+                return ready
+
+
+class _VirtualSelector(selectors.BaseSelector):
+    """Waits on the clock. All that it ever holds is the pipe by which a loop would wake itself."""
+
+    def __init__(self, clock: VirtualClock) -> None:
+        self._clock = clock
+        self._signal: VirtualSignal = clock.signal()
+        self._keys: dict[Any, selectors.SelectorKey] = {}
+
+    def wake(self) -> None:
+        """End the wait that is going on, or the next one. Any thread may call it."""
+        self._signal.set()
+
+    def select(self, timeout: float | None = None) -> _Ready:
+        """Wait ``timeout`` virtual seconds, or until woken; nothing is ever ready."""
+        if timeout is None or timeout > 0:
+            deadline = None if timeout is None else self._clock.now() + math.ceil(timeout * 1e9)
+            self._signal.wait(deadline)
+            self._signal = self._clock.signal()
+        return []
+
+    def register(self, fileobj: "FileDescriptorLike", events: int, data: Any = None) -> selectors.SelectorKey:
+        """Take the loop's own pipe.
+
+        Raises:
+            NotImplementedError: something else is to be waited for.
+        """
+        if self._keys:
+            raise NotImplementedError(
+                "asyncio's sockets and pipes do not live on virtual time; use --clock real"
+            )
+        number = fileobj if isinstance(fileobj, int) else fileobj.fileno()
+        key = selectors.SelectorKey(fileobj, number, events, data)
+        self._keys[fileobj] = key
+        return key
+
+    def unregister(self, fileobj: "FileDescriptorLike") -> selectors.SelectorKey:
+        """Give the pipe back."""
+        return self._keys.pop(fileobj)
+
+    def get_map(self) -> Mapping[Any, selectors.SelectorKey]:
+        """What it holds, by file."""
+        return self._keys

@@ -1,0 +1,107 @@
+"""How fast virtual time passes on the wall, whether it stands, and where it is to stand next."""
+
+import time
+from collections.abc import Callable
+
+# Kept from before sim.clock.stdlib puts the virtual one in its place.
+_monotonic_ns = time.monotonic_ns
+
+_LAG_FORGIVEN = 250_000_000
+"""Nanoseconds that a paced run may fall behind the wall before it gives up catching up."""
+
+
+class Pace:
+    """The pace of a virtual clock; it belongs to whichever thread has the baton.
+
+    ``speed`` is virtual seconds per real second, None for as fast as it can. A run that hurries to a goal
+    (its next step, a moment) does not wait for its speed. ``on_halt`` is called each time a goal is reached.
+    """
+
+    def __init__(self, speed: float | None) -> None:
+        self.stands = False
+        """Whether time stands."""
+        self.on_halt: Callable[[], None] = _nothing
+        self._speed = speed
+        self._hurries = False
+        self._until: int | None = None
+        self._steps = 0
+        self._anchor_virtual = 0
+        self._anchor_real = _monotonic_ns()
+
+    @property
+    def steps(self) -> bool:
+        """Whether time is to stand again once it has passed, however little."""
+        return self._steps > 0
+
+    def set_speed(self, speed: float | None, now: int) -> None:
+        """Have time pass at another speed from ``now`` on."""
+        self._anchor_at(now)
+        self._speed = speed
+
+    def stand(self) -> None:
+        """Let time stand; a goal is given up."""
+        self._give_up_goal()
+        self.stands = True
+
+    def go_on(self, now: int) -> None:
+        """Let time pass from ``now`` on; a goal is given up."""
+        self._give_up_goal()
+        self._anchor_at(now)
+        self.stands = False
+
+    def step(self) -> None:
+        """Hurry until ``halt`` is called; steps that are asked for at once are taken one after another."""
+        self._hurry(None)
+        self._steps += 1
+
+    def hurry(self, until: int | None) -> None:
+        """Hurry to a moment, or for None until ``halt`` is called."""
+        self._steps = 0
+        self._hurry(until)
+
+    def halt(self) -> None:
+        """The goal is reached: time stands, unless another step is to be taken."""
+        self._steps = max(0, self._steps - 1)
+        if not self.steps:
+            self.stand()
+        self.on_halt()
+
+    def goal_before(self, stop: int | None) -> int | None:
+        """The moment to stand at before time comes to ``stop`` (None: it never comes to anything)."""
+        return self._until if self._until is not None and (stop is None or self._until < stop) else None
+
+    def delay_until(self, target: int | None) -> float | None:
+        """Real nanoseconds to wait before ``target`` may come; None: until something happens outside."""
+        if target is None or self.stands:
+            return None
+        if self._speed is None or self._hurries:
+            return 0
+        delay = self._anchor_real + (target - self._anchor_virtual) / self._speed - _monotonic_ns()
+        if delay < -_LAG_FORGIVEN:
+            self._anchor_at(target)
+        return delay
+
+    def reached(self, now: int, limit: int | None) -> int:
+        """Where the pace has brought a run that jumped to ``now`` last, at most to ``limit``."""
+        if self._speed is None or self._hurries or self.stands:
+            return now
+        paced = self._anchor_virtual + int((_monotonic_ns() - self._anchor_real) * self._speed)
+        return max(now, paced if limit is None else min(paced, limit))
+
+    def _hurry(self, until: int | None) -> None:
+        self._until = until
+        self._hurries = True
+        self.stands = False
+
+    def _give_up_goal(self) -> None:
+        self._steps = 0
+        self._until = None
+        self._hurries = False
+
+    def _anchor_at(self, moment: int) -> None:
+        self._anchor_virtual = moment
+        self._anchor_real = _monotonic_ns()
+
+
+def _nothing() -> None:
+    """Stand in for a listener that nobody set."""

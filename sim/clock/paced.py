@@ -1,0 +1,190 @@
+"""Wall time that can be stopped, slowed down and sped up: threads run as they do, their waits are scaled."""
+
+import ctypes
+import math
+import threading
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any, NamedTuple
+
+# Kept from before sim.clock.paced_stdlib puts its own in their place.
+_monotonic_ns = time.monotonic_ns
+_sleep = time.sleep
+_allocate_lock = threading.Lock
+_Thread = threading.Thread
+
+_ASIDE = 20e-6
+"""Seconds for which a thread stands aside that asks for the time while the pace is being changed."""
+
+
+class PacedSignal:
+    """A signal on the machine's own locks, whose deadline is a moment of a paced clock."""
+
+    __slots__ = ("_bell", "_clock", "_is_set")
+
+    def __init__(self, clock: "PacedClock") -> None:
+        self._clock = clock
+        self._is_set = False
+        self._bell = _allocate_lock()
+        self._bell.acquire()
+
+    def wait(self, deadline: int | None) -> bool:
+        """Wait until set, or until the clock shows ``deadline``; True if it was set."""
+        if deadline is None:
+            self._bell.acquire()
+            while not self._is_set:
+                self._bell.acquire()
+        elif not self._wait_until(deadline):
+            return False
+        self._is_set = False
+        return True
+
+    def _wait_until(self, deadline: int) -> bool:
+        clock, bell = self._clock, self._bell
+        clock._sleepers.add(self)
+        try:
+            while True:
+                seconds = clock.wall_seconds_until(deadline)
+                bell.acquire(timeout=min(max(seconds, 0.0), threading.TIMEOUT_MAX))
+                if self._is_set:
+                    return True
+                if seconds <= 0:
+                    return False
+        finally:
+            clock._sleepers.discard(self)
+
+    def set(self) -> None:
+        """Set the flag; setting it twice is setting it once."""
+        self._is_set = True
+        bell = self._bell
+        if bell.locked():
+            try:
+                bell.release()
+            except RuntimeError:  # another thread rang it between the question and the answer
+                return
+
+    def ring(self) -> None:
+        """Have whoever waits look at the clock again."""
+        with suppress(RuntimeError):  # it rings already
+            self._bell.release()
+
+
+class _Rate(NamedTuple):
+    """From wall time ``wall`` on, when the clock shows ``run``, it shows ``speed`` seconds more a second."""
+
+    run: int
+    wall: int
+    speed: float
+
+
+class PacedClock:
+    """The machine's monotonic clock, counted from the moment of making, at a speed. Thread-safe.
+
+    A thread that computes cannot be held up: it goes on while the clock stands, and sees the time stand.
+    """
+
+    def __init__(self, speed: float = 1.0) -> None:
+        self.epoch = time.time_ns()
+        self.origin = _monotonic_ns()
+        """The machine's monotonic time at which the run began."""
+        self._sleepers: set[PacedSignal] = set()
+        self._changing = _allocate_lock()
+        self._paused = False
+        self._speed = speed
+        self._rate: _Rate | None = _Rate(0, self.origin, speed)
+        self._began: Any = self.origin if speed == 1 else None
+        """As ``origin`` while the clock has always gone like the machine's; None from the first change on."""
+
+    def now(self) -> int:
+        """Nanoseconds since this clock was made, as many as the pace has let pass."""
+        try:
+            now: int = _monotonic_ns() - self._began
+        except TypeError:  # there is no quicker way to ask, and this is asked several times a callback
+            return self._scaled_now()
+        return now
+
+    def _scaled_now(self) -> int:
+        while True:
+            rate = self._rate
+            if rate is None:
+                _sleep(_ASIDE)
+                continue
+            now = _at(rate, _monotonic_ns())
+            if self._rate is rate:  # else the clock may have stopped before that
+                return now
+
+    def wall_seconds_until(self, moment: int) -> float:
+        """Real seconds until the clock shows ``moment`` if its pace stays; infinite while it stands."""
+        left = moment - self.now()
+        if self._began is not None or left <= 0:
+            return left / 1e9
+        return math.inf if self._paused else left / self._speed / 1e9
+
+    def sleep(self, duration: int) -> None:
+        """Let ``duration`` nanoseconds of this clock pass."""
+        if duration > 0:
+            PacedSignal(self).wait(self.now() + duration)
+        else:
+            _sleep(0)
+
+    def signal(self) -> PacedSignal:
+        """A new signal, not set."""
+        return PacedSignal(self)
+
+    def start_thread(self, target: Callable[[], None], name: str) -> None:
+        """Start an ordinary daemon thread."""
+        _Thread(target=target, name=name, daemon=True).start()
+
+    def interrupt(self, thread: int) -> None:
+        """Have the interpreter raise it there; a wait without deadline is finished first."""
+        ctypes.pythonapi.PyThreadState_SetAsyncExc(
+            ctypes.c_ulong(thread), ctypes.py_object(KeyboardInterrupt)
+        )
+        self._wake_sleepers()
+
+    def call_at(self, time: int, action: Callable[[], None]) -> None:
+        """Run ``action`` on a thread of its own once ``time`` has come."""
+
+        def wait() -> None:
+            PacedSignal(self).wait(time)
+            action()
+
+        self.start_thread(wait, "timer")
+
+    def pause(self) -> None:
+        """Stop the clock."""
+        with self._changing:
+            self._paused = True
+            self._change_rate()
+
+    def resume(self) -> None:
+        """Let the clock go on from where it stands."""
+        with self._changing:
+            self._paused = False
+            self._change_rate()
+
+    def set_speed(self, speed: float) -> None:
+        """Show ``speed`` seconds more each second; while the clock stands, once it goes on."""
+        with self._changing:
+            self._speed = speed
+            self._change_rate()
+
+    def _change_rate(self) -> None:
+        before = self._rate
+        assert before is not None
+        self._began = self._rate = None  # whoever reads the time from here on waits for the new rate
+        wall = _monotonic_ns()
+        run = _at(before, wall)
+        speed = 0.0 if self._paused else self._speed
+        self._rate = _Rate(run, wall, speed)
+        self._wake_sleepers()
+
+    def _wake_sleepers(self) -> None:
+        for each in tuple(self._sleepers):
+            each.ring()
+
+
+def _at(rate: _Rate, wall: int) -> int:
+    """What the clock shows at a wall time."""
+    return rate.run + int((wall - rate.wall) * rate.speed)

@@ -1,0 +1,120 @@
+"""Makes Python's own ways to wait follow a paced clock: sleep, time, timeouts of locks, threads and queues.
+
+They are replaced once, in the engine process, before the program is imported; the engine's own threads have
+kept the real ones. Events, conditions, semaphores, barriers, timers, queues and futures follow by
+themselves, since Python builds them from what is replaced here.
+"""
+
+import queue
+import threading
+import time
+from collections.abc import Callable
+from types import TracebackType
+from typing import Any
+
+from sim.clock.paced import PacedClock
+
+_allocate_lock = threading.Lock
+_RLock: Any = type(threading.RLock())
+_thread_join = threading.Thread.join
+
+_SLICE = 0.02
+"""Real seconds after which a timeout is looked at again: the pace may have changed."""
+
+
+def follow(clock: PacedClock) -> None:
+    """Replace Python's ways to wait by paced ones, for this process and for good."""
+    PacedLock._clock = PacedRLock._clock = clock
+    _replace_time(clock)
+    threading_module: Any = threading
+    threading_module.Lock = PacedLock
+    threading_module._allocate_lock = PacedLock
+    threading_module.RLock = PacedRLock
+    threading_module._CRLock = PacedRLock
+    threading_module.Thread.join = _paced_join(clock)
+    queues: Any = queue
+    queues.SimpleQueue = queues._PySimpleQueue
+
+
+class PacedLock:
+    """``threading.Lock`` whose timeout is seconds of a paced clock."""
+
+    _clock: PacedClock
+    __slots__ = ("__weakref__", "_lock", "locked", "release")
+
+    def __init__(self) -> None:
+        lock = _allocate_lock()
+        self._lock = lock
+        self.locked = lock.locked
+        self.release = lock.release
+
+    def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
+        """Take the lock; False if it is not to be had at once (or within ``timeout`` seconds)."""
+        if timeout <= 0 or not blocking:
+            return self._lock.acquire(blocking, timeout)
+        return _within(timeout, self._clock, lambda seconds: self._lock.acquire(timeout=seconds))
+
+    def __enter__(self) -> bool:
+        return self._lock.acquire()
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._lock.release()
+
+    def _at_fork_reinit(self) -> None:
+        lock: Any = self._lock
+        lock._at_fork_reinit()  # in place: conditions keep the bound release of this very lock
+
+
+class PacedRLock(_RLock):  # type: ignore[misc]
+    """``threading.RLock`` whose timeout is seconds of a paced clock."""
+
+    _clock: PacedClock
+
+    def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
+        """Take the lock once more; False if it is not to be had at once (or within ``timeout`` seconds)."""
+        take: Callable[..., bool] = super().acquire
+        if timeout <= 0 or not blocking:
+            return take(blocking, timeout)
+        return _within(timeout, self._clock, lambda seconds: take(timeout=seconds))
+
+
+def _within(timeout: float, clock: PacedClock, attempt: Callable[[float], bool]) -> bool:
+    """Try again and again, each time for some real seconds, until it works or the timeout is over."""
+    deadline = clock.now() + round(timeout * 1e9)
+    while not attempt(min(max(clock.wall_seconds_until(deadline), 0.0), _SLICE)):
+        if clock.now() >= deadline:
+            return False
+    return True
+
+
+def _paced_join(clock: PacedClock) -> Callable[[threading.Thread, float | None], None]:
+    def join(thread: threading.Thread, timeout: float | None = None) -> None:
+        if timeout is None or timeout <= 0:
+            _thread_join(thread, timeout)
+            return
+
+        def attempt(seconds: float) -> bool:
+            _thread_join(thread, seconds)
+            return not thread.is_alive()
+
+        _within(timeout, clock, attempt)
+
+    return join
+
+
+def _replace_time(clock: PacedClock) -> None:
+    def sleep(seconds: float) -> None:
+        if seconds < 0:
+            raise ValueError("sleep length must be non-negative")
+        clock.sleep(round(seconds * 1e9))
+
+    origin = clock.origin
+    modules: Any = (time, threading, queue)
+    modules[0].sleep = sleep
+    modules[0].monotonic = modules[0].perf_counter = lambda: (origin + clock.now()) / 1e9
+    modules[0].monotonic_ns = modules[0].perf_counter_ns = lambda: origin + clock.now()
+    modules[0].time = lambda: (clock.epoch + clock.now()) / 1e9
+    modules[0].time_ns = lambda: clock.epoch + clock.now()
+    modules[1]._time = modules[2].time = time.monotonic

@@ -1,0 +1,69 @@
+"""Tells in one sentence how a program failed: the learner's own file and line, what came up, what to do."""
+
+import traceback
+from pathlib import Path
+from types import FrameType
+
+from sim.engine.advice import advice_on
+
+_MODEL = Path(__file__).parent.parent
+
+
+def failure(error: BaseException, path: str, folder: str) -> str:
+    """The sentence for an exception that a program did not catch.
+
+    ``path`` is the program's file; files in ``folder`` count as the learner's own too.
+    """
+    if isinstance(error, SyntaxError) and error.filename and _is_own(error.filename, path, folder):
+        return f"{_place(error.filename, error.lineno or 0)}: {error.msg}"
+    found = _innermost(error, path, folder)
+    place = Path(path).name if found is None else _place(found[0].f_code.co_filename, found[1])
+    frame = None if found is None else found[0]
+    text = _text(error)
+    what = f"{type(error).__name__}: {text}" if text else type(error).__name__
+    return f"{place}: the program raised {what}{advice_on(error, frame)}"
+
+
+def place_of(error: BaseException, path: str, folder: str) -> str:
+    """Where in the learner's own files an exception came up, as " (file:line)"; empty where it did not."""
+    found = _innermost(error, path, folder)
+    return "" if found is None else f" ({_place(found[0].f_code.co_filename, found[1])})"
+
+
+def print_traceback(error: BaseException, path: str) -> None:
+    """Print the traceback as Python would, from the learner's first frame on."""
+    trace = error.__traceback__
+    while trace is not None and trace.tb_frame.f_code.co_filename != path:
+        trace = trace.tb_next
+    if trace is None and not isinstance(error, SyntaxError):
+        trace = error.__traceback__
+    traceback.print_exception(type(error), error, trace)
+
+
+def _text(error: BaseException) -> str:
+    """An exception's text, the names of modules as the learner knows them."""
+    text = str(error)
+    if isinstance(error, ImportError):
+        text = text.partition(" (")[0].replace("'sim.ros", "'rclpy")
+    return text
+
+
+def _innermost(error: BaseException, path: str, folder: str) -> tuple[FrameType, int] | None:
+    found = None
+    for frame, line in traceback.walk_tb(error.__traceback__):
+        if _is_own(frame.f_code.co_filename, path, folder):
+            found = frame, line
+    return found
+
+
+def _is_own(file: str, path: str, folder: str) -> bool:
+    if file == path:
+        return True
+    where = Path(file)
+    within = where.is_relative_to(folder) and not where.is_relative_to(_MODEL)
+    return within and "site-packages" not in where.parts
+
+
+def _place(file: str, line: int) -> str:
+    name = Path(file).name
+    return f"{name}:{line}" if line else name

@@ -1,0 +1,40 @@
+"""Reads a learner's file as Python does, and says what keeps it from being a program."""
+
+import importlib.util
+from pathlib import Path
+
+
+class NothingToRunError(Exception):
+    """A file that cannot be run as a program, whatever it does; the text says why and what to do."""
+
+
+def read_source(path: Path) -> str:
+    """The text of a program's file, decoded as Python does.
+
+    Raises:
+        NothingToRunError: it cannot be read or is no text.
+    """
+    try:
+        data = path.read_bytes()
+    except OSError as error:
+        raise NothingToRunError(f"{path.name} cannot be read: {error.strerror}") from None
+    if b"\0" in data:
+        raise NothingToRunError(f"{path.name} is no Python file: there are null bytes in it")
+    try:
+        return importlib.util.decode_source(data)
+    except UnicodeDecodeError as error:
+        raise NothingToRunError(_on_undecodable(path.name, data, error)) from None
+    except SyntaxError as error:
+        try:
+            data.decode()
+        except UnicodeDecodeError as undecodable:
+            raise NothingToRunError(_on_undecodable(path.name, data, undecodable)) from None
+        raise NothingToRunError(f"{path.name}:1: {error.msg}; name a coding that Python knows") from None
+
+
+def _on_undecodable(name: str, data: bytes, error: UnicodeDecodeError) -> str:
+    line = data.count(b"\n", 0, error.start) + 1
+    return (
+        f"{name}:{line}: the byte 0x{data[error.start]:02x} is not {error.encoding.upper()}; save the file "
+        "as UTF-8, or name its coding in its first line, such as # -*- coding: latin-1 -*-"
+    )

@@ -1,0 +1,97 @@
+"""What a program can import as on a machine with its workspace sourced, found when it first asks for it."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from collections.abc import Callable, Sequence
+from importlib.machinery import ModuleSpec, PathFinder
+from types import ModuleType
+from typing import TYPE_CHECKING, Any, cast
+
+from sim.clock import Clock
+
+if TYPE_CHECKING:
+    from importlib.abc import Loader
+
+    from sim.packages import Packages
+
+_LAUNCH = frozenset(("ament_index_python", "launch", "launch_ros"))
+
+
+def use_workspace(packages: Callable[[], Packages], clock: Clock) -> None:
+    """Make the modules of ``packages`` importable, and ``launch``; have asyncio's loops live on ``clock``."""
+    sys.meta_path.insert(0, _AsyncioFinder(clock))
+    sys.meta_path.append(_WorkspaceFinder(packages))
+
+
+class _WorkspaceFinder:
+    """Finds what no other finder knows: the Python packages of the workspace, and the launch system."""
+
+    def __init__(self, packages: Callable[[], Packages]) -> None:
+        self._packages = packages
+
+    def find_spec(
+        self, fullname: str, path: Sequence[str] | None = None, _target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """Return the spec of a top-level module, ``None`` for one that is not in the workspace."""
+        if path is not None:
+            return None
+        if fullname in _LAUNCH:
+            return ModuleSpec(fullname, _loader(self._install_launch))
+        for package in self._packages():
+            folder = package.module_folder
+            if (folder / fullname / "__init__.py").is_file():
+                return PathFinder.find_spec(fullname, [str(folder)])
+        return None
+
+    def _install_launch(self, _module: ModuleType) -> None:
+        from sim.launch.importing import install
+
+        self._packages()
+        install()
+
+
+class _AsyncioFinder:
+    """Lets asyncio be imported as ever, and then gives it loops for the programs of a run."""
+
+    def __init__(self, clock: Clock) -> None:
+        self._clock = clock
+
+    def find_spec(
+        self, fullname: str, _path: Sequence[str] | None = None, _target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """Return the spec of asyncio the first time that it is imported."""
+        if fullname != "asyncio":
+            return None
+        sys.meta_path.remove(self)
+        spec = importlib.util.find_spec(fullname)
+        loader: Any = None if spec is None else spec.loader
+        if spec is not None:
+            spec.loader = _loader(loader.exec_module, self._use_own_loops)
+        return spec
+
+    def _use_own_loops(self, _module: ModuleType) -> None:
+        import asyncio
+
+        from sim.clock.asyncio_loops import ProgramLoops
+
+        asyncio.set_event_loop_policy(ProgramLoops(self._clock))
+
+
+def _loader(*steps: Callable[[ModuleType], None]) -> Loader:
+    """What fills a module by the steps given, one after another."""
+    return cast("Loader", _Loader(steps))
+
+
+class _Loader:
+    def __init__(self, steps: Sequence[Callable[[ModuleType], None]]) -> None:
+        self._steps = steps
+
+    def create_module(self, _spec: ModuleSpec) -> None:
+        """Leave it to Python to make the module."""
+
+    def exec_module(self, module: ModuleType) -> None:
+        """Fill it."""
+        for step in self._steps:
+            step(module)

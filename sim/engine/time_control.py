@@ -1,0 +1,203 @@
+"""What commands do to a run's time: stop it, change its speed, go on to a step, a moment or an event.
+
+A control stands in the way of the probe's events, and lets time stand where one comes that was to be waited
+for. Whatever is done to time is on the trace, so that a trace tells why it took as long as it did.
+"""
+
+from collections.abc import Callable
+from typing import TypeAlias
+
+from sim.clock import VirtualClock
+from sim.clock.paced import PacedClock
+from sim.engine import commands
+from sim.engine.commands import PaceCommand
+from sim.trace.events import (
+    AnyEvent,
+    CallbackEnded,
+    CallbackResumed,
+    CallbackStarted,
+    CallbackSuspended,
+    CommandGiven,
+    EntityId,
+    EntityReady,
+    MessageDropped,
+    Notice,
+    Severity,
+    TimeHalted,
+    WaitStarted,
+)
+
+Sink: TypeAlias = Callable[[AnyEvent], None]
+Wanted: TypeAlias = Callable[[AnyEvent], bool]
+
+_DECISIONS = (CallbackStarted, CallbackEnded, CallbackSuspended, CallbackResumed, EntityReady)
+_OF_CALLBACKS = (
+    CallbackStarted,
+    CallbackEnded,
+    CallbackSuspended,
+    CallbackResumed,
+    WaitStarted,
+    MessageDropped,
+)
+
+
+def is_decision(event: AnyEvent) -> bool:
+    """Whether a step ends with this event."""
+    return isinstance(event, _DECISIONS)
+
+
+def is_of(entity: EntityId) -> Wanted:
+    """Tells whether an event is one of this entity's, of those that a timeline goes from one to the next."""
+    return lambda event: isinstance(event, _OF_CALLBACKS) and event.entity == entity
+
+
+class VirtualControl:
+    """Steers a virtual clock. ``record`` takes the probe's events, ``sink`` gets them."""
+
+    def __init__(self, clock: VirtualClock, sink: Sink) -> None:
+        self._clock = clock
+        self._sink = sink
+        self._wanted: Wanted | None = None
+        self._goal = ""
+        clock.pace.on_halt = self._note_halt
+
+    def record(self, event: AnyEvent) -> None:
+        """Take an event; time stands before this returns if it is what the run was to go on to."""
+        self._sink(event)
+        wanted = self._wanted
+        if wanted is not None and wanted(event) and self._clock.owns_current_thread():
+            self._clock.halt()
+
+    def obey(self, command: PaceCommand) -> None:
+        """Carry out a command, as soon as the run's threads let it; any thread may call this."""
+        self._clock.steer(lambda: self._carry_out(command))
+
+    def let_go(self) -> None:
+        """Have the run come to the end of the moment that it stands in; any thread may call this."""
+        self._clock.steer(self._leave_moment)
+
+    def _leave_moment(self) -> None:
+        if self._clock.in_moment:
+            self._wanted = None
+            self._clock.resume()
+
+    def _carry_out(self, command: PaceCommand) -> None:
+        clock, wanted = self._clock, None
+        match command:
+            case commands.Pause():
+                clock.pause()
+            case commands.Resume():
+                clock.resume()
+            case commands.SetSpeed(speed=speed):
+                clock.set_speed(speed)
+                wanted = self._wanted
+            case commands.Step():
+                clock.step()
+                wanted = is_decision
+            case commands.RunUntil(moment=moment):
+                if moment <= clock.now():
+                    self._sink(_too_late(clock.now(), moment))
+                    return
+                clock.run_until(moment)
+            case commands.RunUntilCallback(entity=entity):
+                clock.run_until(None)
+                wanted = is_of(entity)
+        self._wanted = wanted
+        if not isinstance(command, commands.SetSpeed):
+            self._goal = in_words(command)
+        self._sink(CommandGiven(clock.now(), in_words(command)))
+
+    def _note_halt(self) -> None:
+        if self._clock.pace.stands:
+            self._wanted = None
+        self._sink(TimeHalted(self._clock.now(), self._goal))
+
+
+class RealControl:
+    """Steers a paced clock. ``record`` takes the probe's events, ``sink`` gets them. Thread-safe.
+
+    Only what waits stands still: a callback that computes goes on, and so does what it brings about.
+    """
+
+    def __init__(self, clock: PacedClock, sink: Sink) -> None:
+        self._clock = clock
+        self._sink = sink
+        self._wanted: Wanted | None = None
+        self._goal: PaceCommand = commands.Resume()
+
+    def record(self, event: AnyEvent) -> None:
+        """Take an event; the clock stands from now on if it is what the run was to go on to."""
+        self._sink(event)
+        wanted = self._wanted
+        if wanted is not None and wanted(event):
+            self._halt(self._goal)
+
+    def obey(self, command: PaceCommand) -> None:
+        """Carry out a command."""
+        match command:
+            case commands.SetSpeed(speed=speed):
+                self._change_speed(speed)
+                return
+            case commands.Step():
+                self._say("the real clock cannot go step by step: threads run at once; use the virtual clock")
+                return
+            case commands.RunUntil(moment=moment) if moment <= self._clock.now():
+                self._sink(_too_late(self._clock.now(), moment))
+                return
+        self._sink(CommandGiven(self._clock.now(), in_words(command)))
+        self._goal, self._wanted = command, None
+        match command:
+            case commands.Pause():
+                self._clock.pause()
+                self._say("time stands for whatever waits; a callback that computes goes on", Severity.INFO)
+            case commands.Resume():
+                self._clock.resume()
+            case commands.RunUntil(moment=moment):
+                self._clock.call_at(moment, lambda: self._halt(command))
+                self._clock.resume()
+            case commands.RunUntilCallback(entity=entity):
+                self._wanted = is_of(entity)
+                self._clock.resume()
+
+    def let_go(self) -> None:
+        """Have time pass, so that the run can end."""
+        self._wanted = None
+        self._clock.resume()
+
+    def _change_speed(self, speed: float | None) -> None:
+        if speed is None:
+            self._say("the real clock cannot go as fast as it can: computing takes its time; give it a speed")
+            return
+        self._clock.set_speed(speed)
+        self._sink(CommandGiven(self._clock.now(), in_words(commands.SetSpeed(speed))))
+
+    def _halt(self, goal: PaceCommand) -> None:
+        if goal is self._goal:  # else another command has come meanwhile
+            self._goal, self._wanted = commands.Pause(), None
+            self._clock.pause()
+            self._sink(TimeHalted(self._clock.now(), in_words(goal)))
+
+    def _say(self, text: str, severity: Severity = Severity.WARN) -> None:
+        self._sink(Notice(self._clock.now(), severity, text))
+
+
+def in_words(command: PaceCommand) -> str:
+    """What the trace says of a command."""
+    match command:
+        case commands.Pause():
+            return "pause"
+        case commands.Resume():
+            return "resume"
+        case commands.Step():
+            return "step"
+        case commands.SetSpeed(speed=speed):
+            return "speed max" if speed is None else f"speed x{speed:g}"
+        case commands.RunUntil(moment=moment):
+            return f"run until {moment / 1e9:.9g} s"
+        case commands.RunUntilCallback(name=name):
+            return f"run until the next event of {name}"
+
+
+def _too_late(now: int, moment: int) -> Notice:
+    text = f"the run has come to {now / 1e9:.3f} s, so it cannot go on until {moment / 1e9:.9g} s"
+    return Notice(now, Severity.WARN, text)

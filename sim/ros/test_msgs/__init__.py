@@ -1,0 +1,1 @@
+"""What the package test_msgs has beside its interfaces."""

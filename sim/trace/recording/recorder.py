@@ -1,0 +1,174 @@
+"""Writes a recording: chunk by chunk, so that whoever is killed leaves all but the last moment behind."""
+
+import threading
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from mcap.writer import CompressionType, Writer
+
+from sim.trace.events import (
+    AnyEvent,
+    ArenaShown,
+    CallbackFailed,
+    EntityAppeared,
+    ExecutorAppeared,
+    GroupAppeared,
+    MessageSent,
+    NodeAppeared,
+    ProcessAppeared,
+    RunStarted,
+    ThreadAppeared,
+    TopicAppeared,
+    TopicId,
+)
+from sim.trace.recording import batch
+from sim.trace.recording.about import NAME, About, to_metadata
+from sim.trace.recording.sources import Sources
+
+LIBRARY = "cbtui"
+EVENTS_CHANNEL = 1
+"""The number that the channel of events has, since it is the first."""
+_CHUNK = 256_000
+"""Bytes after which a chunk is written."""
+_PERIOD = 0.5
+"""Seconds after which whatever has come is written."""
+_CASTS = 10
+"""Times that the cast is told again, while it grows."""
+_APPEARING = (
+    RunStarted,
+    ProcessAppeared,
+    ThreadAppeared,
+    ExecutorAppeared,
+    NodeAppeared,
+    GroupAppeared,
+    EntityAppeared,
+    ArenaShown,
+)
+
+
+class Recorder:
+    """Records events, and messages with their topics, to a new ``.mcap`` file. Thread-safe.
+
+    Rosbag2, rosbags and Foxglove read the topics; events are on a channel of their own. What a full disk or
+    the like prevents does not end the run: ``failure`` then says it, and nothing more is recorded.
+
+    Raises:
+        FileExistsError: there is such a file, and ``replace`` is not wanted.
+        OSError: the file cannot be made.
+    """
+
+    def __init__(self, path: Path, about: About, *, replace: bool = False) -> None:
+        self.path = path
+        self.failure: str | None = None
+        self._epoch = 0
+        self._batches = 0
+        self._channels: dict[TopicId, int] = {}
+        self._sent: dict[TopicId, int] = {}
+        self._cast: list[AnyEvent] = []
+        self._cast_told = 0
+        self._casts_left = _CASTS
+        self._lock = threading.Lock()
+        self._closing = threading.Event()
+        self._file = path.open("wb" if replace else "xb")
+        # The library has no types.
+        self._writer: Any = Writer(self._file, chunk_size=_CHUNK, compression=CompressionType.LZ4)
+        self._sources = Sources(self._attach)
+        self._flusher = threading.Thread(target=self._flush_for_ever, name="recorder", daemon=True)
+        self._guarded(lambda: self._begin(about))
+        self._flusher.start()
+
+    def take(self, events: Iterable[AnyEvent]) -> None:
+        """Record a batch: the events as they are, and messages under their topics."""
+        self._guarded(lambda: self._take(events))
+
+    def flush(self) -> None:
+        """Write what has been taken, so that it is kept whatever happens to this process."""
+        self._guarded(self._writer.flush)
+
+    def close(self) -> None:
+        """Write what is left, and the index that lets readers find their way. May be called again."""
+        if self._closing.is_set():
+            return
+        self._closing.set()
+        self._flusher.join()
+        self._casts_left = 1
+        self._guarded(self._tell_cast)
+        self._guarded(self._writer.finish)
+        self._guarded(self._file.flush)
+        with suppress(OSError):
+            self._file.close()
+
+    def _guarded(self, step: Callable[[], object]) -> None:
+        """Do something to the file, unless an earlier step failed."""
+        with self._lock:
+            if self.failure is None:
+                try:
+                    step()
+                except OSError as error:
+                    self.failure = error.strerror or str(error)
+
+    def _begin(self, about: About) -> None:
+        self._writer.start(profile="ros2", library=f"{LIBRARY} {_version()}")
+        self._writer.add_metadata(NAME, to_metadata(about))
+        schema = self._writer.register_schema(batch.TYPE, "ros2msg", batch.DEFINITION.encode())
+        self._writer.register_channel(batch.TOPIC, "cdr", schema)
+        for path in about.programs:
+            self._sources.want(path)
+        self._writer.flush()
+
+    def _take(self, events: Iterable[AnyEvent]) -> None:
+        kept: list[AnyEvent] = []
+        for event in events:
+            if isinstance(event, _APPEARING):
+                self._cast.append(event)
+            match event:
+                case MessageSent(data=bytes()):
+                    self._message(event)
+                case TopicAppeared():
+                    self._topic(event)
+                case RunStarted(epoch=epoch):
+                    self._epoch = epoch
+                    kept.append(event)
+                case EntityAppeared(file=file) | CallbackFailed(file=file):
+                    self._sources.want(file)
+                    kept.append(event)
+                case _:
+                    kept.append(event)
+        if kept:
+            time = self._epoch + kept[0].t
+            self._batches += 1
+            self._writer.add_message(EVENTS_CHANNEL, time, batch.pack_batch(kept), time, self._batches)
+
+    def _topic(self, event: TopicAppeared) -> None:
+        if event.topic not in self._channels:
+            schema = self._writer.register_schema(event.message_type, "ros2msg", event.definition.encode())
+            self._channels[event.topic] = self._writer.register_channel(event.name, "cdr", schema)
+
+    def _message(self, event: MessageSent) -> None:
+        channel = self._channels.get(event.topic)
+        if channel is not None:
+            time = self._epoch + event.t
+            number = self._sent[event.topic] = self._sent.get(event.topic, 0) + 1
+            self._writer.add_message(channel, time, event.data, time, number)
+
+    def _attach(self, path: str, text: bytes) -> None:
+        self._writer.add_attachment(0, self._epoch, path, "text/x-python", text)
+
+    def _flush_for_ever(self) -> None:
+        while not self._closing.wait(_PERIOD):
+            self._guarded(self._tell_cast)
+            self.flush()
+
+    def _tell_cast(self) -> None:
+        """Write down again who takes part: little could be read without, should its chunk be lost."""
+        if len(self._cast) > self._cast_told and self._casts_left > 0:
+            self._casts_left -= 1
+            self._cast_told = len(self._cast)
+            self._writer.add_attachment(0, self._epoch, "cast", batch.CAST, batch.pack_batch(self._cast))
+
+
+def _version() -> str:
+    return version("cbtui")

@@ -1,0 +1,41 @@
+"""The source files of a run's programs, taken along in its recording to explain it elsewhere."""
+
+import stat
+from collections.abc import Callable
+from pathlib import Path
+
+_LONGEST = 500_000
+"""Bytes of a file; longer ones stay behind."""
+_MOST = 5_000_000
+"""Bytes of all files."""
+
+
+class Sources:
+    """Hands every file that is wanted to ``attach`` once, with its path, as far as there is room."""
+
+    def __init__(self, attach: Callable[[str, bytes], None]) -> None:
+        self._attach = attach
+        self._seen = {""}
+        self._room = _MOST
+
+    def want(self, path: str) -> None:
+        """Take a file along, if it can be read and is not too long."""
+        if path in self._seen:
+            return
+        self._seen.add(path)
+        text = _text_of(Path(path), min(_LONGEST, self._room))
+        if text is not None:
+            self._room -= len(text)
+            self._attach(path, text)
+
+
+def _text_of(path: Path, longest: int) -> bytes | None:
+    try:
+        about = path.stat()
+        if not stat.S_ISREG(about.st_mode) or about.st_size > longest:
+            return None
+        text = path.read_bytes()
+        text.decode()
+    except (OSError, ValueError):
+        return None
+    return text if len(text) <= longest else None

@@ -1,0 +1,132 @@
+"""What recording costs, and how long it takes to open what was recorded."""
+
+import atexit
+import time
+from collections.abc import Callable
+from functools import lru_cache
+from itertools import islice
+from pathlib import Path
+from queue import Queue
+from tempfile import TemporaryDirectory
+
+import msgspec
+
+from cbtui.lesson_setup import setup_for
+from cbtui.session import Session
+from lessons.catalogue import find
+from sim.engine.setup import RunSetup
+from sim.trace.events import (
+    AnyEvent,
+    CallbackEnded,
+    CallbackStarted,
+    EntityReady,
+    MessageSent,
+    Published,
+    RunStarted,
+    TopicAppeared,
+)
+from sim.trace.recording import About, Recorder, read
+from sim.trace.timeline import Timeline
+
+_RATE = 100
+_PERIOD = 1_000_000_000 // _RATE
+
+_LESSON = "split-groups"
+
+
+def _tick(t: int, number: int) -> list[AnyEvent]:
+    """A timer's callback publishes, and a subscription gets it."""
+    return [
+        EntityReady(t, 2, 1, 0),
+        CallbackStarted(t, 2, 1, 0, 0, 0),
+        Published(t, number, "/n", 1, 2),
+        MessageSent(t, number, 1, b"\0\1\0\0\1\0\0\0"),
+        EntityReady(t, 1, 1, number),
+        CallbackEnded(t, 2, 1),
+        CallbackStarted(t, 1, 1, number, 0, 0),
+        CallbackEnded(t, 1, 1),
+    ]
+
+
+def _record(path: Path, seconds: int) -> float:
+    """Record so many seconds of a 100 Hz lesson; returns the seconds that an event took."""
+    recorder = Recorder(path, About(title="hundred"))
+    recorder.take([RunStarted(0, "hundred", "virtual", 0)])
+    recorder.take([TopicAppeared(0, 1, "/n", "std_msgs/msg/Int32", "int32 data\n")])
+    took, events = 0.0, 0
+    for second in range(seconds):
+        # A live run sends a batch every 10 ms.
+        batches = [_tick(tick * _PERIOD, tick) for tick in range(second * _RATE, (second + 1) * _RATE)]
+        began = time.perf_counter()
+        for batch in batches:
+            recorder.take(batch)
+        took += time.perf_counter() - began
+        events += sum(map(len, batches))
+    recorder.close()
+    return took / events
+
+
+def event(calls: int) -> float:
+    """The seconds that recording an event of a live 100 Hz lesson takes."""
+    with TemporaryDirectory() as folder:
+        return _record(Path(folder) / "run.mcap", max(1, calls // 100))
+
+
+def slowing(calls: int) -> float:
+    """The share by which recording slows down so many seconds of a lesson that runs as fast as it can."""
+    lesson = setup_for(find(_LESSON), speed=None)
+    plain = msgspec.structs.replace(lesson, until=calls * 1_000_000_000)
+    with TemporaryDirectory() as folder:
+        recorder = Recorder(Path(folder) / "run.mcap", About(title="hundred"))
+        recorded = msgspec.structs.replace(plain, contents=True)
+        timelines = Timeline(), Timeline()
+
+        def take(events: list[AnyEvent]) -> None:
+            recorder.take(events)
+            timelines[1].extend(events)
+
+        without = _run(plain, timelines[0].extend)
+        share = _run(recorded, take) / without - 1
+        recorder.close()
+    return share
+
+
+def _run(setup: RunSetup, take: Callable[[list[AnyEvent]], object]) -> float:
+    """Run an engine to its end; returns the seconds from its first events to its last."""
+    news: Queue[list[AnyEvent] | str | None] = Queue(64)
+    session = Session(setup, news.put, news.put)
+    session.start()
+    batch = news.get()
+    began = time.perf_counter()
+    while isinstance(batch, list):
+        take(batch)
+        batch = news.get()
+    session.stop()
+    return time.perf_counter() - began
+
+
+def _seconds(step: Callable[[], object]) -> float:
+    began = time.perf_counter()
+    step()
+    return time.perf_counter() - began
+
+
+@lru_cache(maxsize=2)
+def _recorded(seconds: int) -> Path:
+    folder = TemporaryDirectory()
+    atexit.register(folder.cleanup)
+    path = Path(folder.name) / "run.mcap"
+    _record(path, seconds)
+    return path
+
+
+def opening(calls: int) -> float:
+    """The seconds until the first events of a recording of so many seconds are there."""
+    path = _recorded(calls)
+    return _seconds(lambda: list(islice(read(path).batches(), 100)))
+
+
+def reading(calls: int) -> float:
+    """The seconds until all events of a recording of so many seconds are there."""
+    path = _recorded(calls)
+    return _seconds(lambda: sum(map(len, read(path).batches())))

@@ -1,0 +1,39 @@
+"""Event loops of asyncio on a run's clock."""
+
+import asyncio
+import threading
+import time
+
+from sim.clock import PacedClock, RealClock
+from sim.clock.asyncio_loops import ProgramLoops
+
+
+def test_a_loop_on_a_paced_clock_keeps_its_pace() -> None:
+    clock = PacedClock(speed=50.0)
+    loop = ProgramLoops(clock).new_event_loop()
+    loop.time = lambda: clock.now() / 1e9  # type: ignore[method-assign]
+    began, wall = clock.now(), time.monotonic()
+    loop.run_until_complete(asyncio.sleep(5.0))
+    loop.close()
+    assert clock.now() - began >= 5_000_000_000
+    assert time.monotonic() - wall < 5.0
+
+
+def test_every_main_thread_has_a_loop_and_other_threads_have_none() -> None:
+    loops = ProgramLoops(RealClock())
+    found: list[object] = []
+
+    def ask() -> None:
+        try:
+            loop = loops.get_event_loop()
+        except RuntimeError as error:
+            found.append(str(error))
+        else:
+            found.append(loop is loops.get_event_loop())
+            loop.close()
+
+    for name in ("MainThread", "worker"):
+        thread = threading.Thread(target=ask, name=name)
+        thread.start()
+        thread.join()
+    assert found == [True, "There is no current event loop in thread 'worker'."]

@@ -1,0 +1,39 @@
+"""The small run as each text format has it: ``python -m tests.trace.export.goldens`` writes the files anew.
+
+Look at what changed before keeping it, at the picture too.
+"""
+
+from io import StringIO
+from pathlib import Path
+
+from sim.trace.export import CallTable, ChromeFile, report, svg
+from sim.trace.model import Window
+from tests.support.runs import ns
+from tests.trace.export.examples import small_run, timeline_of
+from tests.trace.export.reading import written
+
+FOLDER = Path(__file__).with_name("golden")
+NAMES = ("calls.csv", "lanes.svg", "report.md", "trace.json")
+
+
+def made(name: str) -> str:
+    """What a file should hold."""
+    events = small_run()
+    match name:
+        case "calls.csv":
+            file = StringIO(newline="")
+            table = CallTable(file)
+            table.take(events)
+            table.finish()
+            return file.getvalue()
+        case "lanes.svg":
+            return svg(timeline_of(events), Window(0, ns(2.5)))
+        case "report.md":
+            return report(timeline_of(events), "lanes.svg")
+        case _:
+            return written(events, ChromeFile).decode()
+
+
+if __name__ == "__main__":
+    for name in NAMES:
+        (FOLDER / name).write_bytes(made(name).encode())

@@ -1,0 +1,49 @@
+"""The report: all its parts, and texts that stay texts."""
+
+import re
+
+from sim.trace.export import report
+from sim.trace.export.texts import markdown
+from tests.support.runs import Run, shared_group_run
+from tests.trace.export.examples import small_run, timeline_of
+
+
+def test_a_report_has_set_up_statistics_waits_notices_and_picture() -> None:
+    text = report(timeline_of(small_run()), "pictures/lanes <1>.svg")
+    heads = re.findall(r"^#+ .*$", text, re.MULTILINE)
+    assert heads == [
+        "# small run",
+        "## Set-up",
+        "## Callbacks",
+        "## Waits",
+        "## Threads",
+        "## Services and robot",
+        "## Notices",
+        "## Commands and errors",
+        "## Picture",
+    ]
+    assert "| odom_callback | 900 ms | 900 ms | group A held by timer_callback |" in text
+    assert "MultiThreadedExecutor, 2 threads" in text
+    assert "](<pictures/lanes %3C1%3E.svg>)" in text
+
+
+def test_every_table_has_as_many_cells_in_each_line() -> None:
+    tables = re.findall(r"(?:^\|.*\n)+", report(timeline_of(small_run())), re.MULTILINE)
+    assert len(tables) >= 4
+    for table in tables:
+        assert len({len(re.findall(r"(?<!\\)\|", line)) for line in table.splitlines()}) == 1
+
+
+def test_a_timer_tells_how_old_its_data_was() -> None:
+    text = report(timeline_of(shared_group_run().events))
+    assert "| timer_callback | odom_callback |" in text
+
+
+def test_a_run_without_waits_says_so_and_an_empty_one_makes_a_report() -> None:
+    assert "None: every callback ran as soon as it was ready." in report(timeline_of(Run().events))
+    assert report(timeline_of([])).startswith("# A run\n")
+
+
+def test_texts_have_no_mark_up_of_their_own() -> None:
+    assert markdown("_a_ odom_callback `x` | <b>\n[a](b)") == r"\_a\_ odom_callback \`x\` \| \<b\> \[a\](b)"
+    assert "<b>" not in report(timeline_of(small_run()))

@@ -1,0 +1,57 @@
+"""A recording that begins in the middle of a run shows the present as one that was there from the start."""
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sim.trace.events import AnyEvent, EntityGone, TopicAppeared
+from sim.trace.recording import Beginning
+from tests.support.runs import dummy_server_run, shared_group_run
+from tests.trace.recording.files import TOPICS, timeline_of
+from tests.trace.samples import CAST
+from tests.trace.systems import legal_runs
+
+
+def begun_at(events: list[AnyEvent], cut: int) -> list[AnyEvent]:
+    """What a recording holds that begins after so many events."""
+    beginning = Beginning()
+    for event in events[:cut]:
+        beginning.take([event])
+    return [*beginning.events(), *events[cut:]]
+
+
+@given(legal_runs(), st.integers(0, 100))
+def test_from_its_beginning_on_every_moment_is_that_of_the_run(events: list[AnyEvent], cut: int) -> None:
+    assert_same_from(events, min(cut, len(events)))
+
+
+def test_lessons_can_be_recorded_from_any_event_on() -> None:
+    for run in (shared_group_run(), dummy_server_run()):
+        for cut in range(0, len(run.events), 211):
+            assert_same_from(run.events, cut)
+
+
+def assert_same_from(events: list[AnyEvent], cut: int) -> None:
+    whole, late = timeline_of([events]), timeline_of([begun_at(events, cut)])
+    first = events[cut - 1].t if cut else 0
+    assert late.started == whole.started
+    assert (late.threads, late.nodes, late.groups) == (whole.threads, whole.nodes, whole.groups)
+    assert late.entities == whole.entities
+    for at in {first, *(event.t for event in events[cut:])} - {event.t for event in events[:cut]} | {first}:
+        moment, expected = late.moment(at), whole.moment(at)
+        assert moment.running == expected.running
+        assert moment.waiting == expected.waiting
+        assert moment.holders == expected.holders
+        assert moment.pending_calls == expected.pending_calls
+        assert {e: (q.depth, q.oldest) for e, q in moment.queues.items()} == {
+            e: (q.depth, q.oldest) for e, q in expected.queues.items()
+        }
+        assert late.robot(at) == whole.robot(at)
+        assert late.scan(at) == whole.scan(at)
+
+
+def test_topics_are_told_again_and_what_is_gone_is_not() -> None:
+    beginning = Beginning()
+    beginning.take([*CAST, *TOPICS, EntityGone(5, 1)])
+    told = beginning.events()
+    assert [event for event in told if isinstance(event, TopicAppeared)] == TOPICS
+    assert len(told) == len(CAST) + len(TOPICS) - 1
