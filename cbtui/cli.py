@@ -14,6 +14,7 @@ from cbtui import export_command
 
 if TYPE_CHECKING:
     from lessons.lesson import Lesson
+    from sim.engine.setup import RunSetup
 
 _MAX_THREADS = 64
 _DEFAULT_SECONDS = 60.0
@@ -104,6 +105,15 @@ def _parser() -> argparse.ArgumentParser:
     informing.add_argument("recording", metavar="FILE.mcap", help="a recording that cbtui made")
     informing.set_defaults(action=_info)
 
+    comparing = commands.add_parser(
+        "compare",
+        help="put two runs side by side",
+        description="Put the same window of two runs side by side. Lessons and files are run for that, "
+        "headless on virtual time.",
+    )
+    _add_compare_options(comparing)
+    comparing.set_defaults(action=_compare)
+
     exporting = commands.add_parser(
         "export",
         help="take a recording to trace viewers, spreadsheets and paper",
@@ -126,7 +136,7 @@ def _add_run_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "targets",
         metavar="LESSON|FILE.py",
-        nargs="+",
+        nargs="*",
         help="a lesson's id, see cbtui list, or node files or a launch file",
     )
     parser.add_argument(
@@ -134,8 +144,7 @@ def _add_run_options(parser: argparse.ArgumentParser) -> None:
         dest="seconds",
         metavar="SECONDS",
         type=_duration,
-        default=_DEFAULT_SECONDS,
-        help="how long the run lasts in its own time (%(default)g)",
+        help=f"how long the run lasts in its own time ({_DEFAULT_SECONDS:g})",
     )
     parser.add_argument(
         "--threads", metavar="N", type=_threads, help="number of threads of the executor, instead of its own"
@@ -161,6 +170,11 @@ def _add_run_options(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="carry out a ros2 line at that time, such as 2 'ros2 topic list'; may be given again",
     )
+    parser.add_argument(
+        "--inputs",
+        metavar="FILE.mcap",
+        help="give the run what a recorded one was given, at the same moments; without LESSON: repeat it",
+    )
     parser.add_argument("--no-robot", dest="robot", action="store_false", help="leave out the lessons' robot")
     parser.add_argument(
         "--clock", choices=("virtual", "real"), help="which time it runs on (virtual; a file: real)"
@@ -180,6 +194,35 @@ def _add_run_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument(
         "--force", action="store_true", help="let --record replace a file that is there already"
+    )
+
+
+def _add_compare_options(parser: argparse.ArgumentParser) -> None:
+    for name in ("A", "B"):
+        parser.add_argument(name, help="a recording (.mcap), a lesson's id, or a node file")
+    parser.add_argument(
+        "--from",
+        dest="start",
+        metavar="SECONDS",
+        type=_moment,
+        default=0.0,
+        help="where to begin (%(default)g)",
+    )
+    parser.add_argument(
+        "--to",
+        dest="end",
+        metavar="SECONDS",
+        type=_duration,
+        help=f"where to end (where the shorter recording does; {_DEFAULT_SECONDS:g} where there is none)",
+    )
+    parser.add_argument(
+        "--call",
+        dest="calls",
+        metavar="SECONDS",
+        type=_moment,
+        action="append",
+        default=[],
+        help="call the SetBool service of what is run at that time; may be given again",
     )
 
 
@@ -297,6 +340,11 @@ def _need_terminal(instead: str) -> None:
 
 
 def _run(options: argparse.Namespace) -> int:
+    if options.inputs is not None:
+        return _repeat(options)
+    if not options.targets:
+        _refuse("run needs a LESSON or a FILE.py; cbtui list lists the lessons")
+    options.seconds = options.seconds or _DEFAULT_SECONDS
     is_file = _is_file_name(options.targets[0])
     clock = options.clock or ("real" if is_file else "virtual")
     _check_run(options, is_file=is_file)
@@ -327,10 +375,72 @@ def _run(options: argparse.Namespace) -> int:
     )
 
 
+def _repeat(options: argparse.Namespace) -> int:
+    """Run with the inputs of a recording."""
+    if options.clock == "real":
+        _refuse("only runs on the virtual clock can be repeated exactly; leave out --clock real")
+    if options.calls or options.lines:
+        _refuse("--inputs gives the run all its inputs; leave out --call and --at")
+    if options.force and options.record is None:
+        _refuse("--force lets --record replace a file; there is nothing to record to")
+    import msgspec
+
+    from cbtui.headless import run_set_up
+    from cbtui.repeat import CannotRepeatError, repeated
+    from sim.engine.setup import RobotUse
+
+    speed = None if options.speed == math.inf else options.speed
+    program = _program(options, speed) if options.targets else None
+    try:
+        setup = repeated(Path(options.inputs), program, seconds=options.seconds, threads=options.threads)
+    except CannotRepeatError as error:
+        _refuse(str(error))
+    if not options.robot:
+        setup = msgspec.structs.replace(setup, robot=RobotUse.NEVER)
+    return run_set_up(
+        msgspec.structs.replace(setup, speed=speed, contents=setup.contents or options.record is not None),
+        events_path=options.events,
+        recording_path=options.record,
+        replace_recording=options.force,
+    )
+
+
+def _program(options: argparse.Namespace, speed: float | None) -> "RunSetup":
+    """The set-up of the targets."""
+    from cbtui.lesson_setup import setup_for, setup_for_files
+
+    if not _is_file_name(options.targets[0]):
+        if len(options.targets) > 1:
+            _refuse("one lesson runs at a time; several targets must all be files")
+        return setup_for(_lesson(options.targets[0]), threads=options.threads, speed=speed)
+    paths = [_file(name) for name in options.targets]
+    return setup_for_files(paths, options.arguments, threads=options.threads, speed=speed)
+
+
 def _info(options: argparse.Namespace) -> int:
     from cbtui.info import tell
 
     return tell(Path(options.recording))
+
+
+def _compare(options: argparse.Namespace) -> int:
+    from cbtui.compare import Contender, compare_runs
+    from cbtui.lesson_setup import setup_for, setup_for_files
+
+    def contender(name: str) -> Contender:
+        if name.endswith(".mcap"):
+            return Contender(name, Path(name))
+        if _is_file_name(name):
+            return Contender(name, setup_for_files([_file(name)]))
+        return Contender(name, setup_for(_lesson(name)))
+
+    return compare_runs(
+        contender(options.A),
+        contender(options.B),
+        start=options.start,
+        end=options.end,
+        calls=options.calls,
+    )
 
 
 def _ros2(words: list[str]) -> int:

@@ -53,6 +53,15 @@ def run_headless(
         lines=tuple(TimedLine(round(at * _SECOND), text) for at, text in sorted(lines, key=itemgetter(0))),
         contents=recording_path is not None,
     )
+    return run_set_up(
+        setup, events_path=events_path, recording_path=recording_path, replace_recording=replace_recording
+    )
+
+
+def run_set_up(
+    setup: RunSetup, *, events_path: str | None, recording_path: str | None, replace_recording: bool
+) -> int:
+    """Run what is set up whole, as ``run_headless`` does."""
     with ExitStack() as files:
         try:
             file = None if events_path is None else files.enter_context(Path(events_path).open("wb"))

@@ -117,7 +117,10 @@ class LiveRun:
         self.timeline.extend(events)
         if any(isinstance(event, TimeHalted) for event in events):
             self.paused = True
-        return self._recording.take(events)
+        failure = self._recording.take(events)
+        if failure is not None:
+            self._session.send(KeepContents(wanted=False))
+        return failure
 
     def over(self, loss: str | None) -> str | None:
         """Note that the engine is gone; ``loss`` says how, if it should not be.

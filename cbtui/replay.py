@@ -27,7 +27,7 @@ _GUIDE = """# Recording of {title}
 Every pane shows the moment that the status line tells.
 
 - `space` plays it from here, from its beginning at its end; `+` and `-` change how fast.
-- `←` and `→` go back and on, `,` and `.` by one event, `g` to a moment, `0` to the end.
+- The arrow keys go back and on, `,` and `.` by one event, `g` to a moment, `0` to the end.
 """
 
 
@@ -71,7 +71,7 @@ class ReplaySession:
             self._ended(f"{self._recording.path} cannot be read to its end: {error.strerror}")
         else:
             damage = self._recording.damage
-            self._ended(None if damage is None else f"{self._recording.path}: {damage}")
+            self._ended(None if damage is None else f"{self._recording.path.name}: {damage}")
 
     def _deliver_all(self) -> None:
         waiting: list[AnyEvent] = []

@@ -176,7 +176,8 @@ class LessonScreen(SizedScreen[None]):
 
     def _offer_keys(self) -> None:
         """Tell the line of keys when others have a meaning."""
-        offered = (self._run.state, self._playhead, self._run.speed)
+        run = self._run
+        offered = (run.state, self._playhead, run.speed, run.timeline.end > 0)
         if offered != self._offered:
             self._offered = offered
             self.query_one(KeyBar).changed()

@@ -75,7 +75,7 @@ class ReplayScreen(LessonScreen):
             case "pause":
                 return not run.paused
             case "resume":
-                return run.paused and run.timeline.end > 0
+                return run.paused
             case "slower":
                 return run.speed != run.speeds[0]
             case "faster":

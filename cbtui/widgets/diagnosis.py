@@ -50,16 +50,18 @@ def verdict(run: LiveRun, playhead: Playhead, concurrency: Concurrency) -> Diagn
                 f"engine lost: {run.loss.rstrip('.')}; press r to run again", Weight.TROUBLE, stays=True
             )
         if run.state is State.ENDED:
-            return _of_the_end(timeline)
+            return _of_the_end(timeline, "press r to run again")
+        if run.state is State.REPLAY_STANDS and timeline.ended is not None:
+            return _of_the_end(timeline, "space plays it from its beginning")
     return diagnose(timeline, playhead.now(timeline.end), concurrency)
 
 
-def _of_the_end(timeline: Timeline) -> Diagnosis:
+def _of_the_end(timeline: Timeline, way_on: str) -> Diagnosis:
     ended = timeline.ended
     if ended is None:
-        return Diagnosis("the run is over; press r to run again", Weight.FINE)
+        return Diagnosis(f"the run is over; {way_on}", Weight.FINE)
     weight = Weight.TROUBLE if ended.failed else Weight.FINE
-    return Diagnosis(f"the run is over: {ended.reason.rstrip('.')}; press r to run again", weight, stays=True)
+    return Diagnosis(f"the run is over: {ended.reason.rstrip('.')}; {way_on}", weight, stays=True)
 
 
 def diagnose(timeline: Timeline, at: Nanoseconds, concurrency: Concurrency) -> Diagnosis:

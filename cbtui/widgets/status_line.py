@@ -20,6 +20,8 @@ _STRONG = Ink(Role.STRONG)
 _FAINT = Ink(Role.FAINT)
 _WARN = Ink(Role.WARN)
 _GAP = Run("   ", _PLAIN)
+_LEAST_TITLE = 5
+"""Columns of the title that are worth more than what is told of a recording."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,20 +81,23 @@ class StatusLine(Painted):
 
 
 def status_row(status: Status, width: int) -> list[Run]:
-    """Return the line in exactly ``width`` columns; the executor gives way first, then the pace."""
+    """Return the line in exactly ``width`` columns; the executor gives way first, then pace and recording."""
     title = Run(f" {status.title}", _STRONG)
     state = _state(status)
     pace = Run(f"  {status.pace}", _PLAIN)
     time = Run(f"t {status.at / 1e9:.3f} s", _STRONG)
     executor = Run(status.executor, _PLAIN)
     losses = _losses(status)
-    for parts in (
-        [state, pace, _GAP, time, _GAP, executor, _GAP, *losses],
-        [state, pace, _GAP, time, _GAP, *losses],
-        [state, _GAP, time, _GAP, *losses],
+    recording = [] if status.recorded is None else [Run(f"REC {status.recorded:,}", _WARN), _GAP]
+    whole = len(title.text) + 2
+    for parts, least in (
+        ([state, pace, _GAP, time, _GAP, executor, _GAP, *recording, *losses], whole),
+        ([state, pace, _GAP, time, _GAP, *recording, *losses], whole),
+        ([state, _GAP, time, _GAP, *recording, *losses], _LEAST_TITLE),
+        ([state, _GAP, time, _GAP, *losses], 0),
     ):
         room = width - sum(len(run.text) for run in parts) - 1
-        if room >= len(title.text) + 2:
+        if room >= least:
             break
     return [Run(fit(title.text, room, Charset.BRAILLE), _STRONG), *parts, Run(" ", _PLAIN)]
 
@@ -117,8 +122,6 @@ _STATES = {
 
 def _losses(status: Status) -> list[Run]:
     losses = [Run(f"dropped {status.dropped}", _WARN if status.dropped else _FAINT)]
-    if status.recorded is not None:
-        losses.insert(0, Run(f"REC {status.recorded:,}   ", _WARN))
     if status.lost:
         losses += [_GAP, Run(f"trace lost {status.lost}", _WARN)]
     return losses

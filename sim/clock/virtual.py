@@ -332,7 +332,7 @@ class VirtualClock:
         target = deadline
         if deadline is None or deadline > self._now:
             target = self._stopover_before(deadline)
-            if self._input_is_taken():
+            if not self._inbox and self._input_is_taken():
                 return
             if self._script:
                 moment, _ = self._script[0]
@@ -363,7 +363,8 @@ class VirtualClock:
             action = self._inputs.popleft()
         else:
             return False
-        action()
+        if not self._stopping:
+            action()
         return True
 
     def _goal_is_reached_before(self, target: int | None) -> bool:

@@ -9,7 +9,7 @@ from sim.engine.setup import TimedInput
 from sim.trace.events import AnyEvent, InputGiven
 
 
-class UnknownInput(Exception):
+class UnknownInputError(Exception):
     """An input that this version cannot give; the text is a sentence."""
 
 
@@ -20,7 +20,7 @@ def inputs_of(events: Iterable[AnyEvent]) -> tuple[TimedInput, ...]:
     that tell what was done to its time and what its prompt completed.
 
     Raises:
-        UnknownInput: one of them is none that this version knows.
+        UnknownInputError: one of them is none that this version knows.
     """
     found = tuple(TimedInput(event.t, event.command) for event in events if isinstance(event, InputGiven))
     for each in found:
@@ -28,7 +28,7 @@ def inputs_of(events: Iterable[AnyEvent]) -> tuple[TimedInput, ...]:
             commands.input_of(each.command)
         except msgspec.DecodeError:
             moment = each.at / 1e9
-            raise UnknownInput(f"this version does not know the input given at {moment:.3f} s") from None
+            raise UnknownInputError(f"this version does not know the input given at {moment:.3f} s") from None
     return found
 
 

@@ -60,7 +60,8 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     the number of threads of the programs' executors, None leaves their own. ``service`` None means the
     first SetBool service that a program offers. ``lines`` get the numbers 1, 2, … on the trace.
     ``packages`` are folders in which packages are looked for, after those around the programs. A run
-    without programs ends with its lines. ``inputs``, in the order of their moments, need the virtual clock. With ``contents`` the trace has what published messages hold.
+    without programs ends with its lines. ``inputs``, in the order of their
+    moments, need the virtual clock. With ``contents`` the trace has what published messages hold.
     """
 
     title: str

@@ -5,7 +5,12 @@ from sim.ros.bare_entities import BareGuardCondition as GuardCondition
 from sim.ros.bare_entities import BareService as Service
 from sim.ros.bare_entities import BareSubscription as Subscription
 from sim.ros.bare_entities import BareTimer as Timer
+from sim.ros.bare_events import event_handle as EventHandle  # noqa: N812 -- a class in rclpy
+from sim.ros.bare_wait_set import BareWaitSet as WaitSet
 from sim.ros.clock import ClockEvent
+from sim.ros.entity_handles import RequestId as rmw_request_id_t  # noqa: N813 -- rclpy's own name
+from sim.ros.entity_handles import ServiceInfo as rmw_service_info_t  # noqa: N813 -- rclpy's own name
+from sim.ros.event_handler import UnsupportedEventTypeError
 from sim.ros.exceptions import (
     InvalidHandle,
     NodeNameNonExistentError,
@@ -17,6 +22,7 @@ from sim.ros.exceptions import (
 __all__ = [
     "Client",
     "ClockEvent",
+    "EventHandle",
     "GuardCondition",
     "InvalidHandle",
     "NodeNameNonExistentError",
@@ -26,4 +32,8 @@ __all__ = [
     "Subscription",
     "Timer",
     "UnknownROSArgsError",
+    "UnsupportedEventTypeError",
+    "WaitSet",
+    "rmw_request_id_t",
+    "rmw_service_info_t",
 ]

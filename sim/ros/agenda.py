@@ -14,6 +14,7 @@ from sim.ros.host import Host, WaitsExplained
 from sim.trace.events import Reason
 
 if TYPE_CHECKING:
+    from sim.ros.bare_entities import Watcher
     from sim.ros.entity import Entity
     from sim.ros.executors import Executor
     from sim.ros.probe import Probe
@@ -37,6 +38,7 @@ class Agenda(WaitsExplained):
         self._timer_queue: list[tuple[int, int, Timer]] = []
         self._executor: weakref.ref[Executor] | None = None
         self._latest_executor: weakref.ref[Executor] | None = None
+        self._watchers: dict[Watcher, None] = {}
         host.explain_waits_of(self)
 
     @property
@@ -49,6 +51,7 @@ class Agenda(WaitsExplained):
         self._executor = None if executor is None else weakref.ref(executor)
         if executor is not None:
             self._latest_executor = self._executor
+            self._wake_watchers()
 
     @property
     def latest_executor(self) -> Executor | None:
@@ -122,6 +125,8 @@ class Agenda(WaitsExplained):
         executor = self.executor
         if executor is not None:
             executor._entity_ready(entity)
+        else:
+            self._wake_watchers()
 
     def entity_idle(self, entity: Entity) -> None:
         """An entity has nothing more to take."""
@@ -134,6 +139,19 @@ class Agenda(WaitsExplained):
         executor = self.executor
         if executor is not None:
             executor._timer_set(timer)
+        else:
+            self._wake_watchers()
+
+    def watch(self, watcher: Watcher) -> None:
+        """Wake ``watcher`` once more is ready while no executor serves the node, or one begins to."""
+        self._watchers[watcher] = None
+
+    def _wake_watchers(self) -> None:
+        if self._watchers:
+            watchers = tuple(self._watchers)
+            self._watchers.clear()
+            for each in watchers:
+                each.wake()
 
     def collect_due(self, now: int) -> dict[Entity, None]:
         """Everything that has something to take, once the timers that are due are among it."""

@@ -6,7 +6,7 @@ the executors that wait for them look again.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, Self
+from typing import TYPE_CHECKING, Any, Protocol, Self
 
 from sim.ros.callback_groups import ReentrantCallbackGroup
 from sim.ros.client import Client
@@ -19,8 +19,9 @@ from sim.ros.timer import next_due
 
 if TYPE_CHECKING:
     from sim.ros.context import Context
+    from sim.ros.entity_handles import RequestId, ServiceInfo
     from sim.ros.handle import Handle
-    from sim.ros.network import Request
+    from sim.ros.message_info import MessageInfo
     from sim.ros.node import Node
 
 
@@ -103,12 +104,9 @@ class BareSubscription(BareEntity, Subscription):
             )  # fmt: skip
             owner.context.network.join_subscription(self)
 
-    def take_message(self, msg_type: type, raw: bool) -> tuple[Any, Any] | None:
-        """Take the oldest message, with its info; None without one."""
-        with self.node.context.host.lock:
-            self.raw, self._with_info = raw, True
-            taken = self.take(self.node.context.host.clock.now())
-        return None if taken is None else taken.data
+    def take_message(self, msg_type: type, raw: bool) -> tuple[Any, MessageInfo] | None:
+        """Take the oldest message, as bytes if ``raw``, with its info; None without one."""
+        return self.handle.take_message(msg_type, raw)
 
     def destroy(self) -> None:
         """Take it off the network."""
@@ -116,18 +114,6 @@ class BareSubscription(BareEntity, Subscription):
             if not self.destroyed:
                 self.destroyed = True
                 self.node.context.network.leave_subscription(self)
-
-
-class RequestId(NamedTuple):
-    """Which request an answer belongs to."""
-
-    sequence_number: int
-
-
-class ServiceInfo(NamedTuple):
-    """What comes with a response."""
-
-    request_id: RequestId
 
 
 class BareClient(BareEntity, Client):
@@ -142,21 +128,15 @@ class BareClient(BareEntity, Client):
 
     def service_server_is_available(self) -> bool:
         """Whether somebody offers the service."""
-        return self.service_is_ready()
+        return self.handle.service_server_is_available()
 
     def send_request(self, request: Any) -> int:
         """Send a request; returns its sequence number."""
-        return self._send(request)[0]
+        return self.handle.send_request(request)
 
     def take_response(self, response_type: type) -> tuple[ServiceInfo | None, Any]:
         """Take the oldest response, after which request it came; None twice without one."""
-        with self._host.lock:
-            taken = self.take(self._host.clock.now())
-            if taken is None:
-                return None, None
-            reply = taken.data
-            self._pending_requests.pop(reply.call, None)
-        return ServiceInfo(RequestId(reply.call)), reply.data
+        return self.handle.take_response(response_type)
 
     def destroy(self) -> None:
         """Take no more responses."""
@@ -174,15 +154,13 @@ class BareService(BareEntity, Service):
             super().__init__(owner, srv_type, name, _never_called, group, profile, srv_name=srv_name)
             owner.context.network.join_service(self)
 
-    def service_take_request(self, request_type: type) -> tuple[Any, Request | None]:
+    def service_take_request(self, request_type: type) -> tuple[Any, ServiceInfo | None]:
         """Take the oldest request, and the header to answer it by; None twice without one."""
-        with self.node.context.host.lock:
-            taken = self.take(self.node.context.host.clock.now())
-        return (None, None) if taken is None else (taken.data.data, taken.data)
+        return self.handle.service_take_request(request_type)
 
-    def service_send_response(self, response: Any, header: Request) -> None:
+    def service_send_response(self, response: Any, header: ServiceInfo | RequestId) -> None:
         """Answer the request of that header."""
-        self.send_response(response, header)
+        self.handle.service_send_response(response, header)
 
     def destroy(self) -> None:
         """Take it off the network."""

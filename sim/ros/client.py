@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import msgspec
 
 from sim.ros.entity import Entity, Taken
+from sim.ros.entity_handles import ClientHandle
 from sim.ros.interfaces import copy_message
 from sim.ros.network import Request
 from sim.ros.qos import QoSProfile
@@ -70,6 +71,11 @@ class Client(Entity):
         self._introspection: ServiceIntrospection | None = None
         self._pending_requests: dict[int, Future[Any]] = {}
         self._queue: deque[Reply] = deque()
+
+    @property
+    def handle(self) -> ClientHandle:
+        """What keeps it alive while it is used, and takes from it."""
+        return ClientHandle(self)
 
     @property
     def context(self) -> Context:

@@ -6,6 +6,7 @@ oldest is not meant by it, nor is a message whose lifespan is over.
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable
 from dataclasses import dataclass, fields, replace
 from enum import IntEnum
@@ -142,13 +143,16 @@ class EventHandler(Entity):
         """Take the state; its changes count anew."""
         if not self.pending:
             return None
-        late = now - self.ready_since
+        return Taken(self.take_info(), 0, now - self.ready_since, 0)
+
+    def take_info(self) -> Any:
+        """Take the state, whether it has changed or not; its changes count anew."""
         info = replace(self.info)
         for each in fields(self.info):
             if each.name.endswith("_change"):
                 setattr(self.info, each.name, 0)
         self.nothing_left()
-        return Taken(info, 0, late, 0)
+        return info
 
     def invoke(self, taken: Taken) -> Any:
         """Run the callback on the state."""
@@ -216,58 +220,67 @@ class EndpointEvents:
         wanted = EventCallbacks() if callbacks is None else callbacks
         self.handlers: list[EventHandler] = []
         self._node = node
+        self._told: defaultdict[type, list[EventHandler]] = defaultdict(list)
 
-        def handler(callback: EventCallback | None, info: Any) -> EventHandler | None:
-            if callback is None:
-                return None
-            made = EventHandler(node, topic, callback, callback_group, info)
-            self.add(made)
-            return made
+        def handle(callback: EventCallback | None, info: Any) -> None:
+            if callback is not None:
+                self._add_told(EventHandler(node, topic, callback, callback_group, info))
 
-        def handler_or_default(callback: EventCallback | None, info: Any) -> EventHandler | None:
-            if callback is not None or not wanted.use_default_callbacks:
-                return handler(callback, info)
-            made = DefaultEventHandler(node, topic, callback_group, info)
-            self.add(made)
-            return made
+        def handle_or_warn(callback: EventCallback | None, info: Any) -> None:
+            if callback is None and wanted.use_default_callbacks:
+                self._add_told(DefaultEventHandler(node, topic, callback_group, info))
+            else:
+                handle(callback, info)
 
-        self._incompatible_qos = handler_or_default(wanted.incompatible_qos, IncompatibleQoSInfo())
-        self._incompatible_type = handler_or_default(wanted.incompatible_type, IncompatibleTypeInfo())
-        self._matched = handler(wanted.matched, MatchedInfo())
+        handle_or_warn(wanted.incompatible_qos, IncompatibleQoSInfo())
+        handle_or_warn(wanted.incompatible_type, IncompatibleTypeInfo())
+        handle(wanted.matched, MatchedInfo())
 
     def add(self, handler: EventHandler) -> None:
         """One handler more."""
         self.handlers.append(handler)
         self._node._agenda.add(handler)
 
+    def tell(self, handler: EventHandler) -> None:
+        """Tell ``handler`` too of matches made and lost, or refused, as its info says."""
+        self._told[type(handler.info)].append(handler)
+
+    def tell_no_more(self, handler: EventHandler) -> None:
+        """Tell ``handler`` of nothing any more."""
+        self._told[type(handler.info)].remove(handler)
+
+    def _add_told(self, handler: EventHandler) -> None:
+        self.add(handler)
+        self.tell(handler)
+
     def match_made(self) -> None:
         """One match more."""
-        if self._matched is not None:
-            info = self._matched.info
+        for each in self._told[MatchedInfo]:
+            info = each.info
             info.total_count += 1
             info.total_count_change += 1
             info.current_count += 1
             info.current_count_change += 1
-            self._matched.changed()
+            each.changed()
 
     def match_lost(self) -> None:
         """One match less."""
-        if self._matched is not None:
-            info = self._matched.info
+        for each in self._told[MatchedInfo]:
+            info = each.info
             info.current_count -= 1
             info.current_count_change -= 1
-            self._matched.changed()
+            each.changed()
 
     def qos_refused(self, policy: str, warning: str) -> None:
         """No match for ``policy``; without a callback for that, the warning is given while spinning."""
-        if self._incompatible_qos is not None:
-            self._incompatible_qos.info.last_policy_kind = QoSPolicyKind[policy]
-            _refused(self._incompatible_qos, warning)
+        for each in self._told[IncompatibleQoSInfo]:
+            each.info.last_policy_kind = QoSPolicyKind[policy]
+            _refused(each, warning)
 
     def type_refused(self, warning: str) -> None:
         """No match for the type of the messages; the warning as for ``qos_refused``."""
-        if self._incompatible_type is not None:
-            _refused(self._incompatible_type, warning)
+        for each in self._told[IncompatibleTypeInfo]:
+            _refused(each, warning)
 
     def destroy(self) -> None:
         """Tell of nothing any more."""

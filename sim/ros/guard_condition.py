@@ -3,17 +3,60 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
+from sim.ros.bare_entities import BareGuardCondition
 from sim.ros.entity import Entity, Taken
+from sim.ros.handle import Handle
+from sim.ros.utilities import get_default_context
 from sim.trace.events import EntityKind
 
 if TYPE_CHECKING:
     from sim.ros.callback_groups import CallbackGroup
+    from sim.ros.context import Context
     from sim.ros.node import Node
 
 
-class GuardCondition(Entity):
+class GuardCondition:
+    """A flag that any thread raises, and its callback.
+
+    One that a program makes itself belongs to no node: nobody runs the callback, but a wait set may wait for
+    the handle. Those that executors serve come from ``Node.create_guard_condition``.
+    """
+
+    def __init__(
+        self,
+        callback: Callable[[], Any] | None,
+        callback_group: CallbackGroup | None,
+        context: Context | None = None,
+    ) -> None:
+        owner = get_default_context() if context is None else context
+        self.callback = callback
+        self.callback_group: Any = callback_group
+        self._flag = BareGuardCondition(owner.handle)
+
+    @property
+    def handle(self) -> Handle:
+        """What keeps it alive while it is used."""
+        return Handle(self._flag)
+
+    def trigger(self) -> None:
+        """Raise the flag; InvalidHandle if it was destroyed."""
+        with self._flag:
+            self._flag.trigger_guard_condition()
+
+    def destroy(self) -> None:
+        """Let it be triggered no more."""
+        self._flag.destroy()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self.destroy()
+
+
+class NodeGuardCondition(Entity, GuardCondition):
     """Calls back once after ``trigger``, however often it was triggered meanwhile."""
 
     kind = EntityKind.GUARD

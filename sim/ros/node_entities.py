@@ -12,7 +12,7 @@ from sim.ros.client import Client
 from sim.ros.clock import Clock
 from sim.ros.context import Context
 from sim.ros.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
-from sim.ros.guard_condition import GuardCondition
+from sim.ros.guard_condition import NodeGuardCondition
 from sim.ros.publisher import Publisher
 from sim.ros.qos import QoSProfile, as_profile, qos_profile_services_default
 from sim.ros.qos_overriding_options import QoSOverridingOptions, overridden
@@ -77,9 +77,9 @@ class NodeEntities:
         yield from self._agenda.of(Client)
 
     @property
-    def guards(self) -> Iterator[GuardCondition]:
+    def guards(self) -> Iterator[NodeGuardCondition]:
         """Its guard conditions, oldest first."""
-        yield from self._agenda.of(GuardCondition)
+        yield from self._agenda.of(NodeGuardCondition)
 
     @property
     def waitables(self) -> Iterator[Any]:
@@ -255,10 +255,10 @@ class NodeEntities:
 
     def create_guard_condition(
         self, callback: Callable[[], Any] | None, callback_group: CallbackGroup | None = None
-    ) -> GuardCondition:
+    ) -> NodeGuardCondition:
         """Make a guard condition."""
         with self._agenda.host.lock:
-            guard = GuardCondition(self.__as_node(), callback, self._chosen_group(callback_group))
+            guard = NodeGuardCondition(self.__as_node(), callback, self._chosen_group(callback_group))
             self._agenda.add(guard)
         return guard
 
@@ -303,7 +303,7 @@ class NodeEntities:
         """Remove a timer; whether it was this node's."""
         return self._agenda.remove(timer)
 
-    def destroy_guard_condition(self, guard: GuardCondition) -> bool:
+    def destroy_guard_condition(self, guard: NodeGuardCondition) -> bool:
         """Remove a guard condition; whether it was this node's."""
         return self._agenda.remove(guard)
 

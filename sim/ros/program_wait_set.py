@@ -83,8 +83,8 @@ class ProgramWaitSet:
         """
         dues: list[int] = []
         for kind, waited in self._waited.items():
-            self._ready[kind] = [_is_ready(each, watcher, now) for each in waited]
-            dues.extend(due for each in waited if (due := _due(each)) is not None and due > now)
+            self._ready[kind] = [self._is_ready(each, watcher, now) for each in waited]
+            dues.extend(due for each in waited if (due := self._due(each)) is not None and due > now)
         return min(dues, default=None)
 
     def _add(self, kind: str, given: Any) -> int:
@@ -98,14 +98,19 @@ class ProgramWaitSet:
         self._waited[kind].append(waited)
         return len(self._waited[kind]) - 1
 
+    def _is_ready(self, waited: Waited, watcher: Watcher, now: int) -> bool:
+        if isinstance(waited, BareEntity):
+            return waited.look(watcher, now)
+        return self._entity_is_ready(waited, watcher, now)
 
-def _is_ready(waited: Waited, watcher: Watcher, now: int) -> bool:
-    if isinstance(waited, BareEntity):
-        return waited.look(watcher, now)
-    if waited.node._agenda.executor is not watcher:
-        raise NotImplementedError("waiting for an entity that another executor serves is not supported")
-    return waited.still_ready(now) if isinstance(waited, Timer) else waited.pending
+    def _due(self, waited: Waited) -> int | None:
+        return waited.next_due() if isinstance(waited, BareEntity) else self._entity_due(waited)
 
+    def _entity_is_ready(self, entity: Entity, watcher: Watcher, now: int) -> bool:
+        if entity.node._agenda.executor is not watcher:
+            raise NotImplementedError("waiting for an entity that another executor serves is not supported")
+        return entity.still_ready(now) if isinstance(entity, Timer) else entity.pending
 
-def _due(waited: Waited) -> int | None:
-    return waited.next_due() if isinstance(waited, BareEntity) else None
+    def _entity_due(self, _entity: Entity) -> int | None:
+        """None: the executor that serves it knows when it falls due."""
+        return None

@@ -6,7 +6,7 @@ to pass meanwhile. All is called with the host's lock held.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from sim.ros.delivery import Delivery, ExpiringDelivery
 from sim.ros.duration import Duration, Infinite
@@ -174,6 +174,16 @@ class LivelinessLostHandler(DueEventHandler):
         if self._lease is not None:
             self._lease.look(now)
             self.due = self._lease.end or _NEVER
+
+
+class LivelinessWatcher(Protocol):
+    """Who hears which publishers a subscription has. With the host's lock held."""
+
+    def found(self, publisher: Publisher) -> None:
+        """A publisher is matched."""
+
+    def gone(self, publisher: Publisher) -> None:
+        """A publisher that was matched is gone."""
 
 
 class LivelinessChangedHandler(DueEventHandler):

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from sim.ros.entity import Entity, Taken
+from sim.ros.entity_handles import RequestId, ServiceHandle, ServiceInfo, answered
 from sim.ros.interfaces import copy_message
 from sim.ros.network import Request
 from sim.ros.qos import QoSProfile
@@ -54,6 +55,11 @@ class Service(Entity):
         self._probe = node.context.probe
         self._introspection: ServiceIntrospection | None = None
         self._queue: deque[Request] = deque()
+
+    @property
+    def handle(self) -> ServiceHandle:
+        """What keeps it alive while it is used, and takes from it."""
+        return ServiceHandle(self)
 
     @property
     def service_name(self) -> str:
@@ -115,20 +121,21 @@ class Service(Entity):
     async def _answer_later(self, request: Request, outcome: Any) -> None:
         self.send_response(await outcome, request)
 
-    def send_response(self, response: Any, header: Request) -> None:
-        """Answer the request of that header.
+    def send_response(self, response: Any, header: Request | ServiceInfo | RequestId) -> None:
+        """Answer the request of that header, or of its request id.
 
         Raises:
-            TypeError: the response is not of the service's type.
+            TypeError: the response is not of the service's type, or the header came with no request.
         """
+        request = header if isinstance(header, Request) else answered(header)
         if not isinstance(response, self.srv_type.Response):
             raise TypeError(f"Expected {self.srv_type.Response}, got {type(response)}")
         copy = copy_message(response)
         with self.node.context.host.lock:
-            self._probe.service_replied(header.call, self.name, copy)
+            self._probe.service_replied(request.call, self.name, copy)
             if self._introspection is not None:
-                self._introspection.response_sent(header.client, header.call, copy)
-            header.answer(copy)
+                self._introspection.response_sent(request.client, request.call, copy)
+            request.answer(copy)
 
     def destroy(self) -> None:
         """Take it off the network."""

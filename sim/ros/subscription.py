@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from sim.ros.delivery import Delivery
 from sim.ros.entity import Entity, Taken
-from sim.ros.event_handler import EndpointEvents, EventCallbacks, EventHandler
+from sim.ros.entity_handles import SubscriptionHandle
+from sim.ros.event_handler import EndpointEvents, EventHandler, MessageLostInfo, SubscriptionEventCallbacks
 from sim.ros.interfaces import copy_message, to_cdr
 from sim.ros.message_info import MessageInfo, wants_message_info
 from sim.ros.qos import QoSProfile
@@ -17,6 +18,7 @@ from sim.ros.qos_timing import (
     FOR_EVER,
     DeadlineHandler,
     LivelinessChangedHandler,
+    LivelinessWatcher,
     SubscriptionTiming,
     limit,
 )
@@ -61,7 +63,7 @@ class Subscription(Entity):
         *,
         topic: str | None = None,
         raw: bool = False,
-        event_callbacks: EventCallbacks | None = None,
+        event_callbacks: SubscriptionEventCallbacks | None = None,
     ) -> None:
         super().__init__(node, topic_name, callback_group)
         self.msg_type = msg_type
@@ -77,13 +79,13 @@ class Subscription(Entity):
         self._received = 0
         self.events = EndpointEvents(node, topic_name, callback_group, event_callbacks)
         self._deadline: DeadlineHandler | None = None
-        self._liveliness: LivelinessChangedHandler | None = None
+        self.liveliness_watchers: list[LivelinessWatcher] = []
         self._timing: SubscriptionTiming | None = None
         if event_callbacks is not None:
             self._watch(event_callbacks)
 
-    def _watch(self, wanted: EventCallbacks) -> None:
-        """Watch what passes with time, as far as callbacks for it are wanted."""
+    def _watch(self, wanted: SubscriptionEventCallbacks) -> None:
+        """Watch what else than matches there are callbacks for."""
         node, topic, group = self.node, self.name, self.callback_group
         if wanted.deadline is not None:
             period = limit(self.qos_profile.deadline)
@@ -91,8 +93,16 @@ class Subscription(Entity):
             self._timing = SubscriptionTiming(self, self._deadline)
             self.events.add(self._deadline)
         if wanted.liveliness is not None:
-            self._liveliness = LivelinessChangedHandler(node, topic, wanted.liveliness, group)
-            self.events.add(self._liveliness)
+            liveliness = LivelinessChangedHandler(node, topic, wanted.liveliness, group)
+            self.liveliness_watchers.append(liveliness)
+            self.events.add(liveliness)
+        if wanted.message_lost is not None:
+            self.events.add(EventHandler(node, topic, wanted.message_lost, group, MessageLostInfo()))
+
+    @property
+    def handle(self) -> SubscriptionHandle:
+        """What keeps it alive while it is used, and takes from it."""
+        return SubscriptionHandle(self)
 
     @property
     def callback(self) -> Callable[..., Any]:
@@ -139,16 +149,16 @@ class Subscription(Entity):
     def found(self, publisher: Publisher) -> None:
         """A publisher reaches it. With the host's lock held."""
         self.events.match_made()
-        if self._liveliness is not None:
-            self._liveliness.found(publisher)
+        for each in self.liveliness_watchers:
+            each.found(publisher)
         if self._timing is None and publisher.lifespan is not None:
             self._timing = SubscriptionTiming(self, None)
 
     def lost(self, publisher: Publisher) -> None:
         """A publisher that reached it is gone. With the host's lock held."""
         self.events.match_lost()
-        if self._liveliness is not None:
-            self._liveliness.gone(publisher)
+        for each in self.liveliness_watchers:
+            each.gone(publisher)
 
     def still_ready(self, now: int) -> bool:
         """Whether it is there, and its messages have not all expired."""

@@ -95,7 +95,7 @@ def summarise(timeline: Timeline) -> Summary:
         threads_used=sum(bool(of_thread) for of_thread in spans),
         threads_at_once=_most_at_once(span for of_thread in spans for span in of_thread),
         services=tuple(_services(timeline.calls)),
-        robot=_robot(timeline, whole),
+        robot=robot_in(timeline, whole),
     )
 
 
@@ -170,8 +170,9 @@ def _services(calls: Iterable[Call]) -> Iterator[ServiceFigures]:
         yield ServiceFigures(service, len(made), answered)
 
 
-def _robot(timeline: Timeline, whole: Window) -> RobotFigures | None:
-    trail = timeline.trail(whole)
+def robot_in(timeline: Timeline, window: Window) -> RobotFigures | None:
+    """What the robot did in a window; ``travelled`` counts from the run's beginning."""
+    trail = timeline.trail(window)
     if not trail:
         return None
     turns = [abs(angle) for angle in _stretches(trail) if abs(angle) > TURN]

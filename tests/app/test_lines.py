@@ -38,8 +38,13 @@ def test_a_wide_status_line_tells_the_executor() -> None:
 @pytest.mark.parametrize("width", [80, 99, 140, 200])
 @pytest.mark.parametrize("state", State)
 @pytest.mark.parametrize("lost", [0, 12345])
-def test_a_status_line_is_as_wide_as_the_screen(width: int, state: State, lost: int) -> None:
-    status = replace(LIVE, state=state, lost=lost, title="12/34 A lesson with quite a long title")
+@pytest.mark.parametrize("recorded", [None, 1_234_567])
+@pytest.mark.parametrize("back", [0, 3_600_000_000_000])
+def test_a_status_line_is_as_wide_as_the_screen(
+    width: int, state: State, lost: int, recorded: int | None, back: int
+) -> None:
+    title = "12/34 A lesson with quite a long title"
+    status = replace(LIVE, state=state, lost=lost, title=title, recorded=recorded, back=back)
     assert len(text(status_row(status, width))) == width
 
 
@@ -53,6 +58,9 @@ def test_a_status_line_is_as_wide_as_the_screen(width: int, state: State, lost: 
         (replace(LIVE, back=3_000_000_000), "◂ BACK 3.0 s "),
         (replace(LIVE, state=State.PAUSED, back=3_000_000_000), "◂ BACK 3.0 s, paused"),
         (replace(LIVE, lost=7), "trace lost 7"),
+        (replace(LIVE, recorded=1234), "REC 1,234"),
+        (replace(LIVE, state=State.REPLAY_STANDS, back=3_000_000_000), "‖ REPLAY"),
+        (replace(LIVE, state=State.REPLAY_PLAYS, back=3_000_000_000), "▶ REPLAY"),
     ],
 )
 def test_a_state_is_told_in_a_word_and_a_sign(status: Status, words: str) -> None:

@@ -15,7 +15,7 @@ from cbtui.screens.replay import ReplayScreen
 from cbtui.widgets.shell import Prompt
 from sim.engine.commands import Pause
 from sim.engine.setup import ProgramSetup, RunSetup
-from sim.trace.events import AnyEvent
+from sim.trace.events import AnyEvent, RunEnded
 from sim.trace.recording import About, Recording, read
 from tests.app.pictures import lines_of, text_of
 from tests.support.builder import ns
@@ -38,7 +38,7 @@ async def replayed(shown: Recording) -> AsyncIterator[tuple[ReplayScreen, Pilot[
     """The console on a recording that has been read to its end."""
     app = CbtuiApp(start_recording=shown)
     app.animation_level = "none"
-    async with app.run_test(size=WIDE) as pilot:
+    async with app.run_test(size=WIDE, notifications=True) as pilot:
         await settle(pilot)
         screen = app.screen
         assert isinstance(screen, ReplayScreen)
@@ -68,8 +68,19 @@ async def test_a_recording_opens_at_its_end_with_every_pane_alive(tmp_path: Path
         assert f"t {screen.live_run.timeline.end / 1e9:.3f} s" in status(pilot)
         picture = text_of(pilot.app)
         assert "Recording of shared-group" in picture
+        assert "␣ go on" in picture
         assert "MainThread" in picture
         assert "[sub_node]" in picture
+
+
+async def test_at_its_end_it_tells_how_the_run_ended(tmp_path: Path) -> None:
+    path = tmp_path / "run.mcap"
+    events = shared_group_run().events
+    write(path, [*events, RunEnded(events[-1].t, "its time was up", failed=False)])
+    async with replayed(read(path)) as (_, pilot):
+        assert "the run is over: its time was up; space plays it from its beginning" in text_of(pilot.app)
+        await press(pilot, "comma")
+        assert "the run is over" not in text_of(pilot.app)
 
 
 async def test_it_can_be_scrubbed_both_ways(tmp_path: Path) -> None:
@@ -135,7 +146,7 @@ async def test_what_cannot_be_read_is_said_in_one_sentence_and_the_rest_is_shown
         assert "‖ REPLAY" in status(pilot)
 
 
-@pytest.mark.parametrize("place", range(0, 100, 9))
+@pytest.mark.parametrize("place", range(5, 100, 15))
 async def test_a_damaged_recording_never_ends_the_console(place: int, tmp_path: Path) -> None:
     path = recording(tmp_path).path
     content = bytearray(path.read_bytes())

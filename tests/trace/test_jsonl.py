@@ -82,6 +82,8 @@ def test_golden_lines() -> None:
         '{"t":2.35,"event":"scan","beams":4,"front":0.5,"message_id":8}',
         '{"t":2.4,"event":"cmd_vel","linear":0.08,"angular":-0.2}',
         '{"t":2.5,"event":"command","message":"/motor_power SetBool data=True"}',
+        '{"t":2.5,"event":"input","message":"{\\"type\\":\\"call\\",\\"name\\":\\"/motor_power\\",'
+        '\\"data\\":true}"}',
         '{"t":2.5,"event":"halt","message":"step"}',
         '{"t":2.5,"event":"line","line":1,"message":"ros2 topic list"}',
         '{"t":2.5,"event":"line_text","line":1,"message":"/odom","error":false}',

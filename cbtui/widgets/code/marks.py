@@ -68,7 +68,7 @@ class Marks:
     def _is_ours(self, file: str) -> bool:
         """Tell whether a file is the one; a name without a folder is taken for it."""
         if file not in self._ours:
-            path = Path(file)
+            path = Path(file.replace("\0", ""))
             self._ours[file] = file == self._name or (path.is_absolute() and path.resolve() == self._real)
         return self._ours[file]
 

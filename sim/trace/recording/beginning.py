@@ -49,7 +49,8 @@ class Beginning:
     """Follows a run, and tells at any time those of its events that later ones build on.
 
     That is who takes part, what runs, waits and is queued now, which calls are out, and what was last seen of
-    the robot, and all inputs, which a repetition needs; finished calls, log lines and the like are not among them. Not thread-safe.
+    the robot, and all inputs, which a repetition needs; finished
+    calls, log lines and the like are not among them. Not thread-safe.
     """
 
     def __init__(self) -> None:

@@ -1,0 +1,84 @@
+"""Repeating a recorded run: its set-up, or another program's, with the inputs that the recording holds."""
+
+from itertools import chain
+from pathlib import Path
+
+import msgspec
+
+from cbtui.record import setup_of
+from sim.engine.inputs import UnknownInputError, inputs_of, stops
+from sim.engine.setup import RunSetup
+from sim.trace.events import AnyEvent, RunEnded
+from sim.trace.recording import Recording, RecordingError, read
+
+_SECOND = 1_000_000_000
+
+
+class CannotRepeatError(Exception):
+    """A recording that cannot be repeated; the text is a sentence that says why."""
+
+
+def repeated(path: Path, program: RunSetup | None, *, seconds: float | None, threads: int | None) -> RunSetup:
+    """The set-up of a run that gets the inputs of a recorded one.
+
+    ``program`` runs instead of the recorded one (None: that one again). ``seconds`` None: as long as the
+    recording; ``threads`` None: as many as it had.
+
+    Raises:
+        CannotRepeatError: the recording cannot be read, was made on the real clock, lacks its set-up, or its
+            program is not there any more, or not as it was.
+    """
+    try:
+        recording = read(path)
+        events = list(chain.from_iterable(recording.batches()))
+        inputs = inputs_of(events)
+    except (RecordingError, UnknownInputError) as error:
+        raise CannotRepeatError(str(error)) from None
+    except OSError as error:
+        raise CannotRepeatError(f"{path} cannot be read to its end: {error.strerror}") from None
+    recorded = setup_of(recording.about)
+    if recorded is None:
+        raise CannotRepeatError(f"{path} does not tell how its run was set up, so it cannot be repeated")
+    if recorded.clock != "virtual":
+        raise CannotRepeatError(f"{path} is of a real-clock run; only virtual runs can be repeated exactly")
+    if program is None:
+        _check_programs(recorded, recording)
+    if seconds is None:
+        until = _end(recorded, events)
+    else:
+        until = round(seconds * _SECOND)
+        inputs = tuple(each for each in inputs if not stops(each))
+    setup = msgspec.structs.replace(
+        program or recorded,
+        clock="virtual",
+        until=until,
+        calls=recorded.calls,
+        lines=recorded.lines,
+        inputs=inputs,
+        contents=recorded.contents,
+    )
+    return setup if threads is None else msgspec.structs.replace(setup, threads=threads)
+
+
+def _end(recorded: RunSetup, events: list[AnyEvent]) -> int | None:
+    """When the repetition is over, unless by itself: a run that broke off lasts as long as is known of it."""
+    if recorded.until is not None or any(isinstance(event, RunEnded) for event in events):
+        return recorded.until
+    return max((event.t for event in events), default=0)
+
+
+def _check_programs(recorded: RunSetup, recording: Recording) -> None:
+    for program in recorded.programs:
+        path = Path(program.path)
+        try:
+            text = path.read_text()
+        except (OSError, UnicodeDecodeError):
+            sentence = (
+                f"the recorded program {path} is not there any more; name the file that is to run instead"
+            )
+            raise CannotRepeatError(sentence) from None
+        if recording.sources.get(program.path, text) != text:
+            sentence = (
+                f"{path} has changed since it was recorded; name it behind the options to run it as it is"
+            )
+            raise CannotRepeatError(sentence)

@@ -1,0 +1,99 @@
+"""Repeating recorded runs and comparing runs, from the command line."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cbtui import cli
+from cbtui.record import about
+from sim.engine.setup import ProgramSetup, RunSetup
+from tests.trace.recording.files import write
+from tests.trace.samples import FULL
+
+
+def cbtui(*words: str) -> "subprocess.CompletedProcess[str]":
+    command = [sys.executable, "-m", "cbtui", *words]
+    return subprocess.run(command, capture_output=True, text=True, check=False)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where ``run.mcap`` and ``run.jsonl`` tell of a run of three seconds with a call and a line."""
+    folder = tmp_path_factory.mktemp("repeat")
+    files = ["--record", str(folder / "run.mcap"), "--events", str(folder / "run.jsonl")]
+    given = ["--for", "3", "--call", "1.2", "--at", "1.2", "ros2 topic list"]
+    done = cbtui("run", "exclusive-2-threads", *given, *files)
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+def test_a_repeated_run_has_the_recorded_events_byte_for_byte(folder: Path) -> None:
+    again = folder / "again.jsonl"
+    done = cbtui("run", "--inputs", str(folder / "run.mcap"), "--events", str(again))
+    assert done.returncode == 0, done.stderr
+    assert again.read_bytes() == (folder / "run.jsonl").read_bytes()
+
+
+def test_a_recording_compared_with_its_lesson_shows_the_same_twice(folder: Path) -> None:
+    done = cbtui("compare", str(folder / "run.mcap"), "exclusive-2-threads", "--call", "1.2")
+    assert done.returncode == 0, done.stderr
+    threads = next(line for line in done.stdout.splitlines() if line.startswith("threads"))
+    first, second = threads.removeprefix("threads").strip().split("   ", 1)
+    assert first == second.strip()
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["run"], "run needs a LESSON or a FILE.py"),
+        (["run", "--inputs", "/no.mcap"], "/no.mcap cannot be read: No such file or directory"),
+        (["run", "--inputs", "x.mcap", "--clock", "real"], "only runs on the virtual clock can be repeated"),
+        (["run", "--inputs", "x.mcap", "--call", "1"], "leave out --call and --at"),
+        (["compare", "/no.mcap", "single-thread"], "/no.mcap cannot be read: No such file or directory"),
+        (["compare", "/no.py", "single-thread"], "there is no file /no.py"),
+        (["compare", "no-lesson", "single-thread"], "No lesson is called 'no-lesson'"),
+        (
+            ["compare", "single-thread", "split-groups", "--from", "9", "--to", "3"],
+            "nothing is left to compare",
+        ),
+    ],
+)
+def test_what_cannot_be_repeated_or_compared_is_refused_in_one_sentence(
+    words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    try:
+        code = cli.main(words)
+    except SystemExit as left:
+        code = int(str(left.code))
+    told = capsys.readouterr()
+    assert (code, told.out) == (2, "")
+    assert sentence in told.err
+    assert len(told.err.splitlines()) == 1
+
+
+def recording_of(folder: Path, clock: str, program: Path) -> Path:
+    setup = RunSetup(title="run", programs=(ProgramSetup(str(program)),), clock=clock)
+    write(folder / "run.mcap", FULL, about(setup))
+    return folder / "run.mcap"
+
+
+def refusal(path: Path, capsys: pytest.CaptureFixture[str]) -> str:
+    with pytest.raises(SystemExit, match="2"):
+        cli.main(["run", "--inputs", str(path)])
+    return capsys.readouterr().err
+
+
+def test_a_run_on_the_real_clock_cannot_be_repeated(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    said = refusal(recording_of(tmp_path, "real", tmp_path / "node.py"), capsys)
+    assert "is of a real-clock run; only virtual runs can be repeated exactly" in said
+
+
+def test_a_program_that_is_gone_cannot_be_repeated(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    said = refusal(recording_of(tmp_path, "virtual", tmp_path / "node.py"), capsys)
+    assert "node.py is not there any more; name the file that is to run instead" in said
