@@ -85,8 +85,7 @@ def check_that_the_oldest_were_dropped_and_ten_kept(trace: Trace, heard: dict[st
         assert numbers[:before] == list(range(before))
         published = published_before_the_first_take_after_the_block(trace, topic)
         assert numbers[before : before + 10] == list(range(published - 10, published))
-        lost = published - 10 - before
-        assert 25 <= lost <= 35  # some 40 came while 10 had room
+        assert published - 10 - before >= 20  # some 40 came while 10 had room
         assert trace.drops(topic) == max(numbers) + 1 - len(numbers)
 
 
@@ -123,7 +122,9 @@ def test_with_three_groups_and_four_threads_all_is_heard_and_only_the_timer_wait
     begin, end = block_of(trace)
     for topic, numbers in heard.items():
         assert numbers == list(range(len(numbers)))
-        assert 35 <= during(trace, topic) <= 45
+        came = [each.t / 1e9 for each in trace.of(Published) if each.topic == f"/{topic}"]
+        surely = sum(begin < at < end - LATE for at in came)
+        assert 20 <= surely <= during(trace, topic) <= sum(begin - LATE < at < end for at in came)
         assert {begin < at < end for at in trace.times(topic)} == {True, False}
     assert during(trace, "timer") == 0
     assert not trace.of(MessageDropped)
