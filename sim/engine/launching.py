@@ -45,7 +45,7 @@ class Launching:
         try:
             with self._lock:
                 self._run.start()
-        except BaseException:
+        except BaseException:  # whatever it is, nothing is held up by a launch that did not begin
             self._programs.release()
             raise
         return self

@@ -20,7 +20,6 @@ from sim.ros.interfaces.known import (
     service,
 )
 from sim.ros.interfaces.listing import interface_names, interface_text, known_packages_sentence, prototype
-from sim.ros.interfaces.mapping import MappingError, message_from_mapping
 from sim.ros.interfaces.workspace import find_definition_folders
 
 __all__ = [
@@ -28,7 +27,6 @@ __all__ = [
     "DefinitionError",
     "InterfaceFinder",
     "Kind",
-    "MappingError",
     "Message",
     "ServiceType",
     "UnknownInterfaceError",
@@ -43,7 +41,6 @@ __all__ = [
     "interface_text",
     "known_packages_sentence",
     "message",
-    "message_from_mapping",
     "message_of_type",
     "names",
     "packages",
