@@ -1,4 +1,4 @@
-"""``cbtui info``: what is in a recording, as plain text."""
+"""What is in a recording, as plain text."""
 
 import sys
 from collections.abc import Iterator

@@ -3,13 +3,15 @@
 import argparse
 import os
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
 from io import TextIOWrapper
 from itertools import chain
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol, Self
+
+from cbtui.commands.values import moment
 
 if TYPE_CHECKING:
     from sim.trace.events import AnyEvent
@@ -48,8 +50,8 @@ class Wish:
     width: int = _WIDTH
 
 
-def add_options(parser: argparse.ArgumentParser, moment: Callable[[str], float]) -> None:
-    """Give the command its arguments; ``moment`` reads a time in seconds."""
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Give the command its arguments."""
     parser.add_argument("file", metavar="FILE.mcap", help="a recording")
     for name, (metavar, about) in FORMATS.items():
         parser.add_argument(f"--{name}", metavar=metavar, help=about)

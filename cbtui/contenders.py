@@ -1,4 +1,4 @@
-"""``cbtui compare``: two runs side by side as plain text; each is a recording, a lesson or a file."""
+"""Two runs that are compared, each a recording, a lesson or a file: read or run, and put side by side."""
 
 import sys
 from collections.abc import Sequence

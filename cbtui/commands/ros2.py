@@ -1,0 +1,15 @@
+"""``cbtui ros2``: carries out a ros2 line in the run that is going on."""
+
+from cbtui.commands.targets import refuse
+
+
+def ros2(words: list[str]) -> int:
+    """Carry out a ros2 line; ``--engine PID`` in front of it chooses among several runs."""
+    process = None
+    if words[:1] == ["--engine"]:
+        if len(words) < 2 or not words[1].isdecimal():
+            refuse("--engine needs the process number of a cbtui run")
+        process, words = int(words[1]), words[2:]
+    from cbtui.ros2_line import run_line
+
+    return run_line(words, process)

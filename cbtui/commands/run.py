@@ -1,0 +1,160 @@
+"""``cbtui run``: runs a lesson, or files, without the console."""
+
+import argparse
+import math
+from pathlib import Path
+
+from cbtui.commands import values
+from cbtui.commands.targets import file_of, is_file_name, lesson_of, refuse, setup_of_targets
+
+DEFAULT_SECONDS = 60.0
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Give the command its arguments."""
+    parser.add_argument(
+        "targets",
+        metavar="LESSON|FILE.py",
+        nargs="*",
+        help="a lesson's id, see cbtui list, or node files or a launch file",
+    )
+    parser.add_argument(
+        "--for",
+        dest="seconds",
+        metavar="SECONDS",
+        type=values.duration,
+        help=f"how long the run lasts in its own time ({DEFAULT_SECONDS:g})",
+    )
+    parser.add_argument(
+        "--threads",
+        metavar="N",
+        type=values.threads,
+        help="number of threads of the executor, instead of its own",
+    )
+    parser.add_argument(
+        "--call",
+        dest="calls",
+        metavar="SECONDS",
+        type=values.moment,
+        action="append",
+        default=[],
+        help="call the SetBool service at that time; may be given again",
+    )
+    parser.add_argument(
+        "--call-data", choices=("true", "false"), default="true", help="what the calls send (%(default)s)"
+    )
+    parser.add_argument(
+        "--at",
+        dest="lines",
+        metavar=("SECONDS", "LINE"),
+        nargs=2,
+        action=values.TimedLine,
+        default=[],
+        help="carry out a ros2 line at that time, such as 2 'ros2 topic list'; may be given again",
+    )
+    parser.add_argument(
+        "--inputs",
+        metavar="FILE.mcap",
+        help="give the run what a recorded one was given, at the same moments; without LESSON: repeat it",
+    )
+    parser.add_argument("--no-robot", dest="robot", action="store_false", help="leave out the lessons' robot")
+    parser.add_argument(
+        "--clock", choices=("virtual", "real"), help="which time it runs on (virtual; a file: real)"
+    )
+    parser.add_argument(
+        "--speed",
+        metavar="X",
+        type=values.speed,
+        default=math.inf,
+        help="seconds of the run per real second, or max (max; on the real clock 1)",
+    )
+    parser.add_argument("--events", metavar="FILE.jsonl", help="write every event as a line of JSON")
+    parser.add_argument(
+        "--record",
+        metavar="FILE.mcap",
+        help="record the run, with its topics as rosbag2 and Foxglove read them",
+    )
+    parser.add_argument(
+        "--force", action="store_true", help="let --record replace a file that is there already"
+    )
+
+
+def run(options: argparse.Namespace) -> int:
+    """Run lessons or files headless; returns the exit code."""
+    if options.inputs is not None:
+        return _repeat(options)
+    if not options.targets:
+        refuse("run needs a LESSON or a FILE.py; cbtui list lists the lessons")
+    options.seconds = options.seconds or DEFAULT_SECONDS
+    is_file = is_file_name(options.targets[0])
+    clock = options.clock or ("real" if is_file else "virtual")
+    _check_run(options, is_file=is_file)
+    paths = [file_of(name) for name in options.targets] if is_file else []
+    lesson = None if is_file else lesson_of(options.targets[0])
+
+    import msgspec
+
+    from cbtui.headless import run_headless
+    from cbtui.lesson_setup import setup_for, setup_for_files
+    from sim.engine.setup import RobotUse
+
+    speed = None if options.speed == math.inf else options.speed
+    if lesson is not None:
+        program = setup_for(lesson, threads=options.threads, speed=speed)
+    else:
+        program = setup_for_files(paths, options.arguments, threads=options.threads, speed=speed)
+    robot = program.robot if options.robot else RobotUse.NEVER
+    return run_headless(
+        msgspec.structs.replace(program, clock=clock, robot=robot),
+        seconds=options.seconds,
+        calls=options.calls,
+        call_data=options.call_data == "true",
+        lines=options.lines,
+        events_path=options.events,
+        recording_path=options.record,
+        replace_recording=options.force,
+    )
+
+
+def _repeat(options: argparse.Namespace) -> int:
+    """Run with the inputs of a recording."""
+    if options.clock == "real":
+        refuse("only runs on the virtual clock can be repeated exactly; leave out --clock real")
+    if options.calls or options.lines:
+        refuse("--inputs gives the run all its inputs; leave out --call and --at")
+    if options.force and options.record is None:
+        refuse("--force lets --record replace a file; there is nothing to record to")
+    import msgspec
+
+    from cbtui.headless import run_set_up
+    from cbtui.repeat import CannotRepeatError, repeated
+    from sim.engine.setup import RobotUse
+
+    speed = None if options.speed == math.inf else options.speed
+    program = setup_of_targets(options, speed) if options.targets else None
+    try:
+        setup = repeated(Path(options.inputs), program, seconds=options.seconds, threads=options.threads)
+    except CannotRepeatError as error:
+        refuse(str(error))
+    if not options.robot:
+        setup = msgspec.structs.replace(setup, robot=RobotUse.NEVER)
+    return run_set_up(
+        msgspec.structs.replace(setup, speed=speed, contents=setup.contents or options.record is not None),
+        events_path=options.events,
+        recording_path=options.record,
+        replace_recording=options.force,
+    )
+
+
+def _check_run(options: argparse.Namespace, *, is_file: bool) -> None:
+    """Refuse what does not fit together."""
+    moments = [("call", at) for at in options.calls] + [("line", at) for at, _ in options.lines]
+    for what, at in moments:
+        if at >= options.seconds:
+            refuse(f"a {what} at {at:g} s comes when the run of {options.seconds:g} s is over; see --for")
+    if not is_file and len(options.targets) > 1:
+        refuse("one lesson runs at a time; several targets must all be files")
+    if options.force and options.record is None:
+        refuse("--force lets --record replace a file; there is nothing to record to")
+    if options.arguments and not is_file:
+        refuse("a lesson has its own arguments; leave out what stands behind --")

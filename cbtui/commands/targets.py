@@ -1,0 +1,59 @@
+"""What a command is to run: a lesson, or files; what is neither ends the program with one line and 2."""
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+if TYPE_CHECKING:
+    from lessons.lesson import Lesson
+    from sim.engine.setup import RunSetup
+
+
+def lesson_of(name: str) -> "Lesson":
+    """The lesson of that id; an unknown one ends the program with one line and 2."""
+    from lessons.catalogue import UnknownLesson, find
+
+    try:
+        return find(name)
+    except UnknownLesson as error:
+        refuse(str(error))
+
+
+def refuse(sentence: str) -> NoReturn:
+    """End the program with one line and 2."""
+    sys.stderr.write(f"cbtui: {sentence}\n")
+    raise SystemExit(2)
+
+
+def need_terminal(instead: str) -> None:
+    """End the program where there is no terminal; ``instead`` is the command that needs none."""
+    if not (sys.stdin.isatty() and sys.stdout.isatty()):
+        refuse(f"the console needs a terminal; use {instead} where there is none")
+
+
+def setup_of_targets(options: argparse.Namespace, speed: float | None) -> "RunSetup":
+    """The set-up of the targets."""
+    from cbtui.lesson_setup import setup_for, setup_for_files
+
+    if not is_file_name(options.targets[0]):
+        if len(options.targets) > 1:
+            refuse("one lesson runs at a time; several targets must all be files")
+        return setup_for(lesson_of(options.targets[0]), threads=options.threads, speed=speed)
+    paths = [file_of(name) for name in options.targets]
+    return setup_for_files(paths, options.arguments, threads=options.threads, speed=speed)
+
+
+def is_file_name(target: str) -> bool:
+    """Tell whether a target is meant as a file rather than as a lesson's id."""
+    return target.endswith((".py", ".xml", ".yaml", ".yml")) or "/" in target
+
+
+def file_of(name: str) -> Path:
+    """The program file of that name; one that is not there ends the program with one line and 2."""
+    path = Path(name)
+    if path.is_dir():
+        refuse(f"{name} is a folder; name the file in it that is to run")
+    if not path.is_file():
+        refuse(f"there is no file {name}; give a Python file, or a lesson of cbtui list")
+    return path
