@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 
 from sim.clock.interface import Clock
 from sim.clock.paced import PacedClock
-from sim.clock.virtual import VirtualClock, VirtualSignal
+from sim.clock.virtual import VirtualClock
+from sim.clock.virtual_threads import VirtualSignal
 
 if TYPE_CHECKING:
     from _typeshed import FileDescriptorLike

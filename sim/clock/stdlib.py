@@ -15,7 +15,8 @@ from types import TracebackType
 from typing import Any, TypeVar
 
 from sim.clock.outside import start_outside
-from sim.clock.virtual import VirtualClock, VirtualSignal, VirtualThread
+from sim.clock.virtual import VirtualClock
+from sim.clock.virtual_threads import VirtualSignal, VirtualThread
 
 _allocate_lock = threading.Lock
 _thread_start = threading.Thread.start

@@ -7,6 +7,9 @@ Computing takes no virtual time, so the same inputs give the same run, whatever 
 Paced to a speed, a jump takes as long as the pace says, and what comes from outside (a key pressed in the
 console) takes effect at the moment that the pace has reached. Time can stand, between two jumps or in the
 middle of a moment, and go on from there one step at a time.
+
+Threads that only ever wait for no time, as a loop around ``time.sleep(0)`` does, keep a moment from ending.
+So that such a run can be stopped and given inputs, a moment has a recess after every thousand waits.
 """
 
 import threading
@@ -18,70 +21,18 @@ from itertools import count
 from sim.clock.interface import Stopped
 from sim.clock.outside import start_outside
 from sim.clock.pace import Pace
+from sim.clock.virtual_threads import VirtualSignal, VirtualThread
 
 # Kept from before sim.clock.stdlib puts the virtual ones in their place.
 _allocate_lock = threading.Lock
 _get_ident = threading.get_ident
 _Thread = threading.Thread
 
+WAITS_TO_RECESS = 1_000
+"""Waits between two recesses of a moment."""
+
 VIRTUAL_EPOCH = 1_700_000_000 * 1_000_000_000
 """Every virtual run begins at this moment (14 November 2023), so its stamps are the same each time."""
-
-
-class VirtualThread:
-    """A thread that lives on virtual time: it runs while it has the baton and stands at its gate else."""
-
-    __slots__ = (
-        "current_wait",
-        "gate",
-        "ident",
-        "interrupted",
-        "is_main",
-        "knocked",
-        "name",
-        "waiting",
-        "woken",
-    )
-
-    def __init__(self, name: str) -> None:
-        self.name = name
-        self.is_main = False
-        self.ident = 0
-        self.interrupted = False
-        self.knocked = False
-        self.gate = _allocate_lock()
-        self.gate.acquire()
-        self.waiting = False
-        self.woken = False
-        self.current_wait = 0
-
-
-class VirtualSignal:
-    """A signal between threads on virtual time; others may set it through ``VirtualClock.inject``."""
-
-    __slots__ = ("_clock", "_set", "_waiter")
-
-    def __init__(self, clock: "VirtualClock") -> None:
-        self._clock = clock
-        self._set = False
-        self._waiter: VirtualThread | None = None
-
-    def wait(self, deadline: int | None) -> bool:
-        """Wait until set, or until virtual time reaches ``deadline``; True if it was set."""
-        if not self._set and (deadline is None or deadline > self._clock.now()):
-            self._waiter = self._clock.current
-            try:
-                self._clock.park(deadline)
-            finally:
-                self._waiter = None
-        was_set, self._set = self._set, False
-        return was_set
-
-    def set(self) -> None:
-        """Set the flag; the waiting thread becomes able to run."""
-        self._set = True
-        if self._waiter is not None:
-            self._clock.unpark(self._waiter)
 
 
 class VirtualClock:
@@ -100,7 +51,7 @@ class VirtualClock:
         self._deadlines: list[tuple[int, int, VirtualThread | Callable[[], None]]] = []
         self._inbox: deque[Callable[[], None]] = deque()
         self._inputs: deque[Callable[[], None]] = deque()
-        self._script: deque[tuple[int, Callable[[], None]]] = deque()
+        self._script: deque[tuple[int, int, Callable[[], None]]] = deque()
         self._bell = _allocate_lock()
         self._bell.acquire()
         self.pace = Pace(speed)
@@ -111,6 +62,12 @@ class VirtualClock:
 
         It may return a moment at which time is to stop over, so that it is called there too.
         """
+        self.on_recess: Callable[[int], None] = _ignore
+        """Called in every recess, with its number, on the thread that waits; it must not wait."""
+        self.recess = 0
+        """Which recess of its moment the run is in; 0: none."""
+        self._recesses = 0
+        self._next_recess = WAITS_TO_RECESS
         self.steps = 0
         """How often a thread came to a wait; a run that neither takes steps nor rests is stuck."""
         self.rests = False
@@ -209,16 +166,19 @@ class VirtualClock:
         """Have an input carried out at the end of the moment the run has reached; any thread may call this.
 
         By then every deadline of the moment is served, each thread waits and ``before_jump`` was called, and
-        the inputs given before have had all their effects on that moment. So the moments and the order of its
-        inputs determine a run, whatever their real times were: ``give_at`` repeats it. The action must not
-        wait; a moment that goes on for ever has no end.
+        the inputs given before have had all their effects on that moment. A long moment takes one input in
+        each recess. So the moments and recesses of its inputs and their order determine a run, whatever their
+        real times were: ``give_at`` repeats it. The action must not wait.
         """
         self._inputs.append(action)
         self._ring()
 
-    def give_at(self, moment: int, action: Callable[[], None]) -> None:
-        """Have an input carried out at the end of ``moment``; call it in the order of the moments."""
-        self._script.append((moment, action))
+    def give_at(self, moment: int, action: Callable[[], None], recess: int = 0) -> None:
+        """Have an input carried out at the end of ``moment``, or in a recess of it.
+
+        Call it in the order of the moments and recesses.
+        """
+        self._script.append((moment, recess, action))
 
     def _ring(self) -> None:
         if self._bell.locked():
@@ -312,6 +272,8 @@ class VirtualClock:
 
     def _hand_on(self, me: VirtualThread) -> None:
         self.steps += 1
+        if self.steps >= self._next_recess and not self._stopping:
+            self._take_recess()
         following = self._next_thread()
         if following is not me:
             self._pass_baton(following)
@@ -326,6 +288,28 @@ class VirtualClock:
             self._jump()
         return self._ready.popleft()
 
+    def _take_recess(self) -> None:
+        """Do what is done at the end of a moment, but for letting time pass."""
+        self._recesses += 1
+        self._next_recess = self.steps + WAITS_TO_RECESS
+        self.recess = self._recesses
+        self.before_jump()
+        self.on_recess(self.recess)
+        self._input_is_taken()
+        if self.pace.steps:
+            self.pace.halt()
+        self._empty_inbox()
+        while self.pace.stands and not self._inputs:
+            self._rest(None)
+            self._empty_inbox()
+        self.recess = 0
+
+    def _come_to(self, moment: int) -> None:
+        if moment > self._now:
+            self._now = moment
+            self._recesses = 0
+            self._next_recess = self.steps + WAITS_TO_RECESS
+
     def _jump(self) -> None:
         """Bring time to the next deadline, or to where something from outside makes a thread able to run."""
         deadline = self._earliest_deadline()
@@ -335,7 +319,7 @@ class VirtualClock:
             if not self._inbox and self._input_is_taken():
                 return
             if self._script:
-                moment, _ = self._script[0]
+                moment, *_ = self._script[0]
                 target = moment if target is None else min(moment, target)
             if self._goal_is_reached_before(target):
                 return
@@ -343,7 +327,7 @@ class VirtualClock:
             return
         assert target is not None
         if target > self._now:
-            self._now = target
+            self._come_to(target)
             if self.pace.steps:
                 self.halt()
         if target == deadline:
@@ -356,9 +340,9 @@ class VirtualClock:
         return stopover if deadline is None else min(stopover, deadline)
 
     def _input_is_taken(self) -> bool:
-        """Carry out one input, if there is one for the moment that ends."""
-        if self._script and self._script[0][0] <= self._now:
-            _, action = self._script.popleft()
+        """Carry out one input, if there is one for the end of the moment or its recess."""
+        if self._script and self._is_due(*self._script[0][:2]):
+            _, _, action = self._script.popleft()
         elif self._inputs:
             action = self._inputs.popleft()
         else:
@@ -367,10 +351,13 @@ class VirtualClock:
             action()
         return True
 
+    def _is_due(self, moment: int, recess: int) -> bool:
+        return moment <= self._now and (not self.recess or 0 < recess <= self.recess)
+
     def _goal_is_reached_before(self, target: int | None) -> bool:
         goal = self.pace.goal_before(target)
         if goal is not None:
-            self._now = max(self._now, goal)
+            self._come_to(goal)
         elif target is not None or not self.pace.steps:
             return False
         self.pace.halt()
@@ -406,10 +393,13 @@ class VirtualClock:
             if delay is not None and delay <= 0:
                 return True
             self._rest(delay)
-        self._now = self.pace.reached(self._now, target)
+        self._come_to(self.pace.reached(self._now, target))
+        self._empty_inbox()
+        return False
+
+    def _empty_inbox(self) -> None:
         while self._inbox:
             self._inbox.popleft()()
-        return False
 
     def _take_steering(self) -> None:
         """Do what was to be done at once; the rest stays in its order."""
@@ -441,3 +431,7 @@ class _Steering:
 
 def _nothing() -> int | None:
     """Stand in for a hook that nobody set."""
+
+
+def _ignore(_recess: int) -> None:
+    """Stand in for a listener that nobody set."""

@@ -22,7 +22,9 @@ def inputs_of(events: Iterable[AnyEvent]) -> tuple[TimedInput, ...]:
     Raises:
         UnknownInputError: one of them is none that this version knows.
     """
-    found = tuple(TimedInput(event.t, event.command) for event in events if isinstance(event, InputGiven))
+    found = tuple(
+        TimedInput(event.t, event.command, event.recess) for event in events if isinstance(event, InputGiven)
+    )
     for each in found:
         try:
             commands.input_of(each.command)

@@ -10,6 +10,7 @@ import signal
 import sys
 import threading
 import time
+from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
 
@@ -29,8 +30,10 @@ from sim.engine.requests import Requests
 from sim.engine.robot import provide_robot
 from sim.engine.setup import RunSetup
 from sim.engine.sourced import use_workspace
+from sim.engine.standstill import Standstill
 from sim.engine.starting import Starter, StartError, is_launch_file
 from sim.engine.time_control import RealControl, VirtualControl
+from sim.engine.tuned import tuning_of
 from sim.engine.watchdog import Watchdog
 from sim.robot.bullet import WorldUnavailable
 from sim.ros import importing
@@ -70,7 +73,7 @@ class Engine:
             else VirtualControl(clock, self._outbox.record)
         )
         probe = Probe(self._clock, self._control.record, self._contents)
-        self._host = Host(self._clock, probe, threads=setup.threads)
+        self._host = Host(self._clock, probe, threads=setup.threads, tuning=tuning_of(setup))
         self._requests = Requests(self._host, self._outbox.record)
         self._programs = Programs(self._host, self._outbox.record)
         self._starter = Starter(self._programs, self._setup)
@@ -92,10 +95,11 @@ class Engine:
         use_workspace(self._starter.packages, self._clock)
         share_machine()
         self._settle_children()
-        provide_robot(self._setup.robot, self._host, self._outbox.record, self._fail)
+        provide_robot(self._setup, self._host, self._outbox.record, self._fail)
         if self._virtual is not None:
             self._virtual.before_jump = self._host.explain_waits
             Watchdog(self._virtual, self._outbox.record, self._give_up).start()
+            self._virtual.on_recess = Standstill(self._virtual, self._outbox.record, self._give_up).look
             live_on(self._virtual)
             random.seed(0)
         elif isinstance(self._clock, PacedClock):
@@ -142,7 +146,7 @@ class Engine:
         if self._virtual is not None:
             for given in self._setup.inputs:
                 command = commands.input_of(given.command)
-                self._virtual.give_at(given.at, lambda it=command: self._carry_out(it))  # type: ignore[misc]
+                self._virtual.give_at(given.at, partial(self._carry_out, command), given.recess)
 
     def _call_service(self, data: bool) -> None:
         service = self._setup.service
@@ -158,6 +162,9 @@ class Engine:
         if not self._over:
             self._over = True
             with self._host.lock:
+                if self._host.tuning is not None and not failed:
+                    for sentence in self._host.tuning.unmet():
+                        self._outbox.record(Notice(self._clock.now(), Severity.WARN, sentence))
                 self._outbox.close(RunEnded(self._clock.now(), reason, failed))
 
     def _interrupt(self) -> None:
@@ -258,7 +265,8 @@ class Engine:
 
     def _carry_out(self, command: commands.WorldCommand) -> None:
         if not isinstance(command, commands.CompleteLine):
-            self._outbox.record(InputGiven(self._clock.now(), commands.input_text(command)))
+            recess = 0 if self._virtual is None else self._virtual.recess
+            self._outbox.record(InputGiven(self._clock.now(), commands.input_text(command), recess))
         match command:
             case commands.CallService(name=name, data=data):
                 self._requests.set_bool(name, data)

@@ -46,4 +46,5 @@ class Requests:
             host.probe.service_called(call, name, data)
             request = Request(data, call, now, lambda _response: None)
             if not host.network.send_request(name, srv_type, request):
+                host.probe.request_lost(call, name)
                 self._record(Notice(now, Severity.WARN, f"nobody offers {name} yet, so the call is lost"))

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from sim.engine.setup import RobotUse
+from sim.engine.setup import RobotUse, RunSetup
 from sim.ros.host import Host
 from sim.trace.events import AnyEvent
 
@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 
 
 def provide_robot(
-    use: RobotUse, host: Host, record: Callable[[AnyEvent], None], unavailable: Callable[[str], None]
+    setup: RunSetup, host: Host, record: Callable[[AnyEvent], None], unavailable: Callable[[str], None]
 ) -> None:
     """Have the robot there when it is to be.
 
@@ -21,25 +21,28 @@ def provide_robot(
     Raises:
         WorldUnavailable: one that is to be there from the beginning cannot be; the text says what to do.
     """
-    match use:
+    match setup.robot:
         case RobotUse.ALWAYS:
-            _start_at_once(host, record)
+            _start_at_once(setup, host, record)
         case RobotUse.WHEN_USED:
-            _start_when_used(host, record, unavailable)
+            _start_when_used(setup, host, record, unavailable)
         case RobotUse.NEVER:
             return
 
 
-def _start_at_once(host: Host, record: Callable[[AnyEvent], None]) -> None:
+def _start_at_once(setup: RunSetup, host: Host, record: Callable[[AnyEvent], None]) -> None:
     from sim.robot.driver import Driver
     from sim.robot.world import World
 
     world = World()
-    Driver(host, record, lambda: world).start()
+    Driver(host, record, lambda: world, setup.sensor_rate).start()
 
 
 def _start_when_used(
-    host: Host, record: Callable[[AnyEvent], None], unavailable: Callable[[str], None]
+    setup: RunSetup,
+    host: Host,
+    record: Callable[[AnyEvent], None],
+    unavailable: Callable[[str], None],
 ) -> None:
     from sim.robot.bullet import WorldUnavailable
     from sim.robot.names import NAMES
@@ -56,6 +59,6 @@ def _start_when_used(
     def start() -> None:
         from sim.robot.driver import Driver
 
-        Driver(host, record, build).start()
+        Driver(host, record, build, setup.sensor_rate).start()
 
     host.network.when_wanted(NAMES, start)

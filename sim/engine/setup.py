@@ -38,11 +38,13 @@ class TimedLine(msgspec.Struct, frozen=True):
 class TimedInput(msgspec.Struct, frozen=True):
     """An input of a run of before, to be carried out at the end of moment ``at`` (nanoseconds).
 
-    ``command`` is what ``sim.engine.commands.input_text`` makes of it.
+    ``command`` is what ``sim.engine.commands.input_text`` makes of it, ``recess`` which recess of a moment
+    that did not end it was given in, 0 for none.
     """
 
     at: int
     command: str
+    recess: int = 0
 
 
 class ProgramSetup(msgspec.Struct, frozen=True):
@@ -50,6 +52,26 @@ class ProgramSetup(msgspec.Struct, frozen=True):
 
     path: str
     arguments: tuple[str, ...] = ()
+
+
+class GroupChange(msgspec.Struct, frozen=True):
+    """Another callback group for one callback of a node ("": of any), by their names on the trace.
+
+    ``wish`` is ``own``, ``shared``, ``reentrant`` or ``default``, see ``sim.ros.tuning.GroupWish``. For what
+    has no callback, ``callback`` is its topic or service.
+    """
+
+    node: str
+    callback: str
+    wish: str
+
+
+class PeriodChange(msgspec.Struct, frozen=True):
+    """Another period (nanoseconds) for the timers of a node ("": of any) that call ``callback``."""
+
+    node: str
+    callback: str
+    period: int
 
 
 class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
@@ -61,7 +83,9 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     first SetBool service that a program offers. ``lines`` get the numbers 1, 2, … on the trace.
     ``packages`` are folders in which packages are looked for, after those around the programs. A run
     without programs ends with its lines. ``inputs``, in the order of their
-    moments, need the virtual clock. With ``contents`` the trace has what published messages hold.
+    moments, need the virtual clock. ``groups`` and ``periods`` change the programs' callbacks, the later of
+    two changes of one callback counts. ``sensor_rate`` (Hz) is that of the robot's odometry and scans, None
+    leaves the usual one. With ``contents`` the trace has what published messages hold.
     """
 
     title: str
@@ -76,4 +100,7 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     inputs: tuple[TimedInput, ...] = ()
     packages: tuple[str, ...] = ()
     robot: RobotUse = RobotUse.ALWAYS
+    sensor_rate: float | None = None
+    groups: tuple[GroupChange, ...] = ()
+    periods: tuple[PeriodChange, ...] = ()
     contents: bool = False

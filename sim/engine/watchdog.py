@@ -7,6 +7,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from sim.clock import VirtualClock
+from sim.clock.virtual_threads import VirtualThread
 from sim.trace.events import AnyEvent, Notice, Severity
 
 _RealThread = threading.Thread
@@ -50,18 +51,19 @@ class Watchdog:
 
     def _sentence(self) -> str:
         thread = self._clock.current
-        frame = sys._current_frames().get(thread.ident)
-        place = "somewhere"
-        while frame is not None:
-            file = frame.f_code.co_filename
-            module = frame.f_globals.get("__name__", "").partition(".")[0]
-            if (
-                module not in {"sim", "runpy"} and module not in sys.stdlib_module_names
-            ) or module == "__main__":
-                place = f"{Path(file).name}:{frame.f_lineno}, in {frame.f_code.co_name}"
-                break
-            frame = frame.f_back
         return (
-            f"{thread.name} does not come to a wait ({place}): it computes without end, "
+            f"{thread.name} does not come to a wait ({place_of(thread)}): it computes without end, "
             "or waits for something outside the virtual clock; mend it, or run with the real clock"
         )
+
+
+def place_of(thread: VirtualThread) -> str:
+    """Where in the program a thread is, in a few words."""
+    frame = sys._current_frames().get(thread.ident)
+    while frame is not None:
+        file = frame.f_code.co_filename
+        module = frame.f_globals.get("__name__", "").partition(".")[0]
+        if (module not in {"sim", "runpy"} and module not in sys.stdlib_module_names) or module == "__main__":
+            return f"{Path(file).name}:{frame.f_lineno}, in {frame.f_code.co_name}"
+        frame = frame.f_back
+    return "somewhere"

@@ -24,8 +24,8 @@ from sim.ros.probe import PublishingProbe
 from sim.ros.qos import QoSProfile, ReliabilityPolicy
 from sim.trace.events import AnyEvent, ArenaShown, RobotMoved, Scanned, VelocityCommanded
 
-TICK = 0.05
-"""Seconds between two measurements: 20 Hz."""
+SENSOR_RATE = 20.0
+"""Measurements a second of each sensor, unless a run wants others."""
 
 _LATENCY = 3_000_000
 """Nanoseconds from a tick to the odometry, and from there to the scan: reading a sensor takes time."""
@@ -36,10 +36,18 @@ _SENSOR_QOS = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
 class Driver:
     """Drives a robot until the host's time ends. ``record`` takes what the trace is to know of the robot.
 
-    ``world`` builds the robot's world once the driver runs, on its thread: that takes a while.
+    ``world`` builds the robot's world once the driver runs, on its thread: that takes a while. ``rate`` (Hz)
+    is that of odometry and scans, None the usual one.
     """
 
-    def __init__(self, host: Host, record: Callable[[AnyEvent], None], world: Callable[[], World]) -> None:
+    def __init__(
+        self,
+        host: Host,
+        record: Callable[[AnyEvent], None],
+        world: Callable[[], World],
+        rate: float | None = None,
+    ) -> None:
+        self._tick = 1 / (rate or SENSOR_RATE)
         self._host = host
         self._record = record
         self._build_world = world
@@ -77,9 +85,9 @@ class Driver:
         self._world = self._build_world()
         executor = SingleThreadedExecutor(context=self._context)
         clock.sleep(_LATENCY)
-        self._node.create_timer(TICK, self._publish_odometry)
+        self._node.create_timer(self._tick, self._publish_odometry)
         clock.sleep(_LATENCY)
-        self._node.create_timer(TICK, self._publish_scan)
+        self._node.create_timer(self._tick, self._publish_scan)
         executor.add_node(self._node)
         executor.spin()
 
@@ -131,7 +139,7 @@ class Driver:
             angle_min=ANGLE_MIN,
             angle_max=ANGLE_MIN + (len(ranges) - 1) * ANGLE_INCREMENT,
             angle_increment=ANGLE_INCREMENT,
-            scan_time=TICK,
+            scan_time=self._tick,
             range_min=RANGE_MIN,
             range_max=RANGE_MAX,
             ranges=array.array("f", ranges.tobytes()),

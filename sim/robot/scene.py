@@ -26,6 +26,8 @@ class Scene:
     """PyBullet's numbers of what was built: bodies, and the joints of the wheels."""
 
     floor: int
+    walls: tuple[int, ...]
+    sphere: int
     robot: int
     wheels: tuple[int, int]
 
@@ -35,14 +37,15 @@ def build(client: Client, arena: Arena) -> Scene:
     floor = client.createMultiBody(0, client.createCollisionShape(client.GEOM_PLANE))
     client.changeDynamics(floor, _BASE, lateralFriction=1.0)
     _collide_as(client, floor, _BASE, _FLOOR)
-    for wall in arena.walls:
-        _collide_as(client, _add_wall(client, wall), _BASE, _OBSTACLE)
-    _collide_as(client, _add_sphere(client, arena.sphere), _BASE, _OBSTACLE)
+    walls = tuple(_add_wall(client, wall) for wall in arena.walls)
+    sphere = _add_sphere(client, arena.sphere)
+    for obstacle in (*walls, sphere):
+        _collide_as(client, obstacle, _BASE, _OBSTACLE)
     robot = _add_robot(client)
     joints = {client.getJointInfo(robot, i)[1].decode(): i for i in range(client.getNumJoints(robot))}
     wheels = (joints["left_wheel_joint"], joints["right_wheel_joint"])
     _set_surfaces(client, robot, wheels, caster=joints["caster_joint"])
-    return Scene(floor, robot, wheels)
+    return Scene(floor, walls, sphere, robot, wheels)
 
 
 def _add_wall(client: Client, wall: Segment) -> int:

@@ -152,7 +152,8 @@ class Client(Entity):
             )
             if self._introspection is not None:
                 self._introspection.request_sent(self, call, copy)
-            self.node.context.network.send_request(self.name, self.srv_type, outgoing)
+            if not self.node.context.network.send_request(self.name, self.srv_type, outgoing):
+                self._probe.request_lost(call, self.name)
         return call, future
 
     def remove_pending_request(self, future: Future[Any]) -> None:

@@ -6,6 +6,9 @@ from typing import Any, cast
 import msgspec
 
 from sim.ros.interfaces import Message, definition, to_cdr, type_name
+from sim.ros.offered_qos import offered_qos_text
+from sim.ros.qos import QoSProfile
+from sim.ros.type_description import type_hash
 from sim.trace.events import (
     AnyEvent,
     ContentsLost,
@@ -20,12 +23,22 @@ _BOUND = 32_000_000
 """Bytes of messages, as far as can be told, that may wait to be encoded."""
 
 
+class _Topic:
+    """A topic's number, and how long its last message was."""
+
+    __slots__ = ("number", "size")
+
+    def __init__(self, number: TopicId) -> None:
+        self.number = number
+        self.size = 0
+
+
 class _Content:
     """A message of a topic that nobody changes any more."""
 
     __slots__ = ("message", "topic")
 
-    def __init__(self, message: Message, topic: TopicId) -> None:
+    def __init__(self, message: Message, topic: _Topic) -> None:
         self.message = message
         self.topic = topic
 
@@ -52,9 +65,8 @@ class Contents:
     def __init__(self, *, wanted: bool, make_room: Callable[[], None] | None = None) -> None:
         self.wanted = wanted
         self._make_room = make_room
-        self._encoder = msgspec.msgpack.Encoder(enc_hook=self._encode)
-        self._topics: dict[tuple[str, type[Message]], TopicId] = {}
-        self._sizes: dict[TopicId, int] = {}
+        self._encoder = msgspec.msgpack.Encoder(enc_hook=_encode)
+        self._topics: dict[tuple[str, type[Message]], _Topic] = {}
         # Two counters, each with a thread of its own that sets it.
         self._taken = 0
         self._packed = 0
@@ -65,27 +77,31 @@ class Contents:
         """Whether messages are looked at later, so that nobody may be handed them to change."""
         return self.wanted and self._make_room is None
 
-    def events(self, now: int, message: MessageId, topic: str, data: Message) -> list[AnyEvent]:
-        """What goes on the trace besides the publication."""
+    def events(
+        self, now: int, message: MessageId, topic: str, data: Message, qos: QoSProfile
+    ) -> list[AnyEvent]:
+        """What goes on the trace besides the publication; ``qos`` is what its publisher offers."""
         if self._taken - self._packed > _BOUND and self._make_room is not None:
             self._make_room()
         if self._taken - self._packed > _BOUND:
             self._lost += 1
             return [ContentsLost(now, self._lost)]
         known = self._topics.get((topic, type(data)))
-        appeared = [] if known else [self._appeared(now, topic, type(data))]
-        number = known or appeared[0].topic
-        content = _Content(data, number)
-        if self._make_room is not None:
-            sent: AnyEvent = MessageSent(now, message, number, self._encode(content))
-        else:
-            sent = cast("AnyEvent", _MessageWaiting(now, message, number, content))
-        self._taken += self._sizes.get(number, 0)
-        return [*appeared, sent]
+        if known is None:
+            known = self._topics[topic, type(data)] = _Topic(len(self._topics) + 1)
+            return [
+                _appeared(now, known.number, topic, type(data), qos),
+                self._sent(now, message, known, data),
+            ]
+        return [self._sent(now, message, known, data)]
 
-    def _appeared(self, now: int, topic: str, kind: type[Message]) -> TopicAppeared:
-        number = self._topics[topic, kind] = len(self._topics) + 1
-        return TopicAppeared(now, number, topic, type_name(kind), definition(kind))
+    def _sent(self, now: int, message: MessageId, topic: _Topic, data: Message) -> AnyEvent:
+        self._taken += topic.size
+        if self._make_room is None:
+            return cast("AnyEvent", _MessageWaiting(now, message, topic.number, _Content(data, topic)))
+        packed = _cdr(data)
+        topic.size = 0 if packed is None else len(packed)
+        return MessageSent(now, message, topic.number, packed)
 
     def pack(self, events: list[AnyEvent]) -> bytes:
         """Do what ``sim.trace.events.encode`` does, for events among which are some of ``events``."""
@@ -94,11 +110,21 @@ class Contents:
         self._packed = taken
         return packed
 
-    def _encode(self, content: Any) -> bytes | None:
-        data: bytes | None
-        try:
-            data = to_cdr(content.message)
-        except Exception:  # noqa: BLE001 -- what a program put into a list of a message's can be anything
-            data = None
-        self._sizes[content.topic] = 0 if data is None else len(data)
-        return data
+
+def _appeared(now: int, number: TopicId, topic: str, kind: type[Message], qos: QoSProfile) -> TopicAppeared:
+    return TopicAppeared(
+        now, number, topic, type_name(kind), definition(kind), str(type_hash(kind)), offered_qos_text(qos)
+    )
+
+
+def _encode(content: Any) -> bytes | None:
+    packed = _cdr(content.message)
+    content.topic.size = 0 if packed is None else len(packed)
+    return packed
+
+
+def _cdr(message: Message) -> bytes | None:
+    try:
+        return to_cdr(message)
+    except Exception:  # noqa: BLE001 -- what a program put into a list of a message's can be anything
+        return None

@@ -10,12 +10,16 @@ from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from itertools import count
+from typing import TYPE_CHECKING
 from weakref import ref
 
 from sim.clock import Clock, RealClock
 from sim.ros.domain import domain_of_machine
 from sim.ros.network import Network
 from sim.ros.probe import Probe, SilentProbe
+
+if TYPE_CHECKING:
+    from sim.ros.tuning import Tuning
 
 # Kept from before sim.clock.stdlib puts the virtual ones in their place.
 _RLock = threading.RLock
@@ -45,13 +49,15 @@ class Host:
 
     ``lock`` guards all state of executors, groups and queues; it is never held while something waits or
     while a callback runs. ``threads`` replaces the number of threads of every executor made (None: as the
-    program says). ``default_domain`` is that of whatever is no program. ``takes_signals`` tells that the
-    whole process is the program's, so that rclpy's signal handlers may be installed in it.
+    program says), ``tuning`` is what else was changed about the programs. ``default_domain`` is that of
+    whatever is no program. ``takes_signals`` tells that the whole process is the program's, so that rclpy's
+    signal handlers may be installed in it.
     """
 
     clock: Clock
     probe: Probe
     threads: int | None = None
+    tuning: "Tuning | None" = None
     lock: AbstractContextManager[bool] = field(default_factory=HostLock)
     default_domain: int = field(default_factory=domain_of_machine)
     takes_signals: bool = False

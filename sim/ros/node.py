@@ -31,6 +31,7 @@ from sim.ros.publisher import Publisher
 from sim.ros.remapping import Remapping
 from sim.ros.rosout import RosoutPublisher, offer_rosout, withdraw_rosout
 from sim.ros.time_source import TimeSource
+from sim.ros.tuning import TunedNode
 from sim.ros.type_description_service import TypeDescriptionService
 from sim.ros.utilities import get_default_context
 
@@ -108,6 +109,7 @@ class Node(NodeEntities, NodeParameters, GraphQueries):
         self._clock = ROSClock()
         self._logger = get_logger(self._node_names.logger_name)
         self._agenda = Agenda(self._context.host, self._context.probe)
+        self._tuned = None  # what every node brings along is not the program's
         self.trace_id = self._context.probe.node_made(self.get_fully_qualified_name())
         self._default_callback_group = MutuallyExclusiveCallbackGroup()
         self._rate_group = ReentrantCallbackGroup()
@@ -125,6 +127,7 @@ class Node(NodeEntities, NodeParameters, GraphQueries):
         if enable_logger_service:
             self._logger_service = LoggingService(self)
         self._type_description_service = TypeDescriptionService(self)
+        self._tuned = self._tuning()
 
     # What it is
 
@@ -226,6 +229,13 @@ class Node(NodeEntities, NodeParameters, GraphQueries):
                 entity.destroy()
             withdraw_rosout(self, self._rosout_publisher)
             self._context.network.leave_node(self)
+
+    def _tuning(self) -> TunedNode | None:
+        """What a person changed about the node; only what is on the screen can be changed there."""
+        tuning = self._context.host.tuning
+        if tuning is None or not self._context.probe.visible:
+            return None
+        return TunedNode(self._node_names.full_name, tuning)
 
     def _tell_parameter_change(self, change: ParameterChange) -> None:
         publish_change(self._parameter_event_publisher, change)

@@ -13,12 +13,14 @@ from sim.ros.clock import Clock
 from sim.ros.context import Context
 from sim.ros.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from sim.ros.guard_condition import NodeGuardCondition
+from sim.ros.probe import callback_name
 from sim.ros.publisher import Publisher
 from sim.ros.qos import QoSProfile, as_profile, qos_profile_services_default
 from sim.ros.qos_overriding_options import QoSOverridingOptions, overridden
 from sim.ros.service import Service
 from sim.ros.subscription import Subscription
 from sim.ros.timer import Rate, Timer
+from sim.ros.tuning import TunedNode
 from sim.ros.type_support import check_is_valid_msg_type, check_is_valid_srv_type
 from sim.ros.waitable import Waitable
 from sim.ros.waitable_entity import WaitableEntity
@@ -37,6 +39,7 @@ class NodeEntities:
     _clock: Clock
     _default_callback_group: CallbackGroup
     _rate_group: CallbackGroup
+    _tuned: TunedNode | None
 
     @abstractmethod
     def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
@@ -165,7 +168,7 @@ class NodeEntities:
             profile = overridden(Subscription, self.__as_node(), name, profile, qos_overriding_options)
         check_is_valid_msg_type(msg_type)
         with self._agenda.host.lock:
-            group = self._chosen_group(callback_group)
+            group = self._chosen_group(callback_group, callback_name(callback))
             subscription = Subscription(
                 self.__as_node(),
                 msg_type,
@@ -192,7 +195,10 @@ class NodeEntities:
         """Make a timer that calls back every ``timer_period_sec`` seconds."""
         period = int(float(timer_period_sec) * 1_000_000_000)
         with self._agenda.host.lock:
-            group = self._chosen_group(callback_group)
+            name = "" if callback is None else callback_name(callback)
+            group = self._chosen_group(callback_group, name)
+            if self._tuned is not None:
+                period = self._tuned.period(name, period)
             timer = Timer(
                 self.__as_node(), period, callback, group, clock or self._clock, autostart=autostart
             )
@@ -227,7 +233,7 @@ class NodeEntities:
         check_is_valid_srv_type(srv_type)
         name = self.resolve_service_name(srv_name)
         with self._agenda.host.lock:
-            group = self._chosen_group(callback_group)
+            group = self._chosen_group(callback_group, callback_name(callback))
             service = Service(
                 self.__as_node(), srv_type, name, callback, group, qos_profile, srv_name=srv_name
             )
@@ -247,7 +253,7 @@ class NodeEntities:
         check_is_valid_srv_type(srv_type)
         name = self.resolve_service_name(srv_name)
         with self._agenda.host.lock:
-            group = self._chosen_group(callback_group)
+            group = self._chosen_group(callback_group, name)
             self._context.network.want(name)
             client = Client(self.__as_node(), srv_type, name, qos_profile, group, srv_name=srv_name)
             self._agenda.add(client)
@@ -258,12 +264,16 @@ class NodeEntities:
     ) -> NodeGuardCondition:
         """Make a guard condition."""
         with self._agenda.host.lock:
-            guard = NodeGuardCondition(self.__as_node(), callback, self._chosen_group(callback_group))
+            group = self._chosen_group(callback_group, "" if callback is None else callback_name(callback))
+            guard = NodeGuardCondition(self.__as_node(), callback, group)
             self._agenda.add(guard)
         return guard
 
-    def _chosen_group(self, wanted: CallbackGroup | None) -> CallbackGroup:
-        return self._default_callback_group if wanted is None else wanted
+    def _chosen_group(self, wanted: CallbackGroup | None, name: str) -> CallbackGroup:
+        """The group of what goes by ``name``: the program's choice unless a person made another."""
+        default = self._default_callback_group
+        asked = default if wanted is None else wanted
+        return asked if self._tuned is None else self._tuned.group(name, asked, default)
 
     # Removing them
 

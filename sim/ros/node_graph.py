@@ -5,17 +5,15 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections import defaultdict
 from collections.abc import Callable, Iterable
-from copy import copy
 from itertools import chain
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from sim.ros.agenda import Agenda
-from sim.ros.duration import Duration, Infinite
 from sim.ros.exceptions import NodeNameNonExistentError
 from sim.ros.expand_topic_name import expand_topic_name
 from sim.ros.handle import Handle
 from sim.ros.interfaces import type_name
-from sim.ros.qos import LivelinessPolicy, QoSProfile
+from sim.ros.offered_qos import as_discovered
 from sim.ros.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 from sim.ros.type_description import type_hash
 from sim.ros.validate_full_topic_name import validate_full_topic_name
@@ -207,16 +205,5 @@ def _info(end: Publisher | Subscription, kind: TopicEndpointTypeEnum) -> TopicEn
         topic_type_hash=type_hash(end.msg_type),
         endpoint_type=kind,
         endpoint_gid=list(end.gid),
-        qos_profile=_as_discovered(end.qos_profile),
+        qos_profile=as_discovered(end.qos_profile),
     )
-
-
-def _as_discovered(profile: QoSProfile) -> QoSProfile:
-    """A profile as others see it: what was left open has become what DDS takes for it."""
-    seen = copy(profile)
-    for name in ("lifespan", "deadline", "liveliness_lease_duration"):
-        if getattr(seen, name) == Duration():
-            setattr(seen, name, Infinite)
-    if seen.liveliness is LivelinessPolicy.SYSTEM_DEFAULT:
-        seen.liveliness = LivelinessPolicy.AUTOMATIC
-    return seen

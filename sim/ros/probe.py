@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from sim.ros.contents import Contents
     from sim.ros.entity import Entity
     from sim.ros.interfaces import Message
+    from sim.ros.qos import QoSProfile
 
 
 class _Here(threading.local):
@@ -182,12 +183,12 @@ class Probe:
         """Whether published messages are looked at later, so that nobody may be handed them to change."""
         return self._contents is not None and self._contents.keeps_messages
 
-    def published(self, message: int, topic: str, node: int, data: "Message") -> None:
-        """A message left a publisher."""
+    def published(self, message: int, topic: str, node: int, data: "Message", qos: "QoSProfile") -> None:
+        """A message left a publisher that offers ``qos``."""
         now = self._now()
         self._sink(events.Published(now, message, topic, node, self._here.entity))
         if self._contents is not None and self._contents.wanted:
-            for event in self._contents.events(now, message, topic, data):
+            for event in self._contents.events(now, message, topic, data, qos):
                 self._sink(event)
 
     def service_called(self, call: int, service: str, request: object) -> None:
@@ -197,6 +198,14 @@ class Probe:
     def service_replied(self, call: int, service: str, response: object) -> None:
         """A service answered."""
         self._sink(events.ServiceReplied(self._now(), call, service, repr(response)))
+
+    def request_lost(self, call: int, service: str) -> None:
+        """A request found nobody that offers its service."""
+        self._sink(events.RequestLost(self._now(), call, service))
+
+    def qos_mismatched(self, topic: str, node: int, subscription: int, policy: str) -> None:
+        """A publisher and a subscription do not match; 0 for what is no part of the program."""
+        self._sink(events.QosMismatched(self._now(), topic, node, subscription, policy))
 
     def call_blocked(self, call: int, service: str) -> None:
         """The calling thread stands still until a reply comes."""
@@ -252,9 +261,9 @@ class PublishingProbe(SilentProbe):
         """Whether published messages are looked at later."""
         return self._program.keeps_messages
 
-    def published(self, message: int, topic: str, node: int, data: "Message") -> None:
+    def published(self, message: int, topic: str, node: int, data: "Message", qos: "QoSProfile") -> None:
         """A message left a publisher; the trace names no node for it."""
-        self._program.published(message, topic, 0, data)
+        self._program.published(message, topic, 0, data, qos)
 
     def service_replied(self, call: int, service: str, response: object) -> None:
         """A service answered."""
@@ -268,20 +277,34 @@ class LineProbe(PublishingProbe):
         """A request left for a service."""
         self._program.service_called(call, service, request)
 
+    def request_lost(self, call: int, service: str) -> None:
+        """A request found nobody that offers its service."""
+        self._program.request_lost(call, service)
+
 
 def _forget(_event: AnyEvent) -> None:
     """Take an event that nobody wants."""
+
+
+def callback_name(callback: Callable[..., Any]) -> str:
+    """The name under which a callback is on the trace."""
+    inner = _innermost(callback)
+    return str(getattr(inner, "__name__", type(inner).__name__))
+
+
+def _innermost(callback: Callable[..., Any]) -> Callable[..., Any]:
+    while isinstance(callback, partial):
+        callback = callback.func
+    unwrapped: Callable[..., Any] = inspect.unwrap(callback)
+    return unwrapped
 
 
 def _written_at(callback: Callable[..., Any] | None) -> tuple[str, str, int, int]:
     """Name, file and first and last line of a callback; empty for one without source of its own."""
     if callback is None:
         return "", "", 0, 0
-    inner = callback
-    while isinstance(inner, partial):
-        inner = inner.func
-    inner = inspect.unwrap(inner)
-    name = getattr(inner, "__name__", type(inner).__name__)
+    inner = _innermost(callback)
+    name = callback_name(callback)
     code = getattr(inner, "__code__", None) or getattr(type(inner).__call__, "__code__", None)
     if code is None:
         return name, "", 0, 0

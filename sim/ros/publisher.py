@@ -123,7 +123,7 @@ class Publisher:
             raise InvalidHandle("Cannot publish: the publisher was destroyed")
         with self._host.lock:
             message = self._probe.message_id()
-            self._probe.published(message, self.topic_name, self.node.trace_id, copy)
+            self._probe.published(message, self.topic_name, self.node.trace_id, copy, self.qos_profile)
             reached = self._reached
             shared = len(reached) > 1 or self._kept is not None or self._probe.keeps_messages
             self._sent += 1
@@ -189,6 +189,17 @@ class Publisher:
             f"New publisher discovered on topic '{self.topic_name}', offering incompatible QoS. "
             f"No messages will be received from it. Last incompatible policy: {policy}",
         )
+        self._record_mismatch(subscription, policy)
+
+    def _record_mismatch(self, subscription: Subscription, policy: str) -> None:
+        ours, theirs = self._probe, subscription.node.context.probe
+        if ours.visible or theirs.visible:
+            (ours if ours.visible else theirs).qos_mismatched(
+                self.topic_name,
+                self.node.trace_id if ours.visible else 0,
+                subscription.trace_id if theirs.visible else 0,
+                policy,
+            )
 
     def destroy(self) -> None:
         """Take it off the network; publishing raises from now on."""

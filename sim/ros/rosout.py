@@ -61,7 +61,7 @@ class RosoutPublisher(Publisher):
             if expires > now:
                 message = self._probe.message_id()
                 data = _message(record)
-                self._probe.published(message, self.topic_name, self.node.trace_id, data)
+                self._probe.published(message, self.topic_name, self.node.trace_id, data, self.qos_profile)
                 shared = self._probe.keeps_messages
                 subscription.deliver(ExpiringDelivery(data, message, sent, shared, 0, expires))
 

@@ -1,41 +1,111 @@
 """The service calls of a run and which of them were without a reply at a moment."""
 
-from operator import attrgetter
+from collections.abc import Collection, Sequence
 
-from sim.trace.events import CallId, ServiceCalled, ServiceReplied
+from sim.trace.events import CallId, RequestLost, ServiceCalled, ServiceReplied
 from sim.trace.history import History
-from sim.trace.intervals import Intervals, Lane, Row
-from sim.trace.model import Call, Nanoseconds
+from sim.trace.intervals import Answer, Intervals, Lane, Row, end_or_none
+from sim.trace.model import Call, Nanoseconds, Window
+from sim.trace.spill import Spill
+from sim.trace.table import Table
+
+NEWEST_KEPT = 1024
 
 
-class Calls:
-    """Every call, in order of its sending."""
+class Calls(Intervals):
+    """The table of all calls; ``Call`` objects of the newest are kept, the others made for answers."""
 
-    def __init__(self) -> None:
-        self.sent: History[Call] = History(attrgetter("sent"))
-        self._by_row: list[Call] = []
-        self._intervals = Intervals()
-        self._lane = Lane(self._intervals)
+    CALL, CALLER, SERVICE, LOST, RESPONSE = range(2, 7)
+
+    def __init__(self, spill: Spill) -> None:
+        super().__init__(spill, more=5)
+        self._services: dict[str, int] = {}
+        self._requests = _texts(spill)
+        self._responses = _texts(spill)
+        self._responses.add("")
+        self._lane = Lane(self)
+        self._in_order = Table(spill, 2)
+        self._numbered = Table(spill, 2)
         self._pending: dict[CallId, Row] = {}
+        self._newest: dict[Row, Call] = {}
 
     def send(self, event: ServiceCalled) -> None:
         """A request leaves."""
-        call = Call(event.call, event.service, event.entity, event.request, event.t)
-        row = self._intervals.open(event.t)
-        self.sent.add(call)
-        self._by_row.append(call)
+        service = self._services.setdefault(event.service, len(self._services))
+        row = self.open(event.t, event.call, event.entity, service, 0, 0)
+        self._requests.add(event.request)
         self._lane.add(row)
+        self._in_order.add([event.t, row])
+        self._numbered.add([event.call, row])
         self._pending[event.call] = row
+        self._newest[row] = Call(event.call, event.service, event.entity, event.request, event.t)
+        self._newest.pop(row - NEWEST_KEPT, None)
 
     def reply(self, event: ServiceReplied) -> None:
         """An answer comes; one to no known call is passed over."""
         row = self._pending.pop(event.call, None)
         if row is None:
             return
-        self._intervals.close(row, event.t)
-        self._by_row[row].replied = event.t
-        self._by_row[row].response = event.response
+        self.table.change(row, self.RESPONSE, len(self._responses))
+        self._responses.add(event.response)
+        self.table.change(row, self.END, event.t)
+        if row in self._newest:
+            self._newest[row].replied = event.t
+            self._newest[row].response = event.response
+
+    def lose(self, event: RequestLost) -> None:
+        """Nobody was there to take the request."""
+        row = self._pending.get(event.call)
+        if row is not None:
+            self.table.change(row, self.LOST, 1)
+            if row in self._newest:
+                self._newest[row].lost = True
+
+    @property
+    def services(self) -> Collection[str]:
+        """The services that were called, in order of their first calls."""
+        return self._services.keys()
+
+    def sent(self) -> Sequence[Call]:
+        """All calls, in order of sending."""
+        return Answer(self._in_order.column(1, range(len(self._in_order))), self._call)
+
+    def sent_at(self, call: CallId) -> Nanoseconds | None:
+        """When a request was sent; None for one that is not known to have been."""
+        place = self._numbered.until(call) - 1
+        if place < 0 or self._numbered.cell(place, 0) != call:
+            return None
+        return self.started_at(self._numbered.cell(place, 1))
+
+    def within(self, window: Window) -> Sequence[Call]:
+        """The calls that were out at some time in the window, in order of sending."""
+        return Answer(self._lane.overlapping(window), self._call)
 
     def pending(self, at: Nanoseconds) -> tuple[Call, ...]:
         """The calls that had been sent and not answered at ``at``."""
-        return tuple(self._by_row[row] for row in self._lane.covering(at))
+        return tuple(map(self._call, self._lane.covering(at)))
+
+    def _call(self, row: Row) -> Call:
+        return self._newest[row] if row in self._newest else self._made(row)
+
+    def _made(self, row: Row) -> Call:
+        sent, end, call, caller, service, lost, response = self.table.row(row)
+        return Call(
+            call,
+            list(self._services)[service],
+            caller,
+            self._requests[row],
+            sent,
+            end_or_none(end),
+            self._responses[response],
+            bool(lost),
+        )
+
+
+def _texts(spill: Spill) -> History[str]:
+    return History(_at_once, str, spill)
+
+
+def _at_once(_: str) -> Nanoseconds:
+    """Texts have no time: they stay in order of arrival."""
+    return 0

@@ -10,11 +10,12 @@ from sim.trace.events import (
     NodeAppeared,
     NodeId,
     ProcessAppeared,
+    ProcessEnded,
     ProcessId,
     ThreadAppeared,
     ThreadId,
 )
-from sim.trace.model import Entity, Executor, Group, Thread
+from sim.trace.model import Entity, Executor, Group, Nanoseconds, Thread
 
 
 def letter(place: int) -> str:
@@ -28,6 +29,8 @@ class Cast:
 
     def __init__(self) -> None:
         self.processes: dict[ProcessId, str] = {}
+        self.ended: dict[ProcessId, Nanoseconds] = {}
+        """When those of several programs ended that have."""
         self.threads: dict[ThreadId, Thread] = {}
         self.executors: dict[ExecutorId, Executor] = {}
         self.nodes: dict[NodeId, str] = {}
@@ -43,11 +46,15 @@ class Cast:
         """Take in one of several programs."""
         self.processes[event.process] = event.label
 
+    def end_process(self, event: ProcessEnded) -> None:
+        """One of several programs is over."""
+        self.ended[event.process] = event.t
+
     def add_thread(self, event: ThreadAppeared) -> None:
         """Take in a thread; among several programs its name begins with its program's label."""
         label = self.processes.get(event.process)
         name = event.name if label is None else f"{label} {event.name}"
-        self.threads[event.thread] = Thread(event.thread, name, event.t)
+        self.threads[event.thread] = Thread(event.thread, name, event.t, event.process)
 
     def add_executor(self, event: ExecutorAppeared) -> None:
         """Take in an executor."""

@@ -1,7 +1,7 @@
 """Two runs side by side: the figures of the same window of both, callback by callback."""
 
 from collections import Counter, defaultdict
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import TypeAlias
@@ -32,10 +32,21 @@ class Side:
     figures: CallbackStatistics
     waits: WaitFigures | None
 
+    @property
+    def longest_wait(self) -> Nanoseconds:
+        """The longest that a call had waited, or that the callback waited in the window without one."""
+        of_calls = self.figures.wait.most if self.figures.wait else 0
+        return max(of_calls, self.waits.longest if self.waits else 0)
+
+    @property
+    def idle(self) -> bool:
+        """Whether nothing became of the callback in the window."""
+        return not (self.figures.calls or self.figures.drops or self.waits)
+
 
 @dataclass(frozen=True, slots=True)
 class Pair:
-    """A callback in both runs; None where a run has no such callback or nothing became of it."""
+    """A callback in both runs; None where a run has no such callback."""
 
     name: str
     first: Side | None
@@ -44,16 +55,26 @@ class Pair:
 
 @dataclass(frozen=True, slots=True)
 class RunFigures:
-    """A run in the window: threads that ran callbacks, the most at one moment, and what the robot did."""
+    """A run in the window: threads that ran callbacks, the most at one moment, and what the robot did.
 
+    ``end`` is how far the whole run is known; ``collisions`` are the times that the robot touched something,
+    one that had begun before the window included.
+    """
+
+    end: Nanoseconds
     threads_used: int
     threads_at_once: int
     robot: RobotFigures | None
+    collisions: int
 
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """The same window of two runs. Callbacks are in the order of appearance, the first run's first."""
+    """The same window of two runs.
+
+    Callbacks are in the order of appearance, the first run's first; what neither run used in the window is
+    left out.
+    """
 
     window: Window
     first: RunFigures
@@ -62,23 +83,37 @@ class Comparison:
 
 
 def compare(first: Timeline, second: Timeline, window: Window) -> Comparison:
-    """Compare a window of two runs; callbacks match by node, kind, function and topic or service."""
-    sides = _sides(first, window), _sides(second, window)
-    keys = list(dict.fromkeys([*sides[0], *sides[1]]))
-    short = Counter(_short_name(key) for key in keys)
+    """Compare a window of two runs; callbacks match by node, kind, function and topic or service.
+
+    Those that have no such partner match without their node, if that leaves no doubt. Takes time in
+    proportion to the calls and waits in the window.
+    """
+    of_first, of_second = _sides(first, window), _sides(second, window)
+    partners = _partners(of_first, of_second)
+    pairs: list[tuple[Key, Side | None, Side | None]] = [
+        (key, side, of_second.get(partners.get(key, key))) for key, side in of_first.items()
+    ]
+    taken = {*of_first, *partners.values()}
+    pairs += [(key, None, side) for key, side in of_second.items() if key not in taken]
+    used = [pair for pair in pairs if any(side and not side.idle for side in pair[1:])]
+    short = Counter(_short_name(key) for key, *_ in used)
     return Comparison(
         window,
         _run_figures(first, window),
         _run_figures(second, window),
         tuple(
-            Pair(
-                _short_name(key) if short[_short_name(key)] == 1 else _long_name(key),
-                sides[0].get(key),
-                sides[1].get(key),
-            )
-            for key in keys
+            Pair(_short_name(key) if short[_short_name(key)] == 1 else _long_name(key), one, other)
+            for key, one, other in used
         ),
     )
+
+
+def _partners(first: Iterable[Key], second: Iterable[Key]) -> dict[Key, Key]:
+    """Which callbacks of the first run are the second's with another node's name."""
+    alone, others = set(first) - set(second), set(second) - set(first)
+    nodeless = Counter(key[1:] for key in alone), Counter(key[1:] for key in others)
+    found = {key[1:]: key for key in others if nodeless[1][key[1:]] == 1}
+    return {key: found[key[1:]] for key in alone if nodeless[0][key[1:]] == 1 and key[1:] in found}
 
 
 def _short_name(key: Key) -> str:
@@ -98,10 +133,8 @@ def _sides(timeline: Timeline, window: Window) -> dict[Key, Side]:
     for entity in timeline.entities.values():
         alike = _description(entity, timeline)
         equals[alike] += 1
-        figures = statistics_of(timeline, entity.id, window)
         waits = _wait_figures(timeline.waits_of(entity.id, window), timeline, window)
-        if figures.calls or figures.drops or waits:
-            sides[*alike, equals[alike]] = Side(figures, waits)
+        sides[*alike, equals[alike]] = Side(statistics_of(timeline, entity.id, window), waits)
     return sides
 
 
@@ -136,4 +169,6 @@ def _run_figures(timeline: Timeline, window: Window) -> RunFigures:
     before = timeline.robot(window.start)
     if robot is not None and before is not None:
         robot = replace(robot, travelled=robot.travelled - before.travelled)
-    return RunFigures(used, threads_at_once(timeline, window), robot)
+    touching = [step.touching for step in timeline.trail(window)]
+    collisions = sum(touches for touches, _ in groupby(touching))
+    return RunFigures(timeline.end, used, threads_at_once(timeline, window), robot, collisions)

@@ -255,17 +255,33 @@ class Published(Event, frozen=True, tag="publish"):
     entity: EntityId
 
 
+class QosMismatched(Event, frozen=True, tag="qos_mismatch"):
+    """A publisher and a subscription of one topic do not match, so no message goes between them.
+
+    ``node`` is the publisher's (0: one outside the program), ``entity`` the subscription (0: one outside),
+    ``policy`` the quality of service that the two do not agree on, as ROS names it.
+    """
+
+    topic: str
+    node: NodeId
+    entity: EntityId
+    policy: str
+
+
 class TopicAppeared(Event, frozen=True, tag="topic"):
     """The first message of a topic was published of which the trace is to have the contents.
 
     ``message_type`` is a full name (``std_msgs/msg/Int32``), ``definition`` its text with all that it
-    contains, in the ``ros2msg`` form of MCAP schemas.
+    contains, in the ``ros2msg`` form of MCAP schemas, ``type_hash`` what ROS 2 knows the type by
+    (``RIHS01_…``), ``offered_qos`` what the first publisher offers, as YAML in rosbag2's form.
     """
 
     topic: TopicId
     name: str
     message_type: str
     definition: str
+    type_hash: str = ""
+    offered_qos: str = ""
 
 
 class MessageSent(Event, frozen=True, tag="message"):
@@ -294,6 +310,13 @@ class ServiceReplied(Event, frozen=True, tag="service_reply"):
     call: CallId
     service: str
     response: str
+
+
+class RequestLost(Event, frozen=True, tag="request_lost"):
+    """A request was sent while nobody offered the service; no answer will ever come."""
+
+    call: CallId
+    service: str
 
 
 class CallBlocked(Event, frozen=True, tag="blocked"):
@@ -385,10 +408,12 @@ class InputGiven(Event, frozen=True, tag="input"):
     """Something was told to the run from outside, and is carried out now: what a repetition has to be told.
 
     ``command`` is a command of the engine as JSON. What the set-up of the run foresaw is not among these, nor
-    is what is done to the run's time.
+    is what is done to the run's time. ``recess`` is 0 at the end of its moment; a moment that does not end
+    takes inputs in recesses, which are counted from 1.
     """
 
     command: str
+    recess: int = 0
 
 
 class TimeHalted(Event, frozen=True, tag="halt"):
@@ -467,10 +492,12 @@ AnyEvent: TypeAlias = (
     | CallbackResumed
     | CallbackFailed
     | Published
+    | QosMismatched
     | TopicAppeared
     | MessageSent
     | ServiceCalled
     | ServiceReplied
+    | RequestLost
     | CallBlocked
     | CallUnblocked
     | Logged

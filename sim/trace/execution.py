@@ -1,7 +1,5 @@
 """Which callbacks ran when and on which thread, and which were suspended."""
 
-from array import array
-from bisect import bisect_left, bisect_right, insort
 from collections import defaultdict, deque
 from collections.abc import Iterator, Sequence
 
@@ -16,75 +14,98 @@ from sim.trace.events import (
     MessageId,
     ThreadId,
 )
-from sim.trace.intervals import Answer, Intervals, Lane, Row
+from sim.trace.intervals import OPEN, Answer, Intervals, Lane, Layer, Row, end_or_none
 from sim.trace.model import Nanoseconds, Span, Window
+from sim.trace.spill import Spill
+from sim.trace.table import Table
+
+ALWAYS = Window(-OPEN, OPEN)
+
+LATELY = 64
+"""Among so many last calls the one is looked for that took a message which is told of late."""
 
 
 class Spans(Intervals):
-    """The columns of all spans; ``Span`` objects are made for answers."""
+    """The table of all spans; ``Span`` objects are made for answers."""
 
-    def __init__(self) -> None:
-        super().__init__()
-        self.entities = array("i")
-        self.threads = array("i")
-        self.messages = array("q")
-        self.ages = array("q")
-        self.errors: dict[Row, str] = {}
+    ENTITY, THREAD, MESSAGE, AGE, ERROR, RESUMED = range(2, 8)
+
+    def __init__(self, spill: Spill) -> None:
+        super().__init__(spill, more=6)
+        self._errors = [""]
+        self._error_of = {"": 0}
 
     def begin(
-        self, at: Nanoseconds, entity: EntityId, thread: ThreadId, message: MessageId, age: Nanoseconds
+        self,
+        at: Nanoseconds,
+        entity: EntityId,
+        thread: ThreadId,
+        message: MessageId,
+        age: Nanoseconds,
+        resumed: int,
     ) -> Row:
         """Begin a span."""
-        self.entities.append(entity)
-        self.threads.append(thread)
-        self.messages.append(message)
-        self.ages.append(age)
-        return self.open(at)
+        return self.table.append([at, OPEN, entity, thread, message, age, 0, resumed])
+
+    def entity(self, row: Row) -> EntityId:
+        """Whose call it is."""
+        return self.table.cell(row, self.ENTITY)
+
+    def taken(self, row: Row) -> tuple[MessageId, Nanoseconds]:
+        """The message that was taken, and its age then."""
+        return self.table.cell(row, self.MESSAGE), self.table.cell(row, self.AGE)
+
+    def was_resumed(self, row: Row) -> bool:
+        """Whether the span is that of a call that went on, and not of one that began."""
+        return bool(self.table.cell(row, self.RESUMED))
+
+    def fail(self, row: Row, error: str) -> None:
+        """The call of a span raised."""
+        if error not in self._error_of:
+            self._error_of[error] = len(self._errors)
+            self._errors.append(error)
+        self.table.change(row, self.ERROR, self._error_of[error])
 
     def span(self, row: Row) -> Span:
         """One span, as a value."""
-        return Span(
-            self.starts[row],
-            self.end(row),
-            self.entities[row],
-            self.threads[row],
-            self.messages[row],
-            self.ages[row],
-            self.errors.get(row, ""),
-        )
+        start, end, entity, thread, message, age, error, _ = self.table.row(row)
+        return Span(start, end_or_none(end), entity, thread, message, age, self._errors[error])
 
 
 class ThreadLane(Lane):
     """The spans of a thread. As they only overlap by nesting, the first layer is all the time it ran any."""
 
-    __slots__ = ("_busy_before", "stack")
+    __slots__ = ("_busy", "_busy_before", "_latest", "stack")
 
     def __init__(self, intervals: Intervals) -> None:
         super().__init__(intervals)
         self.stack: list[Row] = []
-        self._busy_before = array("q")
+        self._latest: Row | None = None
+        self._busy: Nanoseconds = 0
+        self._busy_before = Table(intervals.spill, 1)
 
-    def add(self, row: Row) -> None:
-        """Take in a span that begins inside those of the stack, or after all."""
-        super().add(row)
+    def add(self, row: Row) -> Layer:
+        """Take in a span that begins inside those of the stack, or after all; tells where."""
+        layer = super().add(row)
         self.stack.append(row)
-        outer = self.layers[0]
-        if outer[-1] == row:
-            self._busy_before.append(self._ran(outer[-2], len(outer) - 2) if len(outer) > 1 else 0)
+        if layer is self._layers[0]:
+            if self._latest is not None:
+                ended = self._intervals.ended_at(self._latest)
+                self._busy += ended - self._intervals.started_at(self._latest)
+            self._busy_before.append([self._busy])
+            self._latest = row
+        return layer
 
     def busy_until(self, at: Nanoseconds) -> Nanoseconds:
         """How long the thread ran callbacks up to ``at``."""
         if not self.layers:
             return 0
         outer = self.layers[0]
-        place = bisect_right(outer, at, key=self._intervals.starts.__getitem__) - 1
+        place = outer.until(at) - 1
         if place < 0:
             return 0
-        start, end = self._intervals.starts[outer[place]], self._intervals.ends[outer[place]]
-        return self._busy_before[place] + min(end, at) - start
-
-    def _ran(self, row: Row, place: int) -> Nanoseconds:
-        return self._busy_before[place] + self._intervals.ends[row] - self._intervals.starts[row]
+        end = self._intervals.ended_at(outer.interval(place))
+        return self._busy_before.cell(place, 0) + min(end, at) - outer.start(place)
 
 
 class Execution:
@@ -95,25 +116,25 @@ class Execution:
     suspended first is taken to be the one that goes on.
     """
 
-    def __init__(self) -> None:
-        self._spans = Spans()
-        self._gaps = Intervals()
+    def __init__(self, spill: Spill) -> None:
+        self._spans = Spans(spill)
+        self._gaps = Intervals(spill)
         self._threads: defaultdict[ThreadId, ThreadLane] = defaultdict(lambda: ThreadLane(self._spans))
         self._entities: defaultdict[EntityId, Lane] = defaultdict(lambda: Lane(self._spans))
         self._groups: defaultdict[GroupId, Lane] = defaultdict(lambda: Lane(self._spans))
         self._group_of: dict[EntityId, Lane] = {}
         self._suspended: defaultdict[EntityId, Lane] = defaultdict(lambda: Lane(self._gaps))
         self._awaiting: defaultdict[EntityId, deque[tuple[Row, Row]]] = defaultdict(deque)
-        self._resumed_at: defaultdict[EntityId, array[int]] = defaultdict(lambda: array("q"))
-        self._resumed: set[Row] = set()
+        self._resumed_at: defaultdict[EntityId, Table] = defaultdict(lambda: Table(spill, 1))
         self._doubtful = 0
+        self._newest_taken: MessageId = -1
 
     # folding
 
     def join(self, entity: EntityId, group: GroupId) -> None:
         """From now on the entity's calls count as its group's, and those it has had already."""
         self._group_of[entity] = self._groups[group]
-        for row in sorted(row for layer in self._entities[entity].layers for row in layer):
+        for row in sorted(self._entities[entity].overlapping(ALWAYS)):
             self._groups[group].add(row)
 
     def start(self, event: CallbackStarted) -> None:
@@ -145,16 +166,15 @@ class Execution:
         if self._awaiting[event.entity]:
             gap, row = self._awaiting[event.entity].popleft()
             self._gaps.close(gap, event.t)
-            message, age = self._spans.messages[row], self._spans.ages[row]
-        insort(self._resumed_at[event.entity], event.t)
-        self._resumed.add(len(self._spans))
-        self._begin(event.t, event.entity, event.thread, message, age)
+            message, age = self._spans.taken(row)
+        self._resumed_at[event.entity].add([event.t])
+        self._begin(event.t, event.entity, event.thread, message, age, resumed=1)
 
     def fail(self, event: CallbackFailed) -> None:
         """A callback that runs has raised."""
         for row in reversed(self._threads[event.thread].stack):
-            if self._spans.entities[row] == event.entity:
-                self._spans.errors[row] = event.error
+            if self._spans.entity(row) == event.entity:
+                self._spans.fail(row, event.error)
                 return
 
     def doubt(self) -> None:
@@ -173,10 +193,10 @@ class Execution:
 
     def begun(self, entity: EntityId, window: Window) -> Sequence[Span]:
         """The spans of an entity with which its calls begin."""
-        rows = self._entities[entity].overlapping(window)
-        starts = self._spans.starts
-        first = [row for row in rows if starts[row] >= window.start and row not in self._resumed]
-        return Answer(first, self._spans.span)
+        rows = self._entities[entity].starting(window)
+        if self._resumed_at[entity]:
+            rows = [row for row in rows if not self._spans.was_resumed(row)]
+        return Answer(rows, self._spans.span)
 
     def inside(self, group: GroupId, window: Window) -> Sequence[Span]:
         """Spans of a group."""
@@ -199,7 +219,7 @@ class Execution:
     def calls(self, entity: EntityId, window: Window) -> int:
         """How many calls of the entity's callback begin in the window."""
         resumed = self._resumed_at[entity]
-        again = bisect_left(resumed, window.end) - bisect_left(resumed, window.start)
+        again = resumed.before(window.end) - resumed.before(window.start)
         return max(0, self._entities[entity].starting_in(window) - max(0, again))
 
     def beside(self, entity: EntityId, at: Nanoseconds, step: int) -> Iterator[Nanoseconds]:
@@ -207,20 +227,29 @@ class Execution:
         yield from self._entities[entity].starts_beside(at, step)
         yield from self._entities[entity].ends_beside(at, step)
 
-    def taken_lately(self, message: MessageId) -> Nanoseconds | None:
-        """When one of the last calls took a message."""
-        lately = self._spans.messages[-64:]
+    def taken_lately(self, message: MessageId) -> Span | None:
+        """That of the last calls which took a message."""
+        if message > self._newest_taken:
+            return None
+        lately = self._spans.table.newest(Spans.MESSAGE, LATELY)
         if message not in lately:
             return None
-        return self._spans.starts[len(self._spans) - len(lately) + lately.index(message)]
+        return self._spans.span(len(self._spans) - len(lately) + lately.index(message))
 
     def _begin(
-        self, at: Nanoseconds, entity: EntityId, thread: ThreadId, message: MessageId, age: Nanoseconds
+        self,
+        at: Nanoseconds,
+        entity: EntityId,
+        thread: ThreadId,
+        message: MessageId,
+        age: Nanoseconds,
+        resumed: int = 0,
     ) -> None:
+        self._newest_taken = max(self._newest_taken, message)
         lane = self._threads[thread]
         while lane.stack and lane.stack[-1] < self._doubtful:
             self._spans.close(lane.stack.pop(), at)
-        row = self._spans.begin(at, entity, thread, message, age)
+        row = self._spans.begin(at, entity, thread, message, age, resumed)
         lane.add(row)
         self._entities[entity].add(row)
         if entity in self._group_of:
@@ -230,7 +259,7 @@ class Execution:
         """Take the innermost call of the entity off the thread."""
         stack = self._threads[thread].stack
         for place in range(len(stack) - 1, -1, -1):
-            if self._spans.entities[stack[place]] == entity:
+            if self._spans.entity(stack[place]) == entity:
                 return stack.pop(place)
         return None
 

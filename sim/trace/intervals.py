@@ -1,11 +1,11 @@
-"""Intervals of time in columns, and lanes of them that answer which ones overlap a window or a moment."""
+"""Intervals of time in a table, and lanes of them that answer which ones overlap a window or a moment."""
 
-from array import array
-from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator, Sequence
 from typing import TypeAlias, TypeVar, overload
 
 from sim.trace.model import Nanoseconds, Window
+from sim.trace.spill import Spill
+from sim.trace.table import Table
 
 Row: TypeAlias = int
 T = TypeVar("T")
@@ -53,32 +53,63 @@ class Answer(Sequence[T]):
 
 
 class Intervals:
-    """Start and end of many intervals; a row number stands for one of them.
+    """Start and end of many intervals, and what else is known of each; a row number stands for one of them.
 
-    Columns instead of objects, because an hour of a busy run has hundreds of thousands of intervals.
+    A table instead of objects, because an hour of a busy run has hundreds of thousands of intervals.
     """
 
-    def __init__(self) -> None:
-        self.starts = array("q")
-        self.ends = array("q")
+    START, END = range(2)
+
+    def __init__(self, spill: Spill, more: int = 0) -> None:
+        self.spill = spill
+        self.table = Table(spill, 2 + more)
 
     def __len__(self) -> int:
-        return len(self.starts)
+        return len(self.table)
 
-    def open(self, start: Nanoseconds) -> Row:
-        """Begin an interval."""
-        self.starts.append(start)
-        self.ends.append(OPEN)
-        return len(self.starts) - 1
+    def open(self, start: Nanoseconds, *more: int) -> Row:
+        """Begin an interval; ``more`` are the cells behind start and end."""
+        return self.table.append([start, OPEN, *more])
 
     def close(self, row: Row, end: Nanoseconds) -> None:
         """End an interval, at its start if ``end`` lies before that."""
-        self.ends[row] = max(end, self.starts[row])
+        self.table.change(row, self.END, max(end, self.started_at(row)))
 
-    def end(self, row: Row) -> Nanoseconds | None:
-        """When an interval ended; None while it lasts."""
-        end = self.ends[row]
-        return None if end == OPEN else end
+    def started_at(self, row: Row) -> Nanoseconds:
+        """When an interval began."""
+        return self.table.cell(row, self.START)
+
+    def ended_at(self, row: Row) -> Nanoseconds:
+        """When an interval ended; ``OPEN`` while it lasts."""
+        return self.table.cell(row, self.END)
+
+
+def end_or_none(end: Nanoseconds) -> Nanoseconds | None:
+    """The end of an interval; None while it lasts."""
+    return None if end == OPEN else end
+
+
+class Layer(Table):
+    """Intervals of a lane of which none overlap: the starts and the rows, in order."""
+
+    __slots__ = ()
+
+    START, ROW = range(2)
+
+    def __init__(self, spill: Spill) -> None:
+        super().__init__(spill, 2)
+
+    def start(self, place: int) -> Nanoseconds:
+        """When the interval at a place begins."""
+        return self.cell(place, self.START)
+
+    def interval(self, place: int) -> Row:
+        """The row of the interval at a place."""
+        return self.cell(place, self.ROW)
+
+    def intervals(self, places: range) -> Sequence[Row]:
+        """The rows of the intervals at places that follow each other."""
+        return self.column(self.ROW, places)
 
 
 class Lane:
@@ -93,69 +124,90 @@ class Lane:
 
     def __init__(self, intervals: Intervals) -> None:
         self._intervals = intervals
-        self._layers: list[array[int]] = []
+        self._layers: list[Layer] = []
 
-    def add(self, row: Row) -> None:
-        """Take in a row. In order of start there are no more layers than needed; any order is right."""
-        start = self._intervals.starts[row]
-        ends = self._intervals.ends
+    def add(self, row: Row) -> Layer:
+        """Take in a row; tells where it went.
+
+        In order of start there are no more layers than needed; any order is right.
+        """
+        cell = self._intervals.table.cell
+        start = cell(row, Intervals.START)
         for layer in self._layers:
-            if ends[layer[-1]] <= start:
-                layer.append(row)
-                return
-        self._layers.append(array("i", (row,)))
+            if cell(layer.last(Layer.ROW), Intervals.END) <= start:
+                layer.append([start, row])
+                return layer
+        layer = Layer(self._intervals.spill)
+        layer.append([start, row])
+        self._layers.append(layer)
+        return layer
 
     @property
-    def layers(self) -> Sequence[Sequence[Row]]:
+    def layers(self) -> Sequence[Layer]:
         """The layers, the one of the outermost intervals first."""
         return self._layers
 
-    def overlapping(self, window: Window) -> list[Row]:
+    def overlapping(self, window: Window) -> Sequence[Row]:
         """Rows that share time with the window, in order of start; instants count if they lie in it."""
-        found: list[Row] = []
-        for layer in self._layers:
-            first = bisect_left(layer, window.start, key=self._intervals.starts.__getitem__)
-            after = bisect_left(layer, window.end, lo=first, key=self._intervals.starts.__getitem__)
-            if first and self._intervals.ends[layer[first - 1]] > window.start < window.end:
-                first -= 1
-            found.extend(layer[first:after])
-        return self._in_order(found)
+        return self._in_order([layer.intervals(self._places(layer, window)) for layer in self._layers])
+
+    def starting(self, window: Window) -> Sequence[Row]:
+        """Rows that start in the window, in order of start."""
+        return self._in_order(
+            [
+                layer.intervals(range(layer.before(window.start), layer.before(window.end)))
+                for layer in self._layers
+            ]
+        )
 
     def covering(self, at: Nanoseconds) -> list[Row]:
         """Rows that have begun and not ended when everything that happens at ``at`` has happened."""
         found: list[Row] = []
         for layer in self._layers:
-            after = bisect_right(layer, at, key=self._intervals.starts.__getitem__)
-            if after and self._intervals.ends[layer[after - 1]] > at:
-                found.append(layer[after - 1])
-        return self._in_order(found)
+            after = layer.until(at)
+            if after:
+                row = layer.interval(after - 1)
+                if self._intervals.ended_at(row) > at:
+                    found.append(row)
+        return sorted(found, key=self._order) if len(found) > 1 else found
 
     def starting_in(self, window: Window) -> int:
         """How many rows start in the window."""
-        key = self._intervals.starts.__getitem__
-        return sum(
-            bisect_left(layer, window.end, key=key) - bisect_left(layer, window.start, key=key)
-            for layer in self._layers
-        )
+        return sum(layer.before(window.end) - layer.before(window.start) for layer in self._layers)
 
     def starts_beside(self, at: Nanoseconds, step: int) -> Iterator[Nanoseconds]:
         """Of every layer the first start after ``at`` (``step`` > 0), or the last one before it."""
-        return self._beside(self._intervals.starts, at, step)
+        for layer in self._layers:
+            place = layer.until(at) if step > 0 else layer.before(at) - 1
+            if 0 <= place < len(layer):
+                yield layer.start(place)
 
     def ends_beside(self, at: Nanoseconds, step: int) -> Iterator[Nanoseconds]:
         """Of every layer the first end after ``at`` (``step`` > 0), or the last one before it."""
-        return (end for end in self._beside(self._intervals.ends, at, step) if end != OPEN)
-
-    def _beside(self, column: "array[int]", at: Nanoseconds, step: int) -> Iterator[Nanoseconds]:
         for layer in self._layers:
-            if step > 0:
-                place = bisect_right(layer, at, key=column.__getitem__)
-            else:
-                place = bisect_left(layer, at, key=column.__getitem__) - 1
-            if 0 <= place < len(layer):
-                yield column[layer[place]]
+            # Ends ascend as starts do: the one looked for is that of the last to begin, or its neighbour's.
+            nearest = layer.until(at) - 1 if step > 0 else layer.before(at) - 1
+            for place in (nearest, nearest + step):
+                if 0 <= place < len(layer):
+                    end = self._intervals.ended_at(layer.interval(place))
+                    if end != OPEN and (end - at) * step > 0:
+                        yield end
+                        break
 
-    def _in_order(self, rows: list[Row]) -> list[Row]:
-        if len(self._layers) > 1:
-            rows.sort(key=lambda row: (self._intervals.starts[row], row))
+    def _places(self, layer: Layer, window: Window) -> range:
+        first, after = layer.before(window.start), layer.before(window.end)
+        if first and window.start < window.end:
+            earlier = self._intervals.ended_at(layer.interval(first - 1))
+            if earlier > window.start:
+                first -= 1
+        return range(first, max(first, after))
+
+    def _in_order(self, found: list[Sequence[Row]]) -> Sequence[Row]:
+        if len(found) == 1:
+            return found[0]
+        rows = [row for rows in found for row in rows]
+        rows.sort(key=self._order)
         return rows
+
+    def _order(self, row: Row) -> tuple[Nanoseconds, Row]:
+        return self._intervals.started_at(row), row

@@ -61,10 +61,12 @@ class JsonLines:
             ev.CallbackResumed: self._on_thread,
             ev.CallbackFailed: self._callback_failed,
             ev.Published: self._published,
+            ev.QosMismatched: self._qos_mismatched,
             ev.TopicAppeared: self._topic_appeared,
             ev.MessageSent: self._message_sent,
             ev.ServiceCalled: self._service_called,
             ev.ServiceReplied: _service_replied,
+            ev.RequestLost: _request_lost,
             ev.CallBlocked: self._call_blocked,
             ev.CallUnblocked: self._call_unblocked,
             ev.Logged: self._logged,
@@ -199,6 +201,14 @@ class JsonLines:
             "message_id": event.message,
         }
 
+    def _qos_mismatched(self, event: ev.QosMismatched) -> Line:
+        return {
+            "node": self._node(event.node),
+            **self._by_callback(event.entity),
+            "entity": event.topic,
+            "policy": event.policy,
+        }
+
     def _topic_appeared(self, event: ev.TopicAppeared) -> Line:
         self._topics[event.topic] = event.name
         return {"entity": event.name, "type": event.message_type, "definition": event.definition}
@@ -261,6 +271,10 @@ def _executor_appeared(event: ev.ExecutorAppeared) -> Line:
 
 def _service_replied(event: ev.ServiceReplied) -> Line:
     return {"entity": event.service, "call": event.call, "response": event.response}
+
+
+def _request_lost(event: ev.RequestLost) -> Line:
+    return {"entity": event.service, "call": event.call}
 
 
 def _robot_moved(event: ev.RobotMoved) -> Line:

@@ -1,5 +1,6 @@
 """What a timeline knows about a run: the cast, what ran, what waited, and one moment of it all."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
@@ -12,6 +13,7 @@ from sim.trace.events import (
     GroupKind,
     MessageId,
     NodeId,
+    ProcessId,
     Reason,
     ThreadId,
 )
@@ -34,11 +36,12 @@ class Window:
 
 @dataclass(frozen=True, slots=True)
 class Thread:
-    """A thread that runs callbacks, named as rclpy names it."""
+    """A thread that runs callbacks, named as rclpy names it; ``process`` is its program's, of several."""
 
     id: ThreadId
     name: str
     since: Nanoseconds
+    process: ProcessId = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,19 +124,63 @@ class Wait:
     workers_busy: bool
 
 
+@dataclass(slots=True)
+class Blocked:
+    """A stretch in which a thread stood still in ``Client.call``; ``end`` is None while it does.
+
+    ``entity`` is the callback that called (0: none), ``service`` the one that is to answer ``call``.
+    """
+
+    start: Nanoseconds
+    end: Nanoseconds | None
+    thread: ThreadId
+    entity: EntityId
+    call: CallId
+    service: str
+
+
+@dataclass(frozen=True, slots=True)
+class Publication:
+    """How a message was published: by which node (0: the robot) and in which callback (0: none)."""
+
+    at: Nanoseconds
+    node: NodeId
+    entity: EntityId
+
+
+@dataclass(frozen=True, slots=True)
+class QueuedMessage:
+    """What waits in a queue: a message of a topic, or the request or reply of a call."""
+
+    id: MessageId | CallId
+    since: Nanoseconds
+    """When it was published or sent, or when it arrived if that is not known."""
+
+    def age(self, at: Nanoseconds) -> Nanoseconds:
+        """How old it was at ``at``."""
+        return at - self.since
+
+
 @dataclass(frozen=True, slots=True)
 class Queue:
-    """A queue at one moment: how many messages wait and how many the run has lost there so far."""
+    """A queue at one moment: how many messages wait and how many the run has lost there so far.
+
+    ``messages`` are those that wait, the next one first; fewer than ``depth`` where the trace lost some.
+    """
 
     depth: int
     dropped: int
-    oldest: Nanoseconds | None
-    """When the message that is next was published or arrived; None for an empty queue."""
+    messages: Sequence[QueuedMessage] = ()
+
+    @property
+    def oldest(self) -> Nanoseconds | None:
+        """Since when the message that is next is under way; None for an empty queue."""
+        return self.messages[0].since if self.messages else None
 
 
 @dataclass(slots=True)
 class Call:
-    """A service call; the reply is None while it is outstanding."""
+    """A service call; the reply is None while it is outstanding. ``lost``: nobody offered the service."""
 
     id: CallId
     service: str
@@ -142,6 +189,7 @@ class Call:
     sent: Nanoseconds
     replied: Nanoseconds | None = None
     response: str = ""
+    lost: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -155,11 +203,16 @@ class Mark:
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """All that a screen shows of one instant ``at``: who runs, who waits and why, what is queued."""
+    """All that a screen shows of one instant ``at``: who runs, who waits and why, what is queued.
+
+    ``log_position`` is how many log lines had been written.
+    """
 
     at: Nanoseconds
     running: dict[ThreadId, Span] = field(default_factory=dict)
     waiting: dict[EntityId, Wait] = field(default_factory=dict)
+    blocked: dict[ThreadId, Blocked] = field(default_factory=dict)
     queues: dict[EntityId, Queue] = field(default_factory=dict)
     holders: dict[GroupId, tuple[EntityId, ...]] = field(default_factory=dict)
     pending_calls: tuple[Call, ...] = ()
+    log_position: int = 0

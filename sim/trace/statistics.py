@@ -6,7 +6,7 @@ per cent of the values do not exceed. So each figure is one that occurred.
 
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import accumulate, groupby, pairwise
 
 from sim.trace.events import EntityId, EntityKind, ThreadId
@@ -42,9 +42,6 @@ class CallbackStatistics:
     - ``drops``: messages that its queue lost in the window.
     - ``age``: age of the message, request or reply when a call takes it; None for timers.
     - ``late``: how late each call of a timer was; None for others.
-    - ``used``: for timers, by each subscription of the node: how old its newest message was when the timer's
-      call began. Of the messages that the subscription's callback had taken by then (at that moment
-      included) the newest is the one published last. Calls before the first message count nowhere.
     - ``errors``: calls that began in the window and raised.
     """
 
@@ -56,7 +53,6 @@ class CallbackStatistics:
     drops: int
     age: Distribution | None
     late: Distribution | None
-    used: dict[EntityId, Distribution] = field(default_factory=dict)
     errors: int = 0
 
 
@@ -78,8 +74,7 @@ class Statistics:
 def statistics(timeline: Timeline, window: Window | None = None) -> Statistics:
     """The statistics of a window, or of all that is known.
 
-    Takes time in proportion to the calls and waits in the window; a timer's ``used`` looks at all calls of
-    its node's subscriptions before the window's end.
+    Takes time in proportion to the calls and waits in the window.
     """
     asked = Window(0, timeline.end + 1) if window is None else window
     callbacks = (statistics_of(timeline, entity, asked) for entity in timeline.entities)
@@ -111,7 +106,6 @@ def statistics_of(timeline: Timeline, entity: EntityId, window: Window) -> Callb
         drops=timeline.drops_of(entity, window),
         age=None if is_timer else ages,
         late=ages if is_timer else None,
-        used=_used(timeline, about, calls, window) if is_timer else {},
         errors=sum(bool(span.error) for span in stretches),
     )
 
@@ -183,9 +177,14 @@ def _jitter(entity: Entity, calls: Sequence[Span]) -> Distribution | None:
     return None
 
 
-def _used(
-    timeline: Timeline, timer: Entity, calls: Sequence[Span], window: Window
-) -> dict[EntityId, Distribution]:
+def ages_used(timeline: Timeline, timer: Entity, window: Window) -> dict[EntityId, Distribution]:
+    """How old the newest message of each subscription of its node was when a timer's calls began.
+
+    Of the messages that the subscription's callback had taken by then (at that moment included) the newest is
+    the one published last. Calls before the first message count nowhere. Looks at all calls of the
+    subscriptions before the window's end.
+    """
+    starts_of_timer = [call.start for call in timeline.calls_begun(timer.id, window)]
     used: dict[EntityId, Distribution] = {}
     for entity in timeline.entities.values():
         if entity.kind is not EntityKind.SUBSCRIPTION or entity.node != timer.node:
@@ -193,7 +192,7 @@ def _used(
         taken = timeline.spans_of(entity.id, Window(0, window.end))
         starts = [span.start for span in taken]
         newest = list(accumulate((span.start - span.age for span in taken), max))
-        places = ((call.start, bisect_right(starts, call.start)) for call in calls)
+        places = ((start, bisect_right(starts, start)) for start in starts_of_timer)
         ages = distribution(start - newest[place - 1] for start, place in places if place)
         if ages is not None:
             used[entity.id] = ages

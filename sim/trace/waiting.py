@@ -1,24 +1,23 @@
 """Which callbacks were ready and did not run, when and why."""
 
-from array import array
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
 from sim.trace.events import EntityId, Reason, WaitStarted
-from sim.trace.intervals import OPEN, Answer, Intervals, Lane, Row
+from sim.trace.intervals import OPEN, Answer, Intervals, Lane, Row, end_or_none
 from sim.trace.model import Nanoseconds, Wait, Window
+from sim.trace.spill import Spill
+
+_REASONS = tuple(Reason)
 
 
 class Waiting(Intervals):
-    """The columns of all waits, and a lane of them for each entity."""
+    """The table of all waits, and a lane of them for each entity."""
 
-    def __init__(self) -> None:
-        super().__init__()
-        self._since = array("q")
-        self._entities = array("i")
-        self._holders = array("i")
-        self._reasons: list[Reason] = []
-        self._workers_busy = array("b")
+    SINCE, ENTITY, HOLDER, REASON, WORKERS_BUSY = range(2, 7)
+
+    def __init__(self, spill: Spill) -> None:
+        super().__init__(spill, more=5)
         self._lanes: defaultdict[EntityId, Lane] = defaultdict(lambda: Lane(self))
         self._latest: dict[EntityId, Row] = {}
 
@@ -26,22 +25,18 @@ class Waiting(Intervals):
         """An entity begins to wait, or goes on waiting for another reason."""
         latest = self._latest.get(event.entity)
         begun = min(event.since, event.t)
-        if latest is not None and (self.ends[latest] == OPEN or self._since[latest] == event.since):
+        if latest is not None and self._goes_on(latest, event.since):
             begun = event.t
         self.finish(event.entity, event.t)
-        self._since.append(event.since)
-        self._entities.append(event.entity)
-        self._holders.append(event.holder)
-        self._reasons.append(event.reason)
-        self._workers_busy.append(event.workers_busy)
-        row = self.open(begun)
+        reason = _REASONS.index(event.reason)
+        row = self.open(begun, event.since, event.entity, event.holder, reason, event.workers_busy)
         self._lanes[event.entity].add(row)
         self._latest[event.entity] = row
 
     def finish(self, entity: EntityId, at: Nanoseconds) -> None:
         """An entity waits no longer."""
         latest = self._latest.get(entity)
-        if latest is not None and self.ends[latest] == OPEN:
+        if latest is not None and self.ended_at(latest) == OPEN:
             self.close(latest, at)
 
     def of(self, entity: EntityId, window: Window) -> Sequence[Wait]:
@@ -57,13 +52,9 @@ class Waiting(Intervals):
         """Starts of waits of the entity, with the nearest after or before ``at``."""
         return self._lanes[entity].starts_beside(at, step)
 
+    def _goes_on(self, latest: Row, since: Nanoseconds) -> bool:
+        return self.ended_at(latest) == OPEN or self.table.cell(latest, self.SINCE) == since
+
     def _wait(self, row: Row) -> Wait:
-        return Wait(
-            self.starts[row],
-            self.end(row),
-            self._since[row],
-            self._entities[row],
-            self._reasons[row],
-            self._holders[row],
-            bool(self._workers_busy[row]),
-        )
+        start, end, since, entity, holder, reason, workers_busy = self.table.row(row)
+        return Wait(start, end_or_none(end), since, entity, _REASONS[reason], holder, bool(workers_busy))

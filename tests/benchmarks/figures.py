@@ -9,9 +9,14 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
 from statistics import median
+from typing import Any
 
-from tests.benchmarks import exporting, recording, scenes
+from sim.ros.interfaces import message
+from tests.benchmarks import exporting, memory, recording, scenes, seeking
 from tests.benchmarks.scenes import MakeExecutor, Scene, multi, pinned, single
+
+NUMBER: Any = message("std_msgs", "Int32")(data=7)
+ODOMETRY: Any = message("nav_msgs", "Odometry")()
 
 CALLS = 5_000
 FEW_CALLS = 1_000
@@ -121,8 +126,16 @@ FIGURES = (
     ),
     Figure("recording an event", "µs", 5, "", lambda n: recording.event(n) * 1e6),
     Figure("a lesson slowed by recording", "%", 10, "", lambda n: recording.slowing(n) * 1e2, 120),
+    Figure(
+        "a publisher slowed by recording", "%", 10, "", lambda n: recording.slowing_publisher(n) * 1e2, 480
+    ),
+    Figure("an event that is not recorded yet", "µs", 2, "", lambda n: recording.following(n) * 1e6),
+    Figure("a number as CDR", "µs", 1, "", lambda n: recording.encoding(NUMBER, n) * 1e6),
+    Figure("an odometry as CDR", "µs", 5, "", lambda n: recording.encoding(ODOMETRY, n) * 1e6),
     Figure("opening an hour's recording", "ms", 2000, "", lambda n: recording.opening(n) * 1e3, 3600),
     Figure("reading all of an hour's recording", "ms", 3000, "", lambda n: recording.reading(n) * 1e3, 3600),
+    Figure("99 % of seeks in an hour's run", "ms", 5, "", lambda n: seeking.seeking(n) * 1e3, 3600),
+    Figure("memory that half an hour adds", "MB", 10, "", memory.added, 1800),
     Figure("export to perfetto", "s a million", 15, "", exporting.perfetto, MANY_EVENTS),
     Figure("export to chrome", "s a million", 15, "", exporting.chrome, MANY_EVENTS),
     Figure("export to csv", "s a million", 15, "", exporting.csv, MANY_EVENTS),

@@ -8,13 +8,15 @@ from itertools import islice
 from pathlib import Path
 from queue import Queue
 from tempfile import TemporaryDirectory
+from typing import Any
 
 import msgspec
 
-from cbtui.lesson_setup import setup_for
+from cbtui.lesson_setup import setup_for, setup_for_files
 from cbtui.session import Session
 from lessons.catalogue import find
-from sim.engine.setup import RunSetup
+from sim.engine.setup import RobotUse, RunSetup
+from sim.ros.interfaces import to_cdr
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,
@@ -25,13 +27,36 @@ from sim.trace.events import (
     RunStarted,
     TopicAppeared,
 )
-from sim.trace.recording import About, Recorder, read
+from sim.trace.recording import About, Beginning, Recorder, read
 from sim.trace.timeline import Timeline
 
 _RATE = 100
 _PERIOD = 1_000_000_000 // _RATE
 
 _LESSON = "split-groups"
+_PUBLISHES = """
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import Int32
+
+class Numbers(Node):
+    def __init__(self):
+        super().__init__("numbers")
+        self.publisher = self.create_publisher(Int32, "number", 10)
+        self.create_subscription(Int32, "number", self.hear, 10)
+        self.create_timer(0.01, self.tick)
+        self.number = 0
+
+    def tick(self):
+        self.number += 1
+        self.publisher.publish(Int32(data=self.number))
+
+    def hear(self, msg):
+        pass
+
+rclpy.init()
+rclpy.spin(Numbers())
+"""
 
 
 def _tick(t: int, number: int) -> list[AnyEvent]:
@@ -74,11 +99,24 @@ def event(calls: int) -> float:
 
 def slowing(calls: int) -> float:
     """The share by which recording slows down so many seconds of a lesson that runs as fast as it can."""
-    lesson = setup_for(find(_LESSON), speed=None)
-    plain = msgspec.structs.replace(lesson, until=calls * 1_000_000_000)
+    return _share(setup_for(find(_LESSON), speed=None), calls)
+
+
+def slowing_publisher(calls: int) -> float:
+    """The same for a node that does nothing but publish numbers and hear them."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder) / "node.py"
+        path.write_text(_PUBLISHES)
+        setup = setup_for_files([path], (), threads=None, speed=None)
+        return _share(msgspec.structs.replace(setup, clock="virtual", robot=RobotUse.NEVER), calls)
+
+
+def _share(setup: RunSetup, seconds: int) -> float:
+    """Run with and without recording, one right after the other; a machine differs from minute to minute."""
+    plain = msgspec.structs.replace(setup, until=seconds * 1_000_000_000)
+    recorded = msgspec.structs.replace(plain, contents=True)
     with TemporaryDirectory() as folder:
         recorder = Recorder(Path(folder) / "run.mcap", About(title="hundred"))
-        recorded = msgspec.structs.replace(plain, contents=True)
         timelines = Timeline(), Timeline()
 
         def take(events: list[AnyEvent]) -> None:
@@ -89,6 +127,23 @@ def slowing(calls: int) -> float:
         share = _run(recorded, take) / without - 1
         recorder.close()
     return share
+
+
+def following(calls: int) -> float:
+    """The seconds that an event of a run takes of which nothing is recorded yet."""
+    ticks = range(max(1, calls // 8))
+    batches = [_tick(tick * _PERIOD, tick) for tick in ticks]
+    beginning = Beginning()
+    began = time.perf_counter()
+    for batch in batches:
+        beginning.take(batch)
+    return (time.perf_counter() - began) / (8 * len(batches))
+
+
+def encoding(message: Any, calls: int) -> float:
+    """The seconds that making CDR of a message takes."""
+    to_cdr(message)
+    return _seconds(lambda: [to_cdr(message) for _ in range(calls)]) / calls
 
 
 def _run(setup: RunSetup, take: Callable[[list[AnyEvent]], object]) -> float:

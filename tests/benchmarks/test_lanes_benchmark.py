@@ -1,17 +1,15 @@
-"""What a frame costs: lanes of an hour-long run, and the arena's map."""
+"""What a frame of lanes costs in an hour-long run."""
 
 from itertools import count
 
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from cbtui.widgets.arena_map import ArenaPainter
 from cbtui.widgets.lanes import Painter
 from sim.trace import events as ev
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
-from tests.support.runs import ns, shared_group_run
-from tests.widgets.pictures import told
+from tests.support.runs import ns
 
 HOUR = 3600
 FRAME = ns(1 / 30)
@@ -72,10 +70,3 @@ def test_the_first_frame_after_zooming(benchmark: BenchmarkFixture, hour: Timeli
     end = ns(HOUR - 60)
     window = Window(end - ns(seconds), end)
     benchmark(lambda: Painter().paint(hour, window, end, 140, 20))
-
-
-@pytest.mark.parametrize("width", [44, 80])
-def test_a_frame_of_the_map(benchmark: BenchmarkFixture, width: int) -> None:
-    timeline = told(shared_group_run())
-    painter = ArenaPainter()
-    benchmark(lambda: painter.paint(timeline, ns(9.25), width, 20))

@@ -146,6 +146,29 @@ def test_steps_that_are_asked_for_at_once_are_all_taken() -> None:
     assert len(decisions(steered(two_hear, steering, until=3.0, speed=0.001))) == 5
 
 
+@each_system
+@given(st.lists(st.tuples(st.integers(1, 4), st.integers(0, 1500)), min_size=1, max_size=6), st.booleans())
+def test_every_step_is_taken_however_many_come_before_the_first_has_halted(
+    bursts: list[tuple[int, int]], awaited: bool
+) -> None:
+    def steering(helm: Helm) -> None:
+        helm.give(Pause())
+        for count, after in bursts:
+            time.sleep(after / 1e6)
+            for _ in range(count):
+                helm.give(Step())
+            if awaited:
+                for _ in range(count):
+                    helm.until_halted()
+        if not awaited:
+            for _ in range(steps):
+                helm.until_halted()
+
+    steps = sum(count for count, _ in bursts)
+    events = steered(two_hear, steering, until=30.0, speed=0.001)
+    assert sum(isinstance(event, TimeHalted) for event in events) == steps
+
+
 def test_everything_up_to_a_moment_has_happened_when_the_run_stands_there() -> None:
     def steering(helm: Helm) -> None:
         helm.give(RunUntil(ns(1.0)))

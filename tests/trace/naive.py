@@ -10,11 +10,15 @@ from sim.trace.events import (
     CallbackResumed,
     CallbackStarted,
     CallbackSuspended,
+    CallBlocked,
     CallId,
+    CallUnblocked,
     EntityAppeared,
     EntityId,
+    EntityKind,
     EntityReady,
     GroupId,
+    Logged,
     MessageDropped,
     MessageId,
     Published,
@@ -25,7 +29,7 @@ from sim.trace.events import (
     WaitEnded,
     WaitStarted,
 )
-from sim.trace.model import Queue, Span, Wait, Window
+from sim.trace.model import Blocked, Queue, QueuedMessage, Span, Wait, Window
 
 
 def overlaps(start: int, end: int | None, window: Window) -> bool:
@@ -44,6 +48,8 @@ class Naive:
         self.waits: list[Wait] = []
         self._fold_spans()
         self._fold_waits()
+        self.blocks: list[Blocked] = []
+        self._fold_blocks()
 
     def _fold_spans(self) -> None:
         suspended: defaultdict[EntityId, list[Span]] = defaultdict(list)
@@ -79,6 +85,35 @@ class Naive:
                 start = event.t if same_series else event.since
                 reason, holder, busy = event.reason, event.holder, event.workers_busy
                 self.waits.append(Wait(start, None, event.since, event.entity, reason, holder, busy))
+
+    def _fold_blocks(self) -> None:
+        for event in self.events:
+            match event:
+                case CallBlocked(t, call, thread, entity, service):
+                    self.blocks.append(Blocked(t, None, thread, entity, call, service))
+                case CallUnblocked(t, call, _):
+                    next(each for each in self.blocks if each.call == call).end = t
+
+    def blocked(self, at: int) -> dict[ThreadId, Blocked]:
+        covering = [b for b in self.blocks if b.start <= at and (b.end is None or b.end > at)]
+        return {blocked.thread: blocked for blocked in covering}
+
+    def blocks_on(self, thread: ThreadId, window: Window) -> list[Blocked]:
+        return [b for b in self.blocks if b.thread == thread and overlaps(b.start, b.end, window)]
+
+    def kind(self, entity: EntityId) -> EntityKind:
+        kinds = (e.kind for e in self.events if isinstance(e, EntityAppeared) and e.entity == entity)
+        return next(kinds)
+
+    def born(self, entity: EntityId, number: int) -> int | None:
+        """When the message of that number was published, or the request sent."""
+        if self.kind(entity) is not EntityKind.SERVICE:
+            return self.published_at(number)
+        times = (e.t for e in self.events if isinstance(e, ServiceCalled) and e.call == number)
+        return next(times, None)
+
+    def logs_until(self, at: int) -> int:
+        return sum(isinstance(event, Logged) and event.t <= at for event in self.events)
 
     def spans_where(self, window: Window, **wanted: int) -> list[Span]:
         """Spans in a window with the wanted thread or entity."""
@@ -142,12 +177,11 @@ class Naive:
                 case CallbackStarted(_, who, _, message, _, depth_then) if who == entity:
                     waiting = [each for each in waiting if each[0] != message]
                     depth = depth_then
-        oldest = None
-        if waiting:
-            message, arrived = waiting[0]
-            published = self.published_at(message)
-            oldest = arrived if published is None else published
-        return Queue(depth, dropped, oldest)
+        return Queue(depth, dropped, [self._queued(entity, *each) for each in waiting])
+
+    def _queued(self, entity: EntityId, message: MessageId, arrived: int) -> QueuedMessage:
+        born = self.born(entity, message)
+        return QueuedMessage(message, arrived if born is None else born)
 
     def running(self, at: int) -> dict[ThreadId, Span]:
         """The top of each thread's stack of calls."""
@@ -181,6 +215,8 @@ class Naive:
         spans = [span for span in self.spans if entity in (None, span.entity)]
         times = {span.start for span in spans} | {span.end for span in spans if span.end is not None}
         times |= {wait.start for wait in self.waits if entity in (None, wait.entity)}
+        blocks = [each for each in self.blocks if entity in (None, each.entity)]
+        times |= {each.start for each in blocks} | {each.end for each in blocks if each.end is not None}
         times |= {
             event.t
             for event in self.events
@@ -195,6 +231,9 @@ class Naive:
         taken = [
             scans[event.message]
             for event in self.events
-            if isinstance(event, CallbackStarted) and event.t <= at and event.message in scans
+            if isinstance(event, CallbackStarted)
+            and event.t <= at
+            and event.message in scans
+            and self.kind(event.entity) is EntityKind.SUBSCRIPTION
         ]
         return taken[-1] if taken else None

@@ -12,6 +12,8 @@ from sim.trace.events import (
     CallbackResumed,
     CallbackStarted,
     CallbackSuspended,
+    CallBlocked,
+    CallUnblocked,
     EntityAppeared,
     EntityId,
     EntityKind,
@@ -61,6 +63,7 @@ class System:
     suspended: list[EntityId] = field(default_factory=list)
     waiting: dict[EntityId, int] = field(default_factory=dict)
     calls: list[int] = field(default_factory=list)
+    blocked: dict[ThreadId, int] = field(default_factory=dict)
     last_message: int = 0
     last_call: int = 0
 
@@ -74,25 +77,44 @@ class System:
         ]
 
     def message(self, entity: EntityId, thread: ThreadId) -> None:
-        """A message comes, with a scan on every third; every fourth was not seen to be published."""
-        self.last_message += 1
-        message = self.last_message
-        if message % 4:
-            self.events.append(Published(self.now, message, f"/topic{entity}", 0, 0))
+        """A message comes, with a scan on every third; every fourth was not seen to be published.
+
+        To a service comes a request.
+        """
+        message = self._request(entity) if KINDS[entity] is EntityKind.SERVICE else self._publish(entity)
         queue = self.queues[entity]
         if len(queue) == DEPTH:
             self.events.append(MessageDropped(self.now, entity, DEPTH, queue.popleft()))
         queue.append(message)
         self.events.append(EntityReady(self.now, entity, len(queue), message))
+
+    def _publish(self, entity: EntityId) -> int:
+        self.last_message += 1
+        message = self.last_message
+        if message % 4:
+            self.events.append(Published(self.now, message, f"/topic{entity}", 0, 0))
         if message % 3 == 0:
             self.events.append(Scanned(self.now, message, bytes([message % 256, 0])))
+        return message
+
+    def _request(self, entity: EntityId) -> int:
+        self.call(entity, 0)
+        return self.last_call
+
+    def expire(self, entity: EntityId, thread: ThreadId) -> None:
+        """One of the messages in a queue is too old, the newest even if it was given less time to live."""
+        queue = self.queues[entity]
+        if queue:
+            lost = queue[thread % len(queue)]
+            queue.remove(lost)
+            self.events.append(MessageDropped(self.now, entity, len(queue), lost))
 
     def start(self, entity: EntityId, thread: ThreadId) -> None:
         """A callback starts, also inside another one, if its group lets it."""
         inside = [*self.suspended, *(each for stack in self.stacks.values() for each in stack)]
         group = GROUP_OF[entity]
         held = group in (GROUP_OF[each] for each in inside)
-        if held and GROUP_KINDS[group] is GroupKind.EXCLUSIVE:
+        if thread in self.blocked or (held and GROUP_KINDS[group] is GroupKind.EXCLUSIVE):
             return
         queue = self.queues[entity]
         message = queue.popleft() if queue else 0
@@ -101,7 +123,7 @@ class System:
 
     def end(self, entity: EntityId, thread: ThreadId) -> None:
         """The innermost callback of a thread ends, every fifth by raising."""
-        if self.stacks[thread]:
+        if self.stacks[thread] and thread not in self.blocked:
             innermost = self.stacks[thread].pop()
             if self.now % 5 == 0:
                 self.events.append(CallbackFailed(self.now, innermost, thread, "Oops", "node.py", 3))
@@ -109,14 +131,14 @@ class System:
 
     def suspend(self, entity: EntityId, thread: ThreadId) -> None:
         """The innermost callback of a thread awaits something."""
-        if self.stacks[thread]:
+        if self.stacks[thread] and thread not in self.blocked:
             innermost = self.stacks[thread].pop()
             self.suspended.append(innermost)
             self.events.append(CallbackSuspended(self.now, innermost, thread))
 
     def resume(self, entity: EntityId, thread: ThreadId) -> None:
         """What has been suspended longest goes on."""
-        if self.suspended:
+        if self.suspended and thread not in self.blocked:
             first = self.suspended.pop(0)
             self.stacks[thread].append(first)
             self.events.append(CallbackResumed(self.now, first, thread))
@@ -144,6 +166,19 @@ class System:
             call = self.calls.pop(entity % len(self.calls))
             self.events.append(ServiceReplied(self.now, call, "/service", "response"))
 
+    def block(self, entity: EntityId, thread: ThreadId) -> None:
+        """A thread calls a service and stands still, in its innermost callback or in none."""
+        if thread not in self.blocked:
+            caller = self.stacks[thread][-1] if self.stacks[thread] else 0
+            self.call(caller, thread)
+            self.blocked[thread] = self.last_call
+            self.events.append(CallBlocked(self.now, self.last_call, thread, caller, "/service"))
+
+    def unblock(self, entity: EntityId, thread: ThreadId) -> None:
+        """A call returns."""
+        if thread in self.blocked:
+            self.events.append(CallUnblocked(self.now, self.blocked.pop(thread), thread))
+
     def log(self, entity: EntityId, thread: ThreadId) -> None:
         """A line is written."""
         self.events.append(Logged(self.now, Severity.INFO, "node", f"at {self.now}", thread, entity))
@@ -166,6 +201,9 @@ DOINGS = (
     System.stop_waiting,
     System.call,
     System.reply,
+    System.block,
+    System.unblock,
+    System.expire,
     System.log,
     System.move,
 )
@@ -217,6 +255,8 @@ def _sources(event: AnyEvent) -> set[tuple[str, int]]:
             return {("wait", event.entity)}
         case ServiceCalled() | ServiceReplied():
             return {("call", event.call)}
+        case CallBlocked() | CallUnblocked():
+            return {("call", event.call), ("thread", event.thread)}
         case Published() | Scanned():
             return {(event.__class__.__name__, event.message)}
         case Logged():

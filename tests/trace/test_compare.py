@@ -1,6 +1,7 @@
 """Two runs side by side: callbacks are matched by what they are, and figures are of the window only."""
 
 from sim.trace.comparison import compare
+from sim.trace.comparison_rows import Row, Verdict, extent, sections
 from sim.trace.comparison_text import comparison_text
 from sim.trace.events import (
     AnyEvent,
@@ -26,13 +27,13 @@ from tests.support.builder import ns
 ODOM, TIMER = "odom_callback", "timer_callback"
 
 
-def run(callbacks: list[str], events: list[AnyEvent]) -> Timeline:
+def run(callbacks: list[str], events: list[AnyEvent], node: str = "/node") -> Timeline:
     """A run whose entities 1, 2, … have these callbacks, in one group and on one thread."""
     timeline = Timeline()
     cast: list[AnyEvent] = [
         RunStarted(0, "run", "virtual", 0),
         ThreadAppeared(0, 1, "MainThread"),
-        NodeAppeared(0, 1, "/node"),
+        NodeAppeared(0, 1, node),
         GroupAppeared(0, 1, 1, GroupKind.EXCLUSIVE, "MutuallyExclusiveCallbackGroup"),
     ]
     for number, callback in enumerate(callbacks, start=1):
@@ -97,13 +98,113 @@ def test_waits_and_drops_count_as_far_as_they_lie_in_the_window() -> None:
 
 
 def test_what_the_robot_travelled_counts_from_the_windows_beginning() -> None:
-    def moved(t: float, travelled: float) -> RobotMoved:
-        return RobotMoved(ns(t), travelled, 0.0, 0.0, 1.0, 0.1, 0.0, True, False, 0.0, travelled)
-
     timeline = run([], [moved(0.0, 0.0), moved(1.0, 0.5), moved(2.0, 0.75), moved(3.0, 1.0)])
     compared = compare(timeline, timeline, Window(ns(1.0), ns(2.5)))
     assert compared.first.robot is not None
     assert compared.first.robot.travelled == 0.25
+
+
+def moved(t: float, travelled: float, *, touching: bool = False, yaw: float = 0.0) -> RobotMoved:
+    return RobotMoved(ns(t), travelled, 0.0, yaw, 1.0, 0.1, 0.0, True, touching, yaw, travelled)
+
+
+def rows_of(first: Timeline, second: Timeline, title: str) -> dict[str, Row]:
+    compared = compare(first, second, Window(0, ns(4.0)))
+    (section,) = (each for each in sections(compared) if each.title == title)
+    return {row.label: row for row in section.rows}
+
+
+def test_a_callback_matches_that_of_a_node_with_another_name() -> None:
+    compared = compare(starved(), run([ODOM, TIMER], called(1, 1.0, 1.1), node="/other"), Window(0, ns(4.0)))
+    assert [(pair.name, pair.first is None, pair.second is None) for pair in compared.callbacks] == [
+        (ODOM, False, False),
+        (TIMER, False, False),
+    ]
+
+
+def test_callbacks_match_by_their_node_as_long_as_that_tells_them_apart() -> None:
+    two = run([ODOM], called(1, 1.0, 1.1))
+    two.extend(
+        [
+            NodeAppeared(0, 2, "/other"),
+            EntityAppeared(0, 9, 2, 1, EntityKind.SUBSCRIPTION, "/odom", ODOM, "node.py", 1, 2, 10, 0),
+            *called(9, 2.0, 2.1),
+        ]
+    )
+    compared = compare(run([ODOM], called(1, 1.0, 1.1)), two, Window(0, ns(4.0)))
+    assert [(pair.name, pair.first is None) for pair in compared.callbacks] == [
+        (f"{ODOM} (/node /odom)", False),
+        (f"{ODOM} (/other /odom)", True),
+    ]
+
+
+def test_a_callback_that_never_ran_is_no_callback_that_is_missing() -> None:
+    rows = rows_of(run([ODOM], called(1, 1.0, 1.1)), run([ODOM], []), ODOM)
+    assert rows["calls"] == Row("calls", ("1", "0"), "-1 fewer")
+
+
+def test_what_only_one_run_has_is_listed_as_such() -> None:
+    without = run([TIMER], called(1, 1.0, 1.1))
+    titles = [each.title for each in sections(compare(starved(), without, Window(0, ns(4.0))))]
+    assert titles == [f"{ODOM}: only in run A", TIMER, "whole program"]
+    titles = [each.title for each in sections(compare(without, starved(), Window(0, ns(4.0))))]
+    assert titles == [TIMER, f"{ODOM}: only in run B", "whole program"]
+
+
+def test_a_difference_has_a_sign_a_word_and_a_meaning() -> None:
+    there, back = rows_of(starved(), healthy(), ODOM), rows_of(healthy(), starved(), ODOM)
+    told = {label: (row.difference, row.verdict) for label, row in there.items()}
+    assert told == {
+        "calls": ("+1 more", Verdict.OTHER),
+        "drops": ("-2 fewer", Verdict.BETTER),
+        "wait med/max": ("max -2.0 s shorter", Verdict.BETTER),
+        "age med/max": ("max -1.8 s fresher", Verdict.BETTER),
+    }
+    assert (back["drops"].difference, back["drops"].verdict) == ("+2 more", Verdict.WORSE)
+    assert back["age med/max"].difference == "max +1.8 s older"
+
+
+def test_the_usual_is_what_differs_where_the_longest_does_not() -> None:
+    ages = (0.2, 0.2, 0.5), (0.1, 0.1, 0.5)
+    one, other = (
+        run([ODOM], [event for at, age in enumerate(each) for event in called(1, at + 1, at + 1.1, age)])
+        for each in ages
+    )
+    row = rows_of(one, other, ODOM)["age med/max"]
+    assert (row.figures, row.difference) == (("200 ms / 500 ms", "100 ms / 500 ms"), "med -100 ms fresher")
+
+
+def test_what_the_robot_did_is_compared_in_words() -> None:
+    straight = run([], [moved(0.0, 0.0), moved(3.0, 0.75)])
+    clumsy = run(
+        [],
+        [
+            moved(0.0, 0.0),
+            moved(1.0, 0.5, touching=True),
+            moved(1.5, 0.5, touching=True),
+            moved(2.0, 0.5),
+            moved(2.5, 0.5, touching=True),
+            moved(3.0, 0.5, yaw=-1.5707963),
+        ],
+    )
+    rows = rows_of(straight, clumsy, "whole program")
+    assert rows["robot travelled"].difference == "-0.25 m less far"
+    assert rows["robot turned"].difference == "+1.6 rad more"
+    assert rows["collisions"] == Row("collisions", ("0", "2"), "+2 more", Verdict.WORSE)
+    assert rows["robot at x y"].difference == "0.25 m apart"
+    assert rows["heading"].difference == "-90° right"
+
+
+def test_a_run_without_a_robot_has_no_figures_of_one() -> None:
+    rows = rows_of(run([], [moved(0.0, 0.0)]), run([], []), "whole program")
+    assert rows["collisions"] == Row("collisions", ("0", "-"))
+    assert "collisions" not in rows_of(run([], []), run([], []), "whole program")
+
+
+def test_a_run_that_goes_on_past_the_window_is_told_of() -> None:
+    longer = run([ODOM], called(1, 19.0, 20.0))
+    assert extent(compare(starved(), longer, Window(0, ns(3.1)))) == "0 to 3.1 s; run B goes on to 20 s"
+    assert extent(compare(starved(), starved(), Window(ns(0.0005), ns(3.1)))) == "0.001 to 3.1 s"
 
 
 def test_two_runs_as_text_side_by_side() -> None:
@@ -111,24 +212,27 @@ def test_two_runs_as_text_side_by_side() -> None:
     assert (
         text
         == """\
-A  starved
-B  healthy
-from 0 s to 4 s
+run A  starved
+run B  healthy
+0 to 4 s
 
-                      A                            B
-threads               1 used, 1 at once            1 used, 1 at once
+                run A          run B            B against A
 
 odom_callback
-  calls               1                            2
-  longest wait        2.0 s                        -
-  waits in all        2.0 s                        -
-  drops               2                            0
-  data age            2.0 s, at most 2.0 s         100 ms, at most 200 ms
-  A waits: group A held by timer_callback
+  calls         1              2                +1 more
+  drops         2              0                -2 fewer
+  wait med/max  2.0 s / 2.0 s  0 s / 0 s        max -2.0 s shorter
+  age med/max   2.0 s / 2.0 s  100 ms / 200 ms  max -1.8 s fresher
+  run A waits: group A held by timer_callback
 
 timer_callback
-  calls               1                            1
-  late                0 s, at most 0 s             0 s, at most 0 s
+  calls         1              1                same
+  wait med/max  0 s / 0 s      0 s / 0 s        same
+  late med/max  0 s / 0 s      0 s / 0 s        same
+
+whole program
+  threads used  1              1                same
+  at once       1              1                same
 """
     )
     assert max(map(len, text.splitlines())) <= 80

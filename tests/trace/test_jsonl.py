@@ -52,6 +52,8 @@ def test_golden_lines() -> None:
     about += ',"group_type":"exclusive"'
     assert b"".join(JsonLines().lines(FULL)).decode().splitlines()[len(CAST) + 1 :] == [
         '{"t":1.5,"event":"publish","node":"robot","callback":"timer_callback","entity":"/odom","message_id":7}',
+        '{"t":1.5,"event":"qos_mismatch","node":"/sub_node","callback":"odom_callback","entity":"/odom",'
+        '"policy":"RELIABILITY"}',
         '{"t":1.5,"event":"topic","entity":"/odom","type":"std_msgs/msg/Bool","definition":"bool data\\n"}',
         '{"t":1.5,"event":"message","entity":"/odom","message_id":7,"size":5}',
         f'{{"t":1.502,"event":"ready",{about},"depth":1,"message_id":7}}',
@@ -67,6 +69,7 @@ def test_golden_lines() -> None:
         f'{{"t":2.1,"event":"callback_resume",{about},"thread":"talker-1 MainThread"}}',
         '{"t":2.1,"event":"service_call","callback":"odom_callback","entity":"/motor_power","call":1,'
         '"request":"SetBool_Request(data=True)"}',
+        '{"t":2.1,"event":"request_lost","entity":"/motor_power","call":2}',
         '{"t":2.1,"event":"blocked","callback":"odom_callback","entity":"/motor_power",'
         '"thread":"talker-1 MainThread","call":1}',
         '{"t":2.2,"event":"service_reply","entity":"/motor_power","call":1,'

@@ -38,14 +38,17 @@ def assert_same_moment(timeline: Timeline, naive: Naive, at: int) -> None:
     assert moment.at == at
     assert moment.running == naive.running(at)
     assert moment.waiting == naive.waiting(at)
+    assert moment.blocked == naive.blocked(at)
     assert moment.queues == {entity: naive.queue(entity, at) for entity in GROUP_OF}
     assert moment.holders == {group: naive.holders(group, at) for group in GROUP_KINDS}
     assert tuple(call.id for call in moment.pending_calls) == naive.pending(at)
+    assert moment.log_position == naive.logs_until(at)
 
 
 def assert_same_window(timeline: Timeline, naive: Naive, window: Window) -> None:
     for thread in THREADS:
         assert timeline.spans_on(thread, window) == naive.spans_where(window, thread=thread)
+        assert timeline.blocks_on(thread, window) == naive.blocks_on(thread, window)
         assert timeline.busy(thread, window) == naive.busy(thread, window)
     for entity in GROUP_OF:
         assert timeline.spans_of(entity, window) == naive.spans_where(window, entity=entity)
@@ -128,6 +131,7 @@ def everything(at: int, window: Window) -> tuple[Callable[[Timeline], object], .
         lambda timeline: (timeline.threads, timeline.nodes, timeline.groups, timeline.entities),
         lambda timeline: timeline.moment(at),
         lambda timeline: [timeline.spans_on(thread, window) for thread in THREADS],
+        lambda timeline: [timeline.blocks_on(thread, window) for thread in THREADS],
         lambda timeline: [timeline.busy(thread, window) for thread in THREADS],
         lambda timeline: [timeline.spans_in(group, window) for group in GROUP_KINDS],
         lambda timeline: [timeline.calls_of(entity, window) for entity in GROUP_OF],

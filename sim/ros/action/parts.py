@@ -52,6 +52,10 @@ class PartProbe(SilentProbe):
         """The service answered."""
         self._program.service_replied(call, service, response)
 
+    def request_lost(self, call: int, service: str) -> None:
+        """Nobody offers the service."""
+        self._program.request_lost(call, service)
+
     def call_blocked(self, call: int, service: str) -> None:
         """The calling thread stands still until a reply comes."""
         self._program.call_blocked(call, service)

@@ -1,28 +1,18 @@
-"""Messages as bytes on the wire (CDR), through rosbags' typestore."""
+"""Messages as bytes on the wire (CDR): written by encoders of their own, read through rosbags' typestore."""
 
 from __future__ import annotations
 
 from array import array
 from collections.abc import Callable, Sequence
 from functools import cache
-from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, TypeVar, cast
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar, cast
 
 import numpy as np
-from attrs import frozen
 from rosbags.interfaces import Nodetype
 
 from sim.ros.interfaces.base import Interface, Message, assemble
-from sim.ros.interfaces.field_types import (
-    Array,
-    BasicType,
-    BoundedSequence,
-    BoundedWString,
-    FieldType,
-    NamespacedType,
-    UnboundedSequence,
-    UnboundedWString,
-)
+from sim.ros.interfaces.cdr_writing import Encode, encoder_of
+from sim.ros.interfaces.field_types import AbstractWString, Array, BasicType, FieldType, SequenceType
 from sim.ros.interfaces.interface_definition import FILLER_FIELD
 from sim.ros.interfaces.sequences import typecode
 
@@ -31,6 +21,7 @@ if TYPE_CHECKING:
     from rosbags.typesys.store import Typestore
 
 MessageT = TypeVar("MessageT", bound=Message)
+_Convert: TypeAlias = Callable[[Any], Any]
 
 _WIDE_TEXT = "sim/msg/WideText"
 """How rosbags is told of a wide string: as a message that holds its units."""
@@ -42,8 +33,7 @@ def to_cdr(message: Message) -> bytes:
     Wide strings become their number of UTF-16 units and these units in four bytes each, as in
     rosidl_typesupport_fastrtps.
     """
-    store = _wire_of(type(message))
-    return bytes(store.serialize_cdr(_outward(message), message.__type_name__, little_endian=True))
+    return _encoder(type(message))(message)
 
 
 def from_cdr(cls: type[MessageT], data: bytes) -> MessageT:
@@ -56,16 +46,17 @@ def from_cdr(cls: type[MessageT], data: bytes) -> MessageT:
 
     name = cls.__type_name__
     try:
-        return cast("MessageT", _wire(cls).deserialize_cdr(data, name))
+        return cast("MessageT", typestore_of(cls).deserialize_cdr(data, name))
     except (SerdeError, UnicodeDecodeError) as error:
         raise ValueError(f"these {len(data)} bytes hold no {name}: {error}") from None
 
 
 @cache
-def _wire(cls: type[Message]) -> Typestore:
-    """Return a typestore of a class and all that it contains.
+def typestore_of(cls: type[Message]) -> Typestore:
+    """Return rosbags' typestore of a class and all that it contains.
 
-    Every class has its own, because two classes may have one name: an interface and what replaced it.
+    It knows no wide strings; they are messages ``sim/msg/WideText`` with a sequence of units. Every class
+    has its own, because two classes may have one name: an interface and what replaced it.
     """
     from rosbags.typesys.store import Typestore
 
@@ -99,84 +90,50 @@ def _on_wire(of: FieldDesc) -> FieldDesc:
 
 
 @cache
-def _wire_of(kind: type[Message]) -> Typestore:
-    """Return the typestore of the class made from the definition, of which a message's may be a subclass."""
-    return _wire(next(cls for cls in kind.__mro__ if "__interface__" in vars(cls)))
-
-
-@frozen
-class _Coding:
-    """How a field's value goes into rosbags' serialiser and how it comes out of it."""
-
-    outward: Callable[[Any], Any]
-    inward: Callable[[Any], Any]
-
-
-@cache
-def _codings(interface: Interface) -> dict[str, _Coding]:
-    return {name: _coding(of) for name, of in interface.types.items()}
-
-
-def _outward(message: Message) -> SimpleNamespace:
-    """Return a message with the values rosbags writes: numpy arrays for all sequences of numbers."""
-    codings = _codings(message.__interface__).items()
-    values = {name: coding.outward(getattr(message, name)) for name, coding in codings}
-    return SimpleNamespace(**(values or {FILLER_FIELD: 0}))
+def _encoder(kind: type[Message]) -> Encode:
+    """Return the encoder of the class made from the definition, of which a message's may be a subclass."""
+    return encoder_of(next(cls for cls in kind.__mro__ if "__interface__" in vars(cls)))
 
 
 def _inward(cls: type[Message], values: Sequence[Any]) -> Message:
     """Return the message of the values rosbags read, which stand in the order of the fields."""
-    codings = _codings(cls.__interface__).items()
-    pairs = zip(codings, values, strict=False)
-    return assemble(cls, {name: coding.inward(value) for (name, coding), value in pairs})
+    conversions = _conversions(cls.__interface__).items()
+    pairs = zip(conversions, values, strict=False)
+    return assemble(cls, {name: convert(value) for (name, convert), value in pairs})
 
 
-def _coding(of: FieldType) -> _Coding:
-    if isinstance(of, Array | BoundedSequence | UnboundedSequence):
-        return _sequence_coding(of)
-    if isinstance(of, UnboundedWString | BoundedWString):
-        return _Coding(_wide_outward, _wide_inward)
-    if isinstance(of, NamespacedType):
-        return _Coding(_outward, _unchanged)
-    if of == BasicType("octet"):
-        return _Coding(_signed, _octet)
-    return _Coding(_unchanged, _unchanged)
+@cache
+def _conversions(interface: Interface) -> dict[str, _Convert]:
+    return {name: _conversion(of) for name, of in interface.types.items()}
 
 
-def _sequence_coding(of: Array | BoundedSequence | UnboundedSequence) -> _Coding:
+def _conversion(of: FieldType) -> _Convert:
+    """Return what makes a field's value of what rosbags read."""
+    if isinstance(of, SequenceType):
+        return _sequence_conversion(of)
+    if isinstance(of, AbstractWString):
+        return _wide_text
+    return _octet if of == BasicType("octet") else _unchanged
+
+
+def _sequence_conversion(of: SequenceType) -> _Convert:
     code = typecode(of)
     if code is not None:
-        inward = np.copy if isinstance(of, Array) else lambda values: array(code, values.tobytes())
-        return _Coding(lambda values: np.ascontiguousarray(values).ravel(), inward)
+        return np.copy if isinstance(of, Array) else lambda values: array(code, values.tobytes())
     if of.value_type == BasicType("boolean"):
-        return _Coding(lambda values: np.array(list(values), np.bool_), np.ndarray.tolist)
+        return np.ndarray.tolist
     if of.value_type == BasicType("octet"):
-        return _Coding(
-            lambda values: np.array(list(b"".join(values)), np.uint8),
-            lambda values: [_octet(value) for value in values.tolist()],
-        )
-    element = _coding(of.value_type)
-    return _Coding(
-        lambda values: [element.outward(value) for value in values],
-        lambda values: [element.inward(value) for value in values],
-    )
+        return lambda values: [_octet(value) for value in values.tolist()]
+    convert = _conversion(of.value_type)
+    return lambda values: [convert(value) for value in values]
 
 
-def _wide_outward(text: str) -> SimpleNamespace:
-    units = np.frombuffer(text.encode("utf-16-le", "surrogatepass"), "<u2")
-    return SimpleNamespace(units=units.astype(np.uint32))
-
-
-def _wide_inward(units: np.ndarray[Any, Any]) -> str:
+def _wide_text(units: np.ndarray[Any, Any]) -> str:
     return units.astype("<u2").tobytes().decode("utf-16-le", "surrogatepass")
 
 
 def _unchanged(value: Any) -> Any:
     return value
-
-
-def _signed(octet: bytes) -> int:
-    return int.from_bytes(octet, "little", signed=True)
 
 
 def _octet(number: int) -> bytes:

@@ -1,13 +1,14 @@
-"""Writes a report of a run in Markdown: set-up, statistics, waits and why, what was said, a picture."""
+"""Writes a report of a run in Markdown: set-up, diagnosis, statistics, waits, what was said, a picture."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
-from sim.trace.events import EntityId
+from sim.diagnosis import diagnose, sentence, whereabouts
+from sim.trace.events import EntityId, EntityKind
 from sim.trace.export.texts import markdown as plain
 from sim.trace.export.texts import seconds
 from sim.trace.model import Mark, Nanoseconds, Window
-from sim.trace.statistics import CallbackStatistics, Distribution, Statistics, statistics
+from sim.trace.statistics import CallbackStatistics, Distribution, Statistics, ages_used, statistics
 from sim.trace.summary import CallbackFigures, Summary, summarise
 from sim.trace.summary_text import duration, robot_line, service_line
 from sim.trace.timeline import Timeline
@@ -45,6 +46,7 @@ def report(timeline: Timeline, picture: str | None = None) -> str:
     summary, figures = summarise(timeline), statistics(timeline)
     parts = (
         _setup(timeline, summary),
+        _diagnosis(timeline),
         _callbacks(summary, figures),
         _data(summary, figures, timeline),
         _waits(summary, timeline),
@@ -86,6 +88,21 @@ def _groups(timeline: Timeline) -> Iterator[Sequence[str]]:
         )
 
 
+def _diagnosis(timeline: Timeline) -> Iterator[str]:
+    yield "## Diagnosis"
+    yield ""
+    findings = diagnose(timeline)
+    if not findings:
+        yield "Nothing to complain about."
+    for found in findings:
+        told = found.rule.explain(found, timeline)
+        weight = found.rule.weigh(found, timeline) or found.rule.weight
+        where = whereabouts(found, told)
+        yield f"- **{weight.value.capitalize()}**{f' ({plain(where)})' if where else ''}: {plain(told.what)}."
+        yield f"  {plain(sentence(told.why))} What to do: {plain(told.cure)}."
+    yield ""
+
+
 def _callbacks(summary: Summary, figures: Statistics) -> Iterator[str]:
     about = {each.entity.id: each for each in summary.callbacks}
     yield "## Callbacks"
@@ -122,7 +139,8 @@ def _data(summary: Summary, figures: Statistics, timeline: Timeline) -> Iterator
     rows = [
         (plain(names.get(timer.entity.id, "")), plain(_name(used, names, timeline)), *_four(ages))
         for timer in figures.callbacks
-        for used, ages in timer.used.items()
+        if timer.entity.kind is EntityKind.TIMER
+        for used, ages in ages_used(timeline, timer.entity, figures.window).items()
     ]
     if rows:
         yield "How old the newest data of each subscription was when a timer's callback began:"

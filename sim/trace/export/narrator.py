@@ -79,10 +79,12 @@ class Narrator:
             ev.CallbackResumed: self._callback_resumed,
             ev.CallbackFailed: self._running.fail,
             ev.Published: self._published,
+            ev.QosMismatched: self._qos_mismatched,
             ev.TopicAppeared: _leave_out,
             ev.MessageSent: _leave_out,
             ev.ServiceCalled: self._service_called,
             ev.ServiceReplied: self._service_replied,
+            ev.RequestLost: self._request_lost,
             ev.CallBlocked: self._call_blocked,
             ev.CallUnblocked: self._call_unblocked,
             ev.Logged: self._logged,
@@ -264,6 +266,15 @@ class Narrator:
             track = self._stage.node(event.node)
         name = f"publish {printable(event.topic)}"
         self._sink.instant(track, event.t, name, "publish", {"message": event.message}, Links(begin=flows))
+
+    def _qos_mismatched(self, event: ev.QosMismatched) -> None:
+        facts: Facts = {"topic": printable(event.topic), "policy": event.policy}
+        self._say("notices", event.t, f"{printable(event.topic)}: quality of service does not match", facts)
+
+    def _request_lost(self, event: ev.RequestLost) -> None:
+        track = self._stage.service(event.service)
+        name = f"nobody offers {printable(event.service)}"
+        self._sink.instant(track, event.t, name, "call", {"call": event.call})
 
     def _service_called(self, event: ev.ServiceCalled) -> None:
         to_service = self._flows.send(event.call, self._order.receivers(Parcel.REQUEST, event.call))

@@ -1,7 +1,7 @@
 """What a recording needs to know of a run that was going on when it began."""
 
 from collections import Counter, defaultdict, deque
-from collections.abc import Hashable, Iterable
+from collections.abc import Callable, Hashable, Iterable
 from dataclasses import dataclass
 from typing import Any, TypeAlias
 
@@ -83,63 +83,82 @@ class Beginning:
         return _with_depths(event for _, event in sorted(placed, key=lambda each: each[0]))
 
     def _take(self, event: Any) -> None:
-        match event:
-            case ev.CallbackStarted() | ev.CallbackSuspended() | ev.CallbackResumed() | ev.CallbackEnded():
-                self._take_callback(event)
-            case ev.EntityReady() | ev.MessageDropped():
-                self._take_queue(event)
-            case ev.WaitStarted() | ev.WaitEnded():
-                self._take_wait(event)
-            case ev.Published():
-                self._published[event.message] = (self._place, event)
-            case ev.EntityGone(entity=entity):
-                self._queued.pop(entity, None)
-                self._waits.pop(entity, None)
-                self._latest.pop(("entity", entity), None)
-            case ev.ServiceReplied():
-                self._latest.pop(("call", event.call), None)
-            case ev.CallUnblocked():
-                self._latest.pop(("block", event.call), None)
-            case ev.InputGiven():
-                self._latest["input", self._place] = (self._place, event)
-            case ev.LineEnded():
-                self._latest.pop(("line", event.line), None)
-            case _ if type(event) in _KEYS:
-                kind, field = _KEYS[type(event)]
-                self._latest[kind, getattr(event, field) if field else 0] = (self._place, event)
+        look = _LOOKS.get(event.__class__)
+        if look is not None:
+            look(self, event)
+        elif event.__class__ in _KEYS:
+            kind, field = _KEYS[event.__class__]
+            self._latest[kind, getattr(event, field) if field else 0] = (self._place, event)
 
-    def _take_callback(self, event: Any) -> None:
-        activations = self._running[event.entity]
-        here = next(
-            (each for each in reversed(activations) if each.thread == event.thread and not each.is_suspended),
-            None,
-        )
-        awaiting = min(
-            (each for each in activations if each.is_suspended),
-            key=lambda each: each.suspended or each.start,
-            default=None,
-        )
-        match event:
-            case ev.CallbackStarted():
-                activations.append(_Activation((self._place, event), event.thread))
-                self._shorten(event.entity, event.depth)
-            case ev.CallbackSuspended() if here is not None:
-                here.suspended, here.resumed = (self._place, event), None
-            case ev.CallbackResumed() if awaiting is not None:
-                awaiting.resumed, awaiting.thread = (self._place, event), event.thread
-            case ev.CallbackEnded():
-                over = here or awaiting
-                if over is not None:
-                    activations.remove(over)
+    def _take_published(self, event: ev.Published) -> None:
+        self._published[event.message] = (self._place, event)
+
+    def _take_gone(self, event: ev.EntityGone) -> None:
+        self._queued.pop(event.entity, None)
+        self._waits.pop(event.entity, None)
+        self._latest.pop(("entity", event.entity), None)
+
+    def _take_reply(self, event: ev.ServiceReplied) -> None:
+        self._latest.pop(("call", event.call), None)
+
+    def _take_unblocked(self, event: ev.CallUnblocked) -> None:
+        self._latest.pop(("block", event.call), None)
+
+    def _take_input(self, event: ev.InputGiven) -> None:
+        self._latest["input", self._place] = (self._place, event)
+
+    def _take_line_end(self, event: ev.LineEnded) -> None:
+        self._latest.pop(("line", event.line), None)
+
+    def _take_start(self, event: ev.CallbackStarted) -> None:
+        self._running[event.entity].append(_Activation((self._place, event), event.thread))
+        self._leave_queue(event)
+
+    def _take_suspension(self, event: ev.CallbackSuspended) -> None:
+        here = self._here(event)
+        if here is not None:
+            here.suspended, here.resumed = (self._place, event), None
+
+    def _take_resumption(self, event: ev.CallbackResumed) -> None:
+        awaiting = self._awaiting(event.entity)
+        if awaiting is not None:
+            awaiting.resumed, awaiting.thread = (self._place, event), event.thread
+
+    def _take_end(self, event: ev.CallbackEnded) -> None:
+        over = self._here(event) or self._awaiting(event.entity)
+        if over is not None:
+            self._running[event.entity].remove(over)
+
+    def _here(self, event: ev.CallbackSuspended | ev.CallbackEnded) -> _Activation | None:
+        """The activation that runs on the event's thread."""
+        for each in reversed(self._running[event.entity]):
+            if each.thread == event.thread and not each.is_suspended:
+                return each
+        return None
+
+    def _awaiting(self, entity: EntityId) -> _Activation | None:
+        """The activation that was suspended first."""
+        suspended = (each for each in self._running[entity] if each.is_suspended)
+        return min(suspended, key=lambda each: each.suspended or each.start, default=None)
 
     def _take_queue(self, event: Any) -> None:
         if isinstance(event, ev.EntityReady):
             self._queued[event.entity].append((self._place, event))
-        self._shorten(event.entity, event.depth)
+            self._shorten(event)
+        else:
+            self._leave_queue(event)
 
-    def _shorten(self, entity: EntityId, depth: int) -> None:
-        queue = self._queued[entity]
-        while len(queue) > depth:
+    def _leave_queue(self, event: ev.CallbackStarted | ev.MessageDropped) -> None:
+        """A message leaves: mostly the oldest, but a newer one may expire before it."""
+        queue = self._queued[event.entity]
+        gone = next((each for each in queue if each[1].message == event.message), None)
+        if gone is not None:
+            queue.remove(gone)
+        self._shorten(event)
+
+    def _shorten(self, event: ev.EntityReady | ev.CallbackStarted | ev.MessageDropped) -> None:
+        queue = self._queued[event.entity]
+        while len(queue) > event.depth:
             queue.popleft()
 
     def _take_wait(self, event: Any) -> None:
@@ -182,6 +201,22 @@ def _with_depths(events: Iterable[Any]) -> list[AnyEvent]:
     return told
 
 
+_LOOKS: dict[type, Callable[[Beginning, Any], None]] = {
+    ev.CallbackStarted: Beginning._take_start,
+    ev.CallbackSuspended: Beginning._take_suspension,
+    ev.CallbackResumed: Beginning._take_resumption,
+    ev.CallbackEnded: Beginning._take_end,
+    ev.EntityReady: Beginning._take_queue,
+    ev.MessageDropped: Beginning._take_queue,
+    ev.WaitStarted: Beginning._take_wait,
+    ev.WaitEnded: Beginning._take_wait,
+    ev.Published: Beginning._take_published,
+    ev.EntityGone: Beginning._take_gone,
+    ev.ServiceReplied: Beginning._take_reply,
+    ev.CallUnblocked: Beginning._take_unblocked,
+    ev.InputGiven: Beginning._take_input,
+    ev.LineEnded: Beginning._take_line_end,
+}
 _KEYS: dict[type, tuple[str, str]] = {
     ev.RunStarted: ("run", ""),
     ev.ProcessAppeared: ("process", "process"),
@@ -190,8 +225,10 @@ _KEYS: dict[type, tuple[str, str]] = {
     ev.NodeAppeared: ("node", "node"),
     ev.GroupAppeared: ("group", "group"),
     ev.EntityAppeared: ("entity", "entity"),
+    ev.QosMismatched: ("mismatch", "topic"),
     ev.TopicAppeared: ("topic", "topic"),
     ev.ServiceCalled: ("call", "call"),
+    ev.RequestLost: ("lost request", "call"),
     ev.CallBlocked: ("block", "call"),
     ev.LineGiven: ("line", "line"),
     ev.ArenaShown: ("arena", ""),

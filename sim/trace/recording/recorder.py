@@ -37,7 +37,9 @@ _PERIOD = 0.5
 """Seconds after which whatever has come is written."""
 _CASTS = 10
 """Times that the cast is told again, while it grows."""
-_APPEARING = (
+_ROSBAG = ("rosbag2", {"ROS_DISTRO": "jazzy"})
+"""The metadata record by which rosbag2 tells of which ROS 2 a file is."""
+APPEARING = (
     RunStarted,
     ProcessAppeared,
     ThreadAppeared,
@@ -46,14 +48,17 @@ _APPEARING = (
     GroupAppeared,
     EntityAppeared,
     ArenaShown,
+    TopicAppeared,
 )
+"""Events that tell who takes part."""
 
 
 class Recorder:
     """Records events, and messages with their topics, to a new ``.mcap`` file. Thread-safe.
 
-    Rosbag2, rosbags and Foxglove read the topics; events are on a channel of their own. What a full disk or
-    the like prevents does not end the run: ``failure`` then says it, and nothing more is recorded.
+    Rosbag2, rosbags and Foxglove read the topics, which have the metadata that rosbag2 gives them; events are
+    on a channel of their own. What a full disk or the like prevents does not end the run: ``failure`` then
+    says it, and nothing more is recorded.
 
     Raises:
         FileExistsError: there is such a file, and ``replace`` is not wanted.
@@ -113,6 +118,7 @@ class Recorder:
     def _begin(self, about: About) -> None:
         self._writer.start(profile="ros2", library=f"{LIBRARY} {_version()}")
         self._writer.add_metadata(NAME, to_metadata(about))
+        self._writer.add_metadata(*_ROSBAG)
         schema = self._writer.register_schema(batch.TYPE, "ros2msg", batch.DEFINITION.encode())
         self._writer.register_channel(batch.TOPIC, "cdr", schema)
         for path in about.programs:
@@ -122,37 +128,49 @@ class Recorder:
     def _take(self, events: Iterable[AnyEvent]) -> None:
         kept: list[AnyEvent] = []
         for event in events:
-            if isinstance(event, _APPEARING):
-                self._cast.append(event)
-            match event:
-                case MessageSent(data=bytes()):
-                    self._message(event)
-                case TopicAppeared():
-                    self._topic(event)
-                case RunStarted(epoch=epoch):
-                    self._epoch = epoch
-                    kept.append(event)
-                case EntityAppeared(file=file) | CallbackFailed(file=file):
-                    self._sources.want(file)
-                    kept.append(event)
-                case _:
-                    kept.append(event)
+            look = _LOOKS.get(event.__class__)
+            if look is None or look(self, event):
+                kept.append(event)
         if kept:
             time = self._epoch + kept[0].t
             self._batches += 1
             self._writer.add_message(EVENTS_CHANNEL, time, batch.pack_batch(kept), time, self._batches)
 
-    def _topic(self, event: TopicAppeared) -> None:
+    # What is looked at; whether it goes among the events too.
+
+    def _run_started(self, event: RunStarted) -> bool:
+        self._epoch = event.epoch
+        return self._appeared(event)
+
+    def _entity_appeared(self, event: EntityAppeared) -> bool:
+        self._sources.want(event.file)
+        return self._appeared(event)
+
+    def _callback_failed(self, event: CallbackFailed) -> bool:
+        self._sources.want(event.file)
+        return True
+
+    def _appeared(self, event: AnyEvent) -> bool:
+        self._cast.append(event)
+        return True
+
+    def _topic(self, event: TopicAppeared) -> bool:
         if event.topic not in self._channels:
             schema = self._writer.register_schema(event.message_type, "ros2msg", event.definition.encode())
-            self._channels[event.topic] = self._writer.register_channel(event.name, "cdr", schema)
+            told = {"offered_qos_profiles": event.offered_qos, "topic_type_hash": event.type_hash}
+            metadata = {name: text for name, text in told.items() if text}
+            self._channels[event.topic] = self._writer.register_channel(event.name, "cdr", schema, metadata)
+        return False
 
-    def _message(self, event: MessageSent) -> None:
+    def _message(self, event: MessageSent) -> bool:
+        if event.data is None:
+            return True
         channel = self._channels.get(event.topic)
         if channel is not None:
             time = self._epoch + event.t
             number = self._sent[event.topic] = self._sent.get(event.topic, 0) + 1
             self._writer.add_message(channel, time, event.data, time, number)
+        return False
 
     def _attach(self, path: str, text: bytes) -> None:
         self._writer.add_attachment(0, self._epoch, path, "text/x-python", text)
@@ -168,6 +186,16 @@ class Recorder:
             self._casts_left -= 1
             self._cast_told = len(self._cast)
             self._writer.add_attachment(0, self._epoch, "cast", batch.CAST, batch.pack_batch(self._cast))
+
+
+_LOOKS: dict[type, Callable[[Recorder, Any], bool]] = {
+    **dict.fromkeys(APPEARING, Recorder._appeared),
+    RunStarted: Recorder._run_started,
+    EntityAppeared: Recorder._entity_appeared,
+    CallbackFailed: Recorder._callback_failed,
+    TopicAppeared: Recorder._topic,
+    MessageSent: Recorder._message,
+}
 
 
 def _version() -> str:

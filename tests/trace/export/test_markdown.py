@@ -14,6 +14,7 @@ def test_a_report_has_set_up_statistics_waits_notices_and_picture() -> None:
     assert heads == [
         "# small run",
         "## Set-up",
+        "## Diagnosis",
         "## Callbacks",
         "## Waits",
         "## Threads",
@@ -25,6 +26,14 @@ def test_a_report_has_set_up_statistics_waits_notices_and_picture() -> None:
     assert "| odom_callback | 900 ms | 900 ms | group A held by timer_callback |" in text
     assert "MultiThreadedExecutor, 2 threads" in text
     assert "](<pictures/lanes %3C1%3E.svg>)" in text
+
+
+def test_a_report_tells_what_went_wrong_where_and_what_to_do() -> None:
+    text = report(timeline_of(shared_group_run().events))
+    assert "- **Problem** (node.py:120, at 4.006 s): scan_callback waited 20.0 s: group A was held by" in text
+    assert "What to do: give scan_callback a callback group of its own" in text
+    assert "- **Remark** (node.py:120, at 4.000 s): timer_callback took 10.0 s" in text
+    assert "Nothing to complain about." in report(timeline_of([]))
 
 
 def test_every_table_has_as_many_cells_in_each_line() -> None:

@@ -59,7 +59,9 @@ def test_so_they_are_for_whatever_run(read: Read, runs: tuple[list[AnyEvent], li
 
 
 @given(legal_runs())
-def test_a_threads_slices_are_the_spans_of_the_timeline(events: list[AnyEvent]) -> None:
+def test_a_threads_slices_are_the_spans_and_the_blocked_stretches_of_the_timeline(
+    events: list[AnyEvent],
+) -> None:
     timeline, trace = timeline_of(events), reading.perfetto(events)
     for thread in THREADS:
         tracks = trace.named(f"worker {thread}")
@@ -67,6 +69,14 @@ def test_a_threads_slices_are_the_spans_of_the_timeline(events: list[AnyEvent]) 
         known = [
             (timeline.entities[span.entity].spoken_name, span.start, span.end_at(timeline.end))
             for span in timeline.spans_on(thread, Window(0, timeline.end + 1))
+        ]
+        known += [
+            (
+                f"blocked in a call of {block.service}",
+                block.start,
+                timeline.end if block.end is None else block.end,
+            )
+            for block in timeline.blocks_on(thread, Window(0, timeline.end + 1))
         ]
         assert sorted(told) == sorted(known)
 

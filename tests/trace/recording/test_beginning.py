@@ -3,7 +3,14 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim.trace.events import AnyEvent, EntityGone, TopicAppeared
+from sim.trace.events import (
+    AnyEvent,
+    CallbackStarted,
+    EntityGone,
+    EntityReady,
+    MessageDropped,
+    TopicAppeared,
+)
 from sim.trace.recording import Beginning
 from tests.support.runs import dummy_server_run, shared_group_run
 from tests.trace.recording.files import TOPICS, timeline_of
@@ -26,7 +33,7 @@ def test_from_its_beginning_on_every_moment_is_that_of_the_run(events: list[AnyE
 
 def test_lessons_can_be_recorded_from_any_event_on() -> None:
     for run in (shared_group_run(), dummy_server_run()):
-        for cut in range(0, len(run.events), 211):
+        for cut in range(0, len(run.events), 311):
             assert_same_from(run.events, cut)
 
 
@@ -42,11 +49,18 @@ def assert_same_from(events: list[AnyEvent], cut: int) -> None:
         assert moment.waiting == expected.waiting
         assert moment.holders == expected.holders
         assert moment.pending_calls == expected.pending_calls
-        assert {e: (q.depth, q.oldest) for e, q in moment.queues.items()} == {
-            e: (q.depth, q.oldest) for e, q in expected.queues.items()
+        assert moment.blocked == expected.blocked
+        assert {e: (q.depth, q.messages) for e, q in moment.queues.items()} == {
+            e: (q.depth, q.messages) for e, q in expected.queues.items()
         }
         assert late.robot(at) == whole.robot(at)
         assert late.scan(at) == whole.scan(at)
+
+
+def test_a_message_that_expired_before_an_older_one_is_not_told_again() -> None:
+    arrived: list[AnyEvent] = [EntityReady(1, 1, 1, 4), EntityReady(2, 1, 2, 5)]
+    for left in (MessageDropped(3, 1, 1, 5), CallbackStarted(3, 1, 1, 5, 0, 1)):
+        assert_same_from([*CAST, *arrived, left, EntityReady(4, 1, 2, 6)], len(CAST) + 3)
 
 
 def test_topics_are_told_again_and_what_is_gone_is_not() -> None:

@@ -158,8 +158,10 @@ WRITER = """
 import sys, time
 from pathlib import Path
 from sim.trace.events import Printed, RunStarted
-from sim.trace.recording import About, Recorder
+from sim.trace.recording import About, BackgroundRecorder, Recorder
 recorder = Recorder(Path(sys.argv[1]), About(title="killed"))
+if sys.argv[2] == "background":
+    recorder = BackgroundRecorder(recorder)
 recorder.take([RunStarted(0, "killed", "real", 0)])
 number = 0
 while True:
@@ -171,11 +173,12 @@ while True:
 """
 
 
-def test_a_recorder_that_is_killed_leaves_all_but_the_last_second(tmp_path: Path) -> None:
+@pytest.mark.parametrize("kind", ["direct", "background"])
+def test_a_recorder_that_is_killed_leaves_all_but_the_last_second(tmp_path: Path, kind: str) -> None:
     chance = random.Random(5)
-    for turn in range(3):
+    for turn in range(2):
         path = tmp_path / f"{turn}.mcap"
-        process = subprocess.Popen([sys.executable, "-c", WRITER, str(path)], stdout=subprocess.PIPE)
+        process = subprocess.Popen([sys.executable, "-c", WRITER, str(path), kind], stdout=subprocess.PIPE)
         assert process.stdout is not None
         for _ in range(chance.randint(1, 4)):
             process.stdout.readline()

@@ -10,8 +10,9 @@ import pytest
 from hypothesis import given, settings
 from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
+from rosbags.interfaces import ConnectionExtRosbag2
 
-from sim.trace.events import AnyEvent, MessageSent
+from sim.trace.events import AnyEvent, MessageSent, TopicAppeared
 from sim.trace.model import Window
 from sim.trace.recording import About, Recorder, read
 from tests.trace.recording.files import (
@@ -100,6 +101,38 @@ def test_rosbags_reads_topics_types_and_messages(recorded: Path) -> None:
     assert [number.data for number in numbers] == [
         e.message for e in EVENTS if isinstance(e, MessageSent) and e.topic == 2
     ]
+
+
+def test_topics_have_the_metadata_that_rosbag2_gives_them(tmp_path: Path) -> None:
+    offered = "- history: keep_last\n  depth: 10"
+    number = TopicAppeared(0, 2, "/number", "std_msgs/msg/Int32", "int32 data\n", "RIHS01_ab", offered)
+    write(tmp_path / "run.mcap", [TOPICS[0], number, message(1, 1)])
+    with (tmp_path / "run.mcap").open("rb") as file:
+        reader = make_reader(file)
+        summary = reader.get_summary()
+        metadata = {each.name: each.metadata for each in reader.iter_metadata()}
+    assert summary is not None
+    assert {channel.topic: channel.metadata for channel in summary.channels.values()} == {
+        "/cbtui/events": {},
+        "/flag": {},
+        "/number": {"offered_qos_profiles": offered, "topic_type_hash": "RIHS01_ab"},
+    }
+    assert metadata["rosbag2"] == {"ROS_DISTRO": "jazzy"}
+
+
+def test_rosbags_reads_what_publishers_offer(tmp_path: Path) -> None:
+    text = (
+        "- history: keep_last\n  depth: 10\n  reliability: best_effort\n  durability: volatile\n"
+        "  deadline: {sec: 1, nsec: 0}\n  lifespan: {sec: 2, nsec: 0}\n  liveliness: automatic\n"
+        "  liveliness_lease_duration: {sec: 3, nsec: 0}\n  avoid_ros_namespace_conventions: false"
+    )
+    topic = TopicAppeared(0, 2, "/number", "std_msgs/msg/Int32", "int32 data\n", "RIHS01_ab", text)
+    write(tmp_path / "run.mcap", [topic, message(1, 1)])
+    with AnyReader([tmp_path / "run.mcap"]) as reader:
+        (connection,) = reader.topics["/number"].connections
+        assert isinstance(connection.ext, ConnectionExtRosbag2)
+        (qos,) = connection.ext.offered_qos_profiles
+        assert (qos.depth, qos.reliability.name, qos.lifespan.sec) == (10, "BEST_EFFORT", 2)
 
 
 def test_mcap_reads_topics_types_and_times(recorded: Path) -> None:

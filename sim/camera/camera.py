@@ -1,0 +1,116 @@
+"""A camera: the process that takes pictures, asked for one at a time, the newest first."""
+
+import multiprocessing
+import sys
+import threading
+from collections.abc import Callable
+from contextlib import redirect_stderr
+from multiprocessing.connection import Connection
+from multiprocessing.process import BaseProcess
+
+import msgspec
+
+from sim.camera.process import serve
+from sim.camera.wire import NoCamera, Picture, Shot
+
+_GRACE = 0.4
+"""Seconds that the process gets to end by itself before it is killed."""
+
+
+class Camera:
+    """Takes pictures in a process of its own, which starts with the first shot.
+
+    ``deliver`` gets every picture; ``lost`` is called once if there will be no more, with the sentence that
+    says why. Both are called on the camera's reader thread; everything else belongs to one thread.
+    """
+
+    def __init__(
+        self,
+        deliver: Callable[[Picture], None],
+        lost: Callable[[str], None],
+        target: Callable[[Connection], None] = serve,
+    ) -> None:
+        self._deliver = deliver
+        self._lost = lost
+        self._target = target
+        self._lock = threading.Lock()
+        self._next: Shot | None = None
+        self._busy = False
+        self._stopping = False
+        self._process: BaseProcess | None = None
+
+    @property
+    def process(self) -> BaseProcess | None:
+        """The process; None before the first shot."""
+        return self._process
+
+    def want(self, shot: Shot) -> None:
+        """Ask for a picture; of several that are asked for during another, only the newest is taken."""
+        if self._stopping:
+            return
+        if self._process is None:
+            self._start()
+        with self._lock:
+            if self._busy:
+                self._next = shot
+                return
+            self._busy = True
+        self._send(shot)
+
+    def stop(self) -> None:
+        """End the process, by force if it must be. Safe to call twice."""
+        if self._stopping:
+            return
+        self._stopping = True
+        if self._process is None:
+            return
+        self._process.terminate()
+        self._process.join(_GRACE)
+        if self._process.is_alive():
+            self._process.kill()
+            self._process.join()
+        self._reader.join(_GRACE)
+        self._pipe.close()
+
+    def _start(self) -> None:
+        context = multiprocessing.get_context("spawn")
+        self._pipe, far_end = context.Pipe()
+        self._process = context.Process(
+            target=self._target, args=(far_end,), name="cbtui-camera", daemon=True
+        )
+        self._reader = threading.Thread(target=self._read, name="camera-reader", daemon=True)
+        # Starting a process hands on standard error, and Textual's stand-in for it has no descriptor.
+        with redirect_stderr(sys.__stderr__):
+            self._process.start()
+        far_end.close()
+        self._reader.start()
+
+    def _send(self, shot: Shot) -> None:
+        try:
+            self._pipe.send_bytes(msgspec.msgpack.encode(shot))
+        except OSError:
+            return  # the reader tells that the process is gone
+
+    def _read(self) -> None:
+        decoder = msgspec.msgpack.Decoder(Picture | NoCamera)
+        while True:
+            try:
+                answer = decoder.decode(self._pipe.recv_bytes())
+            except (EOFError, OSError):
+                self._tell_of_the_end(
+                    "The camera's process has ended; show the camera again to start another."
+                )
+                return
+            if isinstance(answer, NoCamera):
+                self._tell_of_the_end(answer.why)
+                return
+            self._deliver(answer)
+            with self._lock:
+                shot, self._next = self._next, None
+                self._busy = shot is not None
+            if shot is not None:
+                self._send(shot)
+
+    def _tell_of_the_end(self, why: str) -> None:
+        if not self._stopping:
+            self._lost(why)

@@ -1,0 +1,68 @@
+"""Threads that live on virtual time, and the signals between them."""
+
+from __future__ import annotations
+
+import threading
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sim.clock.virtual import VirtualClock
+
+# Kept from before sim.clock.stdlib puts the virtual ones in their place.
+_allocate_lock = threading.Lock
+
+
+class VirtualThread:
+    """A thread that lives on virtual time: it runs while it has the baton and stands at its gate else."""
+
+    __slots__ = (
+        "current_wait",
+        "gate",
+        "ident",
+        "interrupted",
+        "is_main",
+        "knocked",
+        "name",
+        "waiting",
+        "woken",
+    )
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.is_main = False
+        self.ident = 0
+        self.interrupted = False
+        self.knocked = False
+        self.gate = _allocate_lock()
+        self.gate.acquire()
+        self.waiting = False
+        self.woken = False
+        self.current_wait = 0
+
+
+class VirtualSignal:
+    """A signal between threads on virtual time; others may set it through ``VirtualClock.inject``."""
+
+    __slots__ = ("_clock", "_set", "_waiter")
+
+    def __init__(self, clock: VirtualClock) -> None:
+        self._clock = clock
+        self._set = False
+        self._waiter: VirtualThread | None = None
+
+    def wait(self, deadline: int | None) -> bool:
+        """Wait until set, or until virtual time reaches ``deadline``; True if it was set."""
+        if not self._set and (deadline is None or deadline > self._clock.now()):
+            self._waiter = self._clock.current
+            try:
+                self._clock.park(deadline)
+            finally:
+                self._waiter = None
+        was_set, self._set = self._set, False
+        return was_set
+
+    def set(self) -> None:
+        """Set the flag; the waiting thread becomes able to run."""
+        self._set = True
+        if self._waiter is not None:
+            self._clock.unpark(self._waiter)

@@ -1,0 +1,144 @@
+"""A look at the latest part of a run: what all rules ask of it, put together once."""
+
+from bisect import bisect_left
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import groupby
+from operator import attrgetter
+
+from sim.trace.concurrency import Concurrency
+from sim.trace.events import EntityId, EntityKind, NodeId, ProcessId, Reason, ThreadId
+from sim.trace.model import Blocked, Call, Entity, Moment, Nanoseconds, Span, Wait, Window
+from sim.trace.timeline import Timeline
+
+
+@dataclass(frozen=True, slots=True)
+class LongWait:
+    """From when a callback was ready until it ran, or until now (``is_open``), for changing reasons."""
+
+    entity: EntityId
+    since: Nanoseconds
+    until: Nanoseconds
+    is_open: bool
+    parts: tuple[Wait, ...]
+
+    def length(self, part: Wait) -> Nanoseconds:
+        """How long one of the reasons stood."""
+        return (self.until if part.end is None else part.end) - part.start
+
+    def because(self, reason: Reason) -> tuple[Wait, ...]:
+        """The parts for a reason in which it was another callback that was in the way."""
+        return tuple(part for part in self.parts if part.reason is reason and part.holder != part.entity)
+
+
+class Look:
+    """A timeline from the start of ``window`` to its end, with what lasts into that from before."""
+
+    def __init__(self, timeline: Timeline, window: Window, concurrency: Concurrency) -> None:
+        self.timeline = timeline
+        self.window = window
+        self._concurrency = concurrency
+        self._spans: dict[EntityId, tuple[Span, ...]] = {}
+        self._waits: dict[EntityId, tuple[LongWait, ...]] = {}
+        self._ends: dict[NodeId, Nanoseconds | None] = {}
+
+    @property
+    def end(self) -> Nanoseconds:
+        """The time of the latest event."""
+        return self.timeline.end
+
+    @cached_property
+    def now(self) -> Moment:
+        """The latest moment."""
+        return self.timeline.moment(self.end)
+
+    @cached_property
+    def threads_needed(self) -> int:
+        """The most threads that ran callbacks at once since the run began."""
+        return self._concurrency.peak(self.end)
+
+    def end_of_program(self, entity: Entity) -> Nanoseconds | None:
+        """When the program ended that ran an entity's node; None while it runs, and where none ran it."""
+        ended = self.timeline.processes_ended
+        if not ended:
+            return None
+        if entity.node not in self._ends:
+            self._ends[entity.node] = ended.get(self._process_of(entity.node))
+        return self._ends[entity.node]
+
+    def _process_of(self, node: NodeId) -> ProcessId:
+        whole = Window(0, self.window.end)
+        for entity in self.timeline.entities.values():
+            if entity.node == node:
+                for span in self.timeline.spans_of(entity.id, whole)[:1]:
+                    return self.timeline.threads[span.thread].process
+        return 0
+
+    @cached_property
+    def unanswered(self) -> frozenset[int]:
+        """The calls that have no reply yet."""
+        return frozenset(call.id for call in self.now.pending_calls)
+
+    def entities(self, *kinds: EntityKind) -> Iterator[Entity]:
+        """The entities of some kinds, of all if none is named, in order of appearance."""
+        return (each for each in self.timeline.entities.values() if not kinds or each.kind in kinds)
+
+    def spans(self, entity: EntityId) -> tuple[Span, ...]:
+        """The calls of an entity that lasted into the window, in order of start."""
+        if entity not in self._spans:
+            self._spans[entity] = tuple(self.timeline.spans_of(entity, self.window))
+        return self._spans[entity]
+
+    def waits(self, entity: EntityId) -> tuple[LongWait, ...]:
+        """The waits of an entity that lasted into the window, whole, in order of start."""
+        if entity not in self._waits:
+            self._waits[entity] = tuple(self._long_waits(entity))
+        return self._waits[entity]
+
+    def calls(self) -> Sequence[Call]:
+        """The service calls that were sent in the window."""
+        every = self.timeline.calls
+        return every[bisect_left(every, self.window.start, key=attrgetter("sent")) :]
+
+    @cached_property
+    def blocked(self) -> tuple[Blocked, ...]:
+        """The stretches that lasted into the window in which threads stood still in a call."""
+        return tuple(self._blocked_in(self.window))
+
+    def stood_in_call(self, entity: EntityId, start: Nanoseconds, end: Nanoseconds) -> bool:
+        """Whether a callback stood still in a call between two times."""
+        return any(each.entity == entity for each in self._blocked_in(Window(start, end)))
+
+    def _blocked_in(self, window: Window) -> Iterator[Blocked]:
+        for thread in self.timeline.threads:
+            yield from self.timeline.blocks_on(thread, window)
+
+    def _long_waits(self, entity: EntityId) -> Iterator[LongWait]:
+        waits = self.timeline.waits_of(entity, self.window)
+        if waits and waits[0].start > waits[0].since:
+            waits = self.timeline.waits_of(entity, Window(waits[0].since, self.window.end))
+        for since, series in groupby(waits, key=attrgetter("since")):
+            parts = tuple(series)
+            last = parts[-1]
+            until = self.end if last.end is None else last.end
+            if until > self.window.start:
+                yield LongWait(entity, since, until, last.end is None, parts)
+
+
+def pool_of(thread: ThreadId, timeline: Timeline) -> tuple[ThreadId, ...]:
+    """The worker threads of the same executor; a thread that is no worker is alone.
+
+    Source: Python names the threads of its pools ``ThreadPoolExecutor-<pool>_<worker>``.
+    """
+    known = timeline.threads.get(thread)
+    if known is None or not is_worker(thread, timeline):
+        return (thread,)
+    pool = known.name.rpartition("_")[0]
+    return tuple(each.id for each in timeline.threads.values() if each.name.rpartition("_")[0] == pool)
+
+
+def is_worker(thread: ThreadId, timeline: Timeline) -> bool:
+    """Whether a thread is one of the workers of a MultiThreadedExecutor."""
+    known = timeline.threads.get(thread)
+    return known is not None and "ThreadPoolExecutor-" in known.name

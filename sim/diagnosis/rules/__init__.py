@@ -1,0 +1,29 @@
+"""All rules, in the order in which their findings are told: what stops a program first."""
+
+from sim.diagnosis.rule import Rule
+from sim.diagnosis.rules.deadlock import NeedsOneMoreWorker, SelfMadeDeadlock
+from sim.diagnosis.rules.errors import ExceptionSwallowed
+from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, StaleData
+from sim.diagnosis.rules.services import NobodyOffers, UnreturnedResponse
+from sim.diagnosis.rules.threads import GroupsChangeNothing, ThreadsNeverUsed
+from sim.diagnosis.rules.timing import LongCallbackAmongSensors, OverlappingCallback, OverrunTimer
+from sim.diagnosis.rules.waiting import GroupStarvation, NodeNeverSpins, NoFreeWorker
+
+RULES: tuple[Rule, ...] = (
+    SelfMadeDeadlock(),
+    NeedsOneMoreWorker(),
+    NodeNeverSpins(),
+    NobodyOffers(),
+    QosMismatch(),
+    ExceptionSwallowed(),
+    UnreturnedResponse(),
+    LongCallbackAmongSensors(),
+    GroupStarvation(),
+    NoFreeWorker(),
+    OverlappingCallback(),
+    OverrunTimer(),
+    StaleData(),
+    DroppedMessages(),
+    GroupsChangeNothing(),
+    ThreadsNeverUsed(),
+)

@@ -1,0 +1,126 @@
+"""Rules on callbacks that wait for replies which cannot come as long as they wait."""
+
+from collections.abc import Iterator, Sequence
+
+from sim.diagnosis.look import Look
+from sim.diagnosis.rule import Explanation, Finding, Rule, place_of
+from sim.diagnosis.standstill import Standstill, Stuck
+from sim.diagnosis.words import listed, often, one_thread_more, thread_count, who
+from sim.trace.events import EntityKind, Reason
+from sim.trace.model import Blocked, Nanoseconds
+from sim.trace.timeline import Timeline
+
+_SETTLES: Nanoseconds = 100_000_000
+"""Shorter waits for a reply are the ordinary time that a call takes."""
+
+
+class SelfMadeDeadlock(Rule):
+    """Callbacks wait for each other in a circle, often one for itself.
+
+    The usual case is ``Client.call`` inside a callback of the client's own exclusive group, or with the only
+    thread there is. Source: the ROS 2 how-to guide "Synchronous vs. asynchronous service clients".
+    """
+
+    id = "self-made-deadlock"
+    summary = "a callback waits for a reply that it keeps from coming"
+
+    def check(self, look: Look) -> Iterator[Finding]:
+        """Yield each circle."""
+        return (_found(self, knot, until) for knot, until in _knots(look) if not _lacks_worker(knot))
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Spell the circle out."""
+        subject = who(found.subject, timeline)
+        cure = (
+            f"use call_async() and return from {subject}, "
+            f"or give client and service of {found.about} callback groups of their own"
+        )
+        if thread_count(timeline) == 1:
+            cure += f", and spin with {one_thread_more(timeline)}"
+        return Explanation(
+            f"{subject} {_for_ever(found, timeline)}: {found.detail}{often(found.count)}",
+            "the reply is brought by the executor, and needs a group that lets it in and a thread",
+            cure,
+            place_of(found.subject, timeline),
+        )
+
+
+class NeedsOneMoreWorker(Rule):
+    """Every worker of an executor stands still in a call, and the answer needs one more.
+
+    With K callbacks in ``Client.call`` at once, an executor needs at least K + 1 threads.
+    """
+
+    id = "needs-one-more-worker"
+    summary = "all threads stand still in calls whose answers need a thread"
+
+    def check(self, look: Look) -> Iterator[Finding]:
+        """Yield each set of callbacks that keep all threads of an executor."""
+        return (_found(self, knot, until) for knot, until in _knots(look) if _lacks_worker(knot))
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Tell how many threads would do."""
+        subject = who(found.subject, timeline)
+        return Explanation(
+            f"{subject} {_for_ever(found, timeline)}: {found.detail}{often(found.count)}",
+            f"{found.size} callbacks in call() at once need at least {found.size + 1} threads",
+            f"spin with MultiThreadedExecutor(num_threads={found.size + 1}), or use call_async()",
+            place_of(found.subject, timeline),
+        )
+
+
+def _knots(look: Look) -> Iterator[tuple[Sequence[Stuck], Nanoseconds]]:
+    """The sets of callbacks that wait for each other, and until when they did."""
+    told: set[tuple[Nanoseconds, ...]] = set()
+    for moment, until in _moments(look):
+        for knot in Standstill(look.timeline, moment).knots():
+            key = tuple(each.since for each in knot)
+            if key not in told:
+                told.add(key)
+                yield knot, until
+
+
+def _moments(look: Look) -> Iterator[tuple[Nanoseconds, Nanoseconds]]:
+    """When to look for circles: now, and just before a thread gave up waiting; with the end of that.
+
+    The latest comes first, as that is until when a circle has lasted.
+    """
+    if any(each.end is None and _is_long(each, look.end) for each in look.blocked) or _call_is_held_up(look):
+        yield look.end, look.end
+    ended = {each.end for each in look.blocked if each.end is not None and _is_long(each, each.end)}
+    yield from ((end - 1, end) for end in sorted(ended, reverse=True))
+
+
+def _is_long(blocked: Blocked, until: Nanoseconds) -> bool:
+    return until - blocked.start >= _SETTLES
+
+
+def _call_is_held_up(look: Look) -> bool:
+    """Whether a request or reply waits for a group, as it does behind a callback that awaits it there."""
+    for entity in look.entities(EntityKind.CLIENT, EntityKind.SERVICE):
+        for wait in look.waits(entity.id)[-1:]:
+            held = wait.parts[-1].reason is Reason.GROUP_HELD
+            if wait.is_open and held and wait.until - wait.since >= _SETTLES:
+                return True
+    return False
+
+
+def _lacks_worker(knot: Sequence[Stuck]) -> bool:
+    return any(each.obstacle.needs_worker and len(each.obstacle.by) > 1 for each in knot)
+
+
+def _found(rule: Rule, knot: Sequence[Stuck], until: Nanoseconds) -> Finding:
+    closing = knot[0]
+    detail = "; ".join(dict.fromkeys(each.obstacle.text for each in knot))
+    others = [each.entity for each in knot if each.entity != closing.entity]
+    culprit = others[0] if others else closing.entity
+    about = listed(each.obstacle.service for each in knot)
+    return Finding(
+        rule, closing.since, until, closing.entity, culprit, about=about, size=len(knot), detail=detail
+    )
+
+
+def _for_ever(found: Finding, timeline: Timeline) -> str:
+    if found.until < timeline.end:
+        return f"waited in vain for {found.about}"
+    return f"waits for {found.about} for ever"

@@ -1,0 +1,65 @@
+"""Rules on exceptions that nobody hears of."""
+
+from collections.abc import Iterator
+
+from sim.diagnosis.look import Look, is_worker, pool_of
+from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, place_of
+from sim.diagnosis.words import often, who
+from sim.trace.events import ThreadId
+from sim.trace.model import Nanoseconds, Window
+from sim.trace.timeline import Timeline
+
+
+class ExceptionSwallowed(Rule):
+    """A callback raised on a worker thread, and its exception has not come out of ``spin``.
+
+    A MultiThreadedExecutor keeps the exceptions of callbacks, and raises the oldest when it next hands a
+    callback to a worker; the others are lost.
+    """
+
+    id = "exception-swallowed"
+    summary = "a callback raises and nobody hears of it"
+    threshold: Nanoseconds = 500_000_000
+
+    def check(self, look: Look) -> Iterator[Finding]:
+        """Yield each call that raised on a worker; whether it came out is weighed later."""
+        if not any(mark.kind == "error" for mark in look.timeline.marks(look.window)):
+            return
+        for entity in look.entities():
+            for span in look.spans(entity.id):
+                if span.error and span.end is not None and is_worker(span.thread, look.timeline):
+                    detail = f"{span.thread} {span.error}"
+                    yield Finding(self, span.start, span.end, entity.id, size=span.start, detail=detail)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Name the exception."""
+        subject, (_, error) = who(found.subject, timeline), _parted(found)
+        return Explanation(
+            f"{subject} raised {error}, and spin() has not raised it{often(found.count)}",
+            "a MultiThreadedExecutor raises only the oldest exception, when it starts the next callback",
+            f"catch exceptions in {subject} and log them",
+            place_of(found.subject, timeline),
+        )
+
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
+        """Nothing, if the exception ended the run or another callback was started since."""
+        thread, error = _parted(found)
+        ended = timeline.ended
+        if ended is not None and ended.failed:
+            return None if error in ended.reason else Weight.PROBLEM
+        if timeline.end - found.until < self.threshold and ended is None:
+            return None
+        since = Window(found.until, timeline.end + 1)
+        pool = pool_of(thread, timeline)
+        starts = [
+            span.start
+            for each in pool
+            for span in timeline.spans_on(each, since)
+            if (span.entity, span.start) != (found.subject, found.at)
+        ]
+        return None if any(start >= found.until for start in starts) else Weight.PROBLEM
+
+
+def _parted(found: Finding) -> tuple[ThreadId, str]:
+    thread, _, error = found.detail.partition(" ")
+    return int(thread), error

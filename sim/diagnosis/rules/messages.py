@@ -1,0 +1,149 @@
+"""Rules on messages that are lost, that are old when used, or that never come."""
+
+from bisect import bisect_left
+from collections.abc import Iterator, Sequence
+from itertools import groupby
+from operator import attrgetter
+
+from sim.diagnosis.look import LongWait, Look
+from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, entity_of, place_of
+from sim.diagnosis.words import often, who
+from sim.trace.events import EntityId, EntityKind
+from sim.trace.model import Nanoseconds, Span, Window
+from sim.trace.summary_text import duration
+from sim.trace.timeline import Timeline
+from sim.trace.words import why_waiting
+
+SECOND: Nanoseconds = 1_000_000_000
+
+
+class DroppedMessages(Rule):
+    """A queue was full, or messages stayed in it longer than they live, and some were lost.
+
+    A queue of one is usually meant to keep the newest only, hence a remark; so is what an action loses, whose
+    queues are not the program's own.
+    """
+
+    id = "dropped-messages"
+    summary = "messages are lost because a callback does not take them in time"
+
+    def check(self, look: Look) -> Iterator[Finding]:
+        """Yield the losses of each second as one."""
+        for entity in look.entities():
+            losses = look.timeline.losses_of(entity.id, look.window)
+            if losses and (over := look.end_of_program(entity)) is not None:
+                losses = [at for at in losses if at <= over]
+            for _, each in groupby(losses, key=lambda at: at // SECOND):
+                times = list(each)
+                count = len(times)
+                yield Finding(self, times[0], times[-1], entity.id, size=count, count=count)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Tell what the callback waited for while its queue ran over."""
+        entity = entity_of(found, timeline)
+        subject = who(found.subject, timeline)
+        waits = timeline.waits_of(entity.id, Window(found.at, found.at + 1))
+        because = f" while it waited ({why_waiting(waits[-1], timeline)})" if waits else ""
+        messages = "1 message" if found.count == 1 else f"{found.count} messages"
+        holds = f": its queue holds {entity.depth}" if entity.depth else ""
+        return Explanation(
+            f"{subject} lost {messages}{because}{holds}",
+            "what comes into a full queue pushes the oldest out",
+            f"let {subject} run sooner (a group of its own, one more thread); a longer queue only delays it",
+            place_of(found.subject, timeline),
+        )
+
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight:
+        """Whoever asks for the newest message only gets it."""
+        return Weight.REMARK if entity_of(found, timeline).depth <= 1 else Weight.PROBLEM
+
+
+class StaleData(Rule):
+    """A timer's callback began while a newer message than its node had seen waited for long already."""
+
+    id = "stale-data"
+    summary = "a timer decides on old data while newer messages wait"
+    threshold: Nanoseconds = 200_000_000
+
+    def check(self, look: Look) -> Iterator[Finding]:
+        """Yield each call of a timer that knew less than had come for so long."""
+        worst: dict[tuple[EntityId, Nanoseconds], Finding] = {}
+        for sensor in look.entities(EntityKind.SUBSCRIPTION):
+            timers = (each.id for each in look.entities(EntityKind.TIMER) if each.node == sensor.node)
+            for found in self._of(sensor.id, tuple(timers), look):
+                known = worst.get((found.subject, found.at))
+                if known is None or known.size < found.size:
+                    worst[found.subject, found.at] = found
+        yield from worst.values()
+
+    def _of(self, sensor: EntityId, timers: Sequence[EntityId], look: Look) -> Iterator[Finding]:
+        for wait in look.waits(sensor):
+            is_long = wait.until - wait.since >= self.threshold
+            if is_long and look.timeline.calls_of(sensor, Window(0, wait.since + 1)):
+                for timer in timers:
+                    for span in self._misled(look, timer, wait):
+                        age = span.start - wait.since
+                        yield Finding(self, span.start, span.start, timer, sensor, size=age)
+
+    def _misled(self, look: Look, timer: EntityId, wait: LongWait) -> Iterator[Span]:
+        spans = look.spans(timer)
+        first = bisect_left(spans, wait.since + self.threshold, key=attrgetter("start"))
+        for span in spans[first:]:
+            if span.start > wait.until:
+                return
+            if wait.is_open or span.start < wait.until or _is_before_the_first_of(wait, span, look):
+                yield span
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Tell how old the data was at least."""
+        subject, sensor = who(found.subject, timeline), who(found.culprit, timeline)
+        return Explanation(
+            f"{subject} decided on data at least {duration(found.size)} old: "
+            f"newer messages waited for {sensor}{often(found.count)}",
+            f"the node only knows what {sensor} has taken, and that did not run",
+            f"let {sensor} run beside {subject}: a group of its own, and a thread for it",
+            place_of(found.subject, timeline),
+        )
+
+
+class QosMismatch(Rule):
+    """A publisher and a subscription of one topic do not match, so nothing is ever delivered.
+
+    Source: the ROS 2 documentation, "Quality of Service settings".
+    """
+
+    id = "qos-mismatch"
+    summary = "a subscription hears nothing because the quality of service does not match"
+
+    def check(self, look: Look) -> Iterator[Finding]:
+        """Yield each pair that does not match."""
+        for each in reversed(look.timeline.mismatches):
+            if each.t <= look.window.start:
+                return
+            yield Finding(self, each.t, each.t, each.entity, about=each.topic, detail=each.policy)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Name the policy."""
+        subject = who(found.subject, timeline) if found.subject else "a subscription outside the program"
+        return Explanation(
+            f"{subject} hears nothing from a publisher of {found.about}: {found.detail} does not match",
+            _PROMISES.get(found.detail, "a publisher has to offer at least what a subscription requests"),
+            f"give both ends of {found.about} the same QoSProfile",
+            place_of(found.subject, timeline),
+        )
+
+
+_PROMISES = {
+    "RELIABILITY": "a reliable subscription takes nothing from a best-effort publisher",
+    "DURABILITY": "a transient-local subscription takes nothing from a volatile publisher",
+}
+
+
+def _is_before_the_first_of(wait: LongWait, timer: Span, look: Look) -> bool:
+    """Whether a timer's call of the very moment at which a wait ended came before the call waited for."""
+    following = [each for each in look.spans(wait.entity) if each.start == wait.until]
+    if not following or following[0].thread != timer.thread:
+        return False
+    lane = look.timeline.spans_on(timer.thread, Window(wait.until, wait.until + 1))
+    entities = [span.entity for span in lane if span.start == wait.until]
+    return entities.index(timer.entity) < entities.index(wait.entity)

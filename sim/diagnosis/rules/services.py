@@ -1,0 +1,83 @@
+"""Rules on service calls that are never answered."""
+
+from collections.abc import Iterator
+
+from sim.diagnosis.look import Look
+from sim.diagnosis.rule import Explanation, Finding, Rule, entity_of, place_of
+from sim.diagnosis.words import often, who
+from sim.trace.events import EntityKind
+from sim.trace.model import Span
+from sim.trace.timeline import Timeline
+
+_REFUSED = "TypeError: Expected "
+"""How the error begins that a service raises when its callback returned something else than a response."""
+
+
+class UnreturnedResponse(Rule):
+    """A service's callback ended, and its caller got no answer: it raised, or returned no response."""
+
+    id = "unreturned-response"
+    summary = "a service's callback ends without an answer"
+
+    def check(self, look: Look) -> Iterator[Finding]:
+        """Yield each call of a service's callback that ended and left its caller waiting."""
+        for entity in look.entities(EntityKind.SERVICE):
+            for span in look.spans(entity.id):
+                if span.message in look.unanswered and self._is_over(span, look):
+                    assert span.end is not None
+                    yield Finding(self, span.start, span.end, entity.id, entity.id, detail=span.error)
+
+    def _is_over(self, span: Span, look: Look) -> bool:
+        if span.end is None:
+            return False
+        ended = look.timeline.ended
+        if ended is not None and span.end >= ended.t and not span.error:
+            return False  # the end of the run cut it short
+        group = look.timeline.entities[span.entity].group
+        return bool(span.error) or span.entity not in look.now.holders.get(group, ())
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Tell whether it raised or returned nothing."""
+        subject, service = who(found.subject, timeline), entity_of(found, timeline).name
+        if found.detail and not found.detail.startswith(_REFUSED):
+            what = f"{subject} raised {found.detail}"
+            cure = f"mend what raises, or catch it in {subject} and return a response that says so"
+        else:
+            what = f"{subject} returned no response"
+            cure = f"end {subject} with: return response"
+        return Explanation(
+            f"{what}, so the caller of {service} waits for ever{often(found.count)}",
+            "only what a service's callback returns is sent to the caller",
+            cure,
+            place_of(found.subject, timeline),
+        )
+
+
+class NobodyOffers(Rule):
+    """A service was called while nobody offered it: the request is lost, and no reply will come."""
+
+    id = "nobody-offers"
+    summary = "a service is called that nobody offers"
+
+    def check(self, look: Look) -> Iterator[Finding]:
+        """Yield each request that was lost."""
+        for call in look.calls():
+            if call.lost:
+                yield Finding(self, call.sent, call.sent, call.caller, about=call.service)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Tell whether there is such a service at other times."""
+        caller = f"{who(found.subject, timeline)} called" if found.subject else "somebody called"
+        known = [each for each in timeline.entities.values() if each.kind is EntityKind.SERVICE]
+        if any(each.name == found.about for each in known):
+            cure = "call wait_for_service() first, and look whether both ends name the same service type"
+        else:
+            cure = (
+                "look at the service's name, start the node that offers it, and call wait_for_service() first"
+            )
+        return Explanation(
+            f"{caller} {found.about}, which nobody offered: no reply will come{often(found.count)}",
+            "a request is not kept for a service that comes later",
+            cure,
+            place_of(found.subject, timeline),
+        )

@@ -1,0 +1,112 @@
+"""Rules on threads and groups that make no difference: remarks, since nothing goes wrong."""
+
+from collections.abc import Iterator
+
+from sim.diagnosis.look import Look
+from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, place_of
+from sim.diagnosis.words import listed, thread_count
+from sim.trace.events import EntityKind, GroupKind
+from sim.trace.model import Entity, Executor, Group, Nanoseconds
+from sim.trace.timeline import Timeline
+
+_WARMED_UP: Nanoseconds = 1_000_000_000
+"""Before that a run has hardly begun, and its nodes may still be in the making."""
+
+
+class ThreadsNeverUsed(Rule):
+    """An executor has more threads than ever ran callbacks at once."""
+
+    id = "threads-never-used"
+    summary = "fewer threads would have done"
+    weight = Weight.REMARK
+
+    def check(self, look: Look) -> Iterator[Finding]:
+        """Compare the most that were needed with those there are."""
+        threads = sum(each.threads for each in _with_workers(look.timeline))
+        needed = look.threads_needed
+        if look.end >= _WARMED_UP and 0 < needed < threads and _one_for_all(look.timeline) is None:
+            yield Finding(self, 0, look.end, size=needed, detail=str(threads))
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Name both numbers."""
+        return Explanation(
+            f"{found.size} of {found.detail} threads were ever needed at once",
+            "a thread is needed only while all the others run callbacks",
+            f"num_threads={found.size} would have done for this run",
+            None,
+        )
+
+
+class GroupsChangeNothing(Rule):
+    """Groups without threads, or threads without groups: each alone changes nothing."""
+
+    id = "groups-change-nothing"
+    summary = "groups or threads make no difference"
+    weight = Weight.REMARK
+
+    def check(self, look: Look) -> Iterator[Finding]:
+        """Look for groups with one thread, and for threads with one group."""
+        if look.end < _WARMED_UP or not look.threads_needed:
+            return
+        only = _one_for_all(look.timeline)
+        if only is not None:
+            first = look.timeline.group_members(only.id)[0]
+            yield Finding(self, 0, look.end, first.id, detail=_THREADS)
+        node = _node_with_groups(look.timeline)
+        if node is not None and thread_count(look.timeline) == 1:
+            yield Finding(self, 0, look.end, node.id, detail=_GROUPS)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Tell which of the two is without the other."""
+        subject = timeline.entities[found.subject]
+        if found.detail == _THREADS:
+            letter = timeline.groups[subject.group].letter
+            return Explanation(
+                f"{thread_count(timeline)} threads change nothing: all callbacks share group {letter}",
+                "a mutually exclusive group lets one callback in at a time, however many threads there are",
+                "give callbacks that should run at the same time groups of their own",
+                place_of(found.subject, timeline),
+            )
+        groups = [each for each in timeline.groups.values() if each.node == subject.node]
+        plural = len(groups) > 1
+        named = listed(each.letter for each in groups)
+        return Explanation(
+            f"group{'s' if plural else ''} {named} change{'' if plural else 's'} nothing: "
+            "there is only one thread",
+            "groups tell who may run at the same time; with one thread nobody can",
+            "spin with MultiThreadedExecutor(num_threads=2) or more",
+            place_of(found.subject, timeline),
+        )
+
+
+_THREADS = "threads"
+_GROUPS = "groups"
+
+
+def _with_workers(timeline: Timeline) -> list[Executor]:
+    return [each for each in timeline.executors.values() if each.threads > 1]
+
+
+def _one_for_all(timeline: Timeline) -> Group | None:
+    """The exclusive group that all callbacks share though there is more than one thread."""
+    groups = [each for each in timeline.groups.values() if _callbacks(timeline, each)]
+    if len(groups) != 1 or groups[0].kind is not GroupKind.EXCLUSIVE:
+        return None
+    return groups[0] if _with_workers(timeline) and len(_callbacks(timeline, groups[0])) > 1 else None
+
+
+def _node_with_groups(timeline: Timeline) -> Entity | None:
+    """A callback of a node that has several groups, or a reentrant one; a lone default group is nobody's."""
+    for node in timeline.nodes:
+        groups = [
+            each for each in timeline.groups.values() if each.node == node and _callbacks(timeline, each)
+        ]
+        if len(groups) > 1 or any(each.kind is GroupKind.REENTRANT for each in groups):
+            return _callbacks(timeline, groups[0])[0]
+    return None
+
+
+def _callbacks(timeline: Timeline, group: Group) -> list[Entity]:
+    """The entities of a group that a program calls its own: with a callback, or clients."""
+    members = timeline.group_members(group.id)
+    return [each for each in members if each.callback or each.kind is EntityKind.CLIENT]

@@ -1,0 +1,157 @@
+"""Rules on how long callbacks take, and what that does to others and to themselves."""
+
+from collections.abc import Iterator
+
+from sim.diagnosis.look import Look
+from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, entity_of, place_of
+from sim.diagnosis.words import group_of, listed, often, who
+from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
+from sim.trace.model import Entity, Nanoseconds, Span, Wait, Window
+from sim.trace.summary_text import duration
+from sim.trace.timeline import Timeline
+
+_HABIT = 3
+"""From how many overruns on a timer is judged by how often it overruns."""
+
+
+class OverlappingCallback(Rule):
+    """A callback began again while an earlier call of it still ran, as a reentrant group allows.
+
+    What both calls read, change and write back can be lost. For services this is what reentrant groups are
+    made for, hence a remark.
+    """
+
+    id = "overlapping-callback"
+    summary = "a callback runs several times at once"
+
+    def check(self, look: Look) -> Iterator[Finding]:
+        """Yield each call that began while another one ran."""
+        for entity in look.entities():
+            if entity.kind is EntityKind.CLIENT or _kind_of_group(entity, look) is GroupKind.EXCLUSIVE:
+                continue
+            latest = -1
+            for span in look.spans(entity.id):
+                end = span.end_at(look.end)
+                shared = min(latest, end)
+                if span.start < shared:
+                    yield Finding(self, span.start, shared, entity.id, entity.id, size=shared - span.start)
+                latest = max(latest, end)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Name the danger."""
+        subject = who(found.subject, timeline)
+        cure = f"give {subject} a MutuallyExclusiveCallbackGroup, or guard what its calls share with a lock"
+        if entity_of(found, timeline).kind is EntityKind.TIMER:
+            cure += "; a callback shorter than the timer's period never overlaps"
+        return Explanation(
+            f"{subject} ran twice at once for {duration(found.lasted)}{often(found.count)}",
+            "a reentrant group lets the same callback in again, and one call can undo what the other changed",
+            cure,
+            place_of(found.subject, timeline),
+        )
+
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight:
+        """Timers and subscriptions are hardly meant to overlap."""
+        meant = entity_of(found, timeline).kind not in (EntityKind.TIMER, EntityKind.SUBSCRIPTION)
+        return Weight.REMARK if meant else Weight.PROBLEM
+
+
+class OverrunTimer(Rule):
+    """A timer's callback took longer than its period, and ticks were missed meanwhile.
+
+    Source: rcl skips the periods that are past when a timer is called late; they are never made up for.
+    """
+
+    id = "overrun-timer"
+    summary = "a timer's callback takes longer than its period"
+
+    def check(self, look: Look) -> Iterator[Finding]:
+        """Yield each call that was too long, unless the next one began beside it."""
+        for entity in look.entities(EntityKind.TIMER):
+            if entity.period == 0:
+                continue
+            spans = look.spans(entity.id)
+            for place, span in enumerate(spans):
+                end = span.end_at(look.end)
+                beside = spans[place + 1 : place + 2]
+                if end - span.start > entity.period and not (beside and beside[0].start < end):
+                    length = end - span.start
+                    yield Finding(self, span.start, end, entity.id, entity.id, size=length)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Tell how many ticks the longest call cost."""
+        entity = entity_of(found, timeline)
+        missed = (found.lasted - 1) // entity.period
+        ticks = "1 tick" if missed == 1 else f"{missed} ticks"
+        subject = who(found.subject, timeline)
+        return Explanation(
+            f"{subject} took {duration(found.lasted)} with a period of {duration(entity.period)}: "
+            f"{ticks} missed or late{often(found.count, 'overruns in all')}",
+            "the timer is not called again before its callback is over; missed ticks are not made up for",
+            f"let {subject} return sooner: do long work step by step, or in a callback of another group",
+            place_of(found.subject, timeline),
+        )
+
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
+        """A timer that overruns now and then has a rate still; one that does mostly has none.
+
+        One that was called once has missed nothing: it may be cancelled by its callback.
+        """
+        calls = timeline.calls_of(found.subject, Window(0, timeline.end + 1))
+        if calls < 2:
+            return None
+        return Weight.PROBLEM if found.count >= _HABIT and 2 * found.count >= calls else Weight.REMARK
+
+
+class LongCallbackAmongSensors(Rule):
+    """A callback sleeps, or works long, in an exclusive group that subscriptions share."""
+
+    id = "long-callback-among-sensors"
+    summary = "a callback sleeps or works long in a group of subscriptions"
+    threshold: Nanoseconds = 500_000_000
+
+    def check(self, look: Look) -> Iterator[Finding]:
+        """Yield each call that kept subscriptions of its group waiting for so long."""
+        told: set[tuple[EntityId, Nanoseconds]] = set()
+        for sensor in look.entities(EntityKind.SUBSCRIPTION):
+            for wait in look.waits(sensor.id):
+                for part in wait.because(Reason.GROUP_HELD):
+                    for span in self._spans_behind(part, part.start + wait.length(part), look):
+                        if (span.entity, span.start) not in told:
+                            told.add((span.entity, span.start))
+                            end = span.end_at(look.end)
+                            size = end - span.start
+                            yield Finding(self, span.start, end, span.entity, span.entity, size=size)
+
+    def _spans_behind(self, part: Wait, until: Nanoseconds, look: Look) -> Iterator[Span]:
+        holder = look.timeline.entities.get(part.holder)
+        if until - part.start < self.threshold or holder is None:
+            return
+        if _kind_of_group(holder, look) is GroupKind.EXCLUSIVE:
+            for span in look.spans(holder.id):
+                end = span.end_at(look.end)
+                is_long = min(end, until) - max(span.start, part.start) >= self.threshold
+                if is_long and not look.stood_in_call(holder.id, span.start, end):
+                    yield span
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Name the subscriptions."""
+        subject = who(found.subject, timeline)
+        entity = entity_of(found, timeline)
+        sensors = listed(
+            each.spoken_name
+            for each in timeline.group_members(entity.group)
+            if each.kind is EntityKind.SUBSCRIPTION and each.id != entity.id
+        )
+        return Explanation(
+            f"{subject} slept or worked for {duration(found.lasted)} in {group_of(found.subject, timeline)}, "
+            f"which it shares with {sensors}{often(found.count)}",
+            "while it sleeps it holds the group, and nothing comes in from the sensors",
+            f"give {subject} a callback group of its own, or let it return at once and go on in a timer",
+            place_of(found.subject, timeline),
+        )
+
+
+def _kind_of_group(entity: Entity, look: Look) -> GroupKind | None:
+    group = look.timeline.groups.get(entity.group)
+    return None if group is None else group.kind

@@ -1,0 +1,148 @@
+"""Rules on callbacks that were ready and did not run."""
+
+from collections import defaultdict
+from collections.abc import Iterator
+
+from sim.diagnosis.look import LongWait, Look
+from sim.diagnosis.rule import Explanation, Finding, Rule, place_of
+from sim.diagnosis.words import group_of, often, one_thread_more, thread_count, who
+from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
+from sim.trace.model import Entity, Nanoseconds, Window
+from sim.trace.summary_text import duration
+from sim.trace.timeline import Timeline
+
+HALF_A_SECOND: Nanoseconds = 500_000_000
+SECOND: Nanoseconds = 1_000_000_000
+
+
+class GroupStarvation(Rule):
+    """A callback was ready, but its mutually exclusive group had let another one in.
+
+    Source: the ROS 2 how-to guide "Using callback groups".
+    """
+
+    id = "group-starvation"
+    summary = "a callback waits long because its group is held"
+    threshold = HALF_A_SECOND
+
+    def check(self, look: Look) -> Iterator[Finding]:
+        """Yield the waits in which others held the group for so long in all."""
+        yield from _kept_waiting(self, look, Reason.GROUP_HELD, self.threshold)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Name who held the group."""
+        subject, culprit = who(found.subject, timeline), who(found.culprit, timeline)
+        group = group_of(found.subject, timeline)
+        cure = f"give {subject} a callback group of its own, apart from {culprit}"
+        if thread_count(timeline) == 1:
+            cure += f", and spin with {one_thread_more(timeline)}"
+        return Explanation(
+            f"{subject} waited {duration(found.lasted)}: {group} was held by {culprit}{often(found.count)}",
+            f"{_admits(found.subject, timeline)}, however many threads are free",
+            cure,
+            place_of(found.culprit, timeline) or place_of(found.subject, timeline),
+        )
+
+
+class NoFreeWorker(Rule):
+    """A callback's group would have let it in, but every thread of its executor was running another one."""
+
+    id = "no-free-worker"
+    summary = "a callback waits long because all threads are busy"
+    threshold = HALF_A_SECOND
+
+    def check(self, look: Look) -> Iterator[Finding]:
+        """Yield the waits in which all threads were with others for so long in all."""
+        yield from _kept_waiting(self, look, Reason.NO_FREE_WORKER, self.threshold)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Name who kept the threads."""
+        subject, culprit = who(found.subject, timeline), who(found.culprit, timeline)
+        alone = thread_count(timeline) == 1
+        busy = f"the only thread ran {culprit}" if alone else f"all threads were busy, one with {culprit}"
+        return Explanation(
+            f"{subject} waited {duration(found.lasted)}: {busy}{often(found.count)}",
+            "its group would have let it in, but a callback also needs a thread to run on",
+            f"spin with {one_thread_more(timeline)}, or keep {culprit} short",
+            place_of(found.culprit, timeline) or place_of(found.subject, timeline),
+        )
+
+
+class NodeNeverSpins(Rule):
+    """Something of a node is ready, and no executor spins the node."""
+
+    id = "node-never-spins"
+    summary = "callbacks are ready and nobody spins their node"
+    threshold = SECOND
+
+    def check(self, look: Look) -> Iterator[Finding]:
+        """Yield for each node the callback that has waited longest."""
+        longest: dict[int, LongWait] = {}
+        for entity in look.entities():
+            wait = next(reversed(look.waits(entity.id)), None)
+            if wait is None or not wait.is_open or wait.parts[-1].reason is not Reason.NOBODY_SPINS:
+                continue
+            since = wait.parts[-1].start
+            if look.end - since >= self.threshold and look.end_of_program(entity) is None:
+                known = longest.get(entity.node)
+                if known is None or since < known.parts[-1].start:
+                    longest[entity.node] = wait
+        for node, wait in longest.items():
+            name = look.timeline.nodes.get(node, "")
+            since = wait.parts[-1].start
+            yield Finding(self, since, look.end, wait.entity, about=name, size=look.end - since)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Tell whether it ever was spun."""
+        subject = who(found.subject, timeline)
+        node = timeline.entities[found.subject].node
+        ever = any(
+            each.node == node and timeline.calls_of(each.id, Window(0, timeline.end + 1))
+            for each in timeline.entities.values()
+        )
+        what = "nobody spins its node any more" if ever else "nobody ever spun its node"
+        cure = "call rclpy.spin(node), or add the node to an executor and spin that"
+        if ever:
+            cure = (
+                "keep spinning the node: spin() has returned, or spin_until_future_complete() "
+                "took the node away from its executor"
+            )
+        return Explanation(
+            f"{subject} of {found.about} is ready for {duration(found.lasted)} and does not run: {what}",
+            "callbacks run only inside spin()",
+            cure,
+            place_of(found.subject, timeline),
+        )
+
+
+def _kept_waiting(
+    rule: GroupStarvation | NoFreeWorker, look: Look, reason: Reason, threshold: Nanoseconds
+) -> Iterator[Finding]:
+    for entity in look.entities():
+        for wait in look.waits(entity.id):
+            parts = wait.because(reason)
+            waited = sum(map(wait.length, parts))
+            if waited < threshold or _is_callers_own(entity, wait, look):
+                continue
+            shares: defaultdict[EntityId, Nanoseconds] = defaultdict(int)
+            for part in parts:
+                shares[part.holder] += wait.length(part)
+            culprit = max(shares, key=shares.__getitem__)
+            yield Finding(rule, wait.since, wait.until, entity.id, culprit, size=waited)
+
+
+def _is_callers_own(entity: Entity, wait: LongWait, look: Look) -> bool:
+    """Whether a request or reply may wait for the very callback that waits for it: other rules tell that."""
+    if entity.kind is EntityKind.CLIENT and wait.is_open:
+        return True
+    holders = {part.holder for part in wait.parts}
+    return entity.kind in (EntityKind.CLIENT, EntityKind.SERVICE) and any(
+        look.stood_in_call(holder, wait.since, wait.until) for holder in holders
+    )
+
+
+def _admits(entity: EntityId, timeline: Timeline) -> str:
+    group = timeline.groups.get(timeline.entities[entity].group)
+    if group is None or group.kind is GroupKind.EXCLUSIVE:
+        return "a mutually exclusive group lets one callback in at a time"
+    return f"a {group.class_name} decides by itself whom it lets in"

@@ -1,0 +1,18 @@
+"""From the changes of a set-up to what the model makes of them."""
+
+from sim.engine.setup import RunSetup
+from sim.ros.tuning import GroupWish, Tuning
+
+
+def tuning_of(setup: RunSetup) -> Tuning | None:
+    """Return what is changed about the programs, None for nothing.
+
+    Raises:
+        ValueError: a wish that there is not.
+    """
+    if not setup.groups and not setup.periods:
+        return None
+    return Tuning(
+        {(each.node, each.callback): GroupWish(each.wish) for each in setup.groups},
+        {(each.node, each.callback): each.period for each in setup.periods},
+    )

@@ -1,0 +1,61 @@
+"""Which threads stood still in a call of a service, when and for which answer."""
+
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+
+from sim.trace.events import CallBlocked, CallUnblocked, EntityId, ThreadId
+from sim.trace.intervals import Answer, Intervals, Lane, Row, end_or_none
+from sim.trace.model import Blocked, Nanoseconds, Window
+from sim.trace.spill import Spill
+
+
+class Blocking(Intervals):
+    """The table of all blocked stretches, and a lane of them for each thread and each callback."""
+
+    THREAD, ENTITY, CALL, SERVICE = range(2, 6)
+
+    def __init__(self, spill: Spill) -> None:
+        super().__init__(spill, more=4)
+        self._services: dict[str, int] = {}
+        self._by_thread: defaultdict[ThreadId, Lane] = defaultdict(lambda: Lane(self))
+        self._by_entity: defaultdict[EntityId, Lane] = defaultdict(lambda: Lane(self))
+        self._standing: dict[ThreadId, Row] = {}
+
+    def start(self, event: CallBlocked) -> None:
+        """A thread comes to stand still."""
+        self.go_on(event.thread, event.t)
+        service = self._services.setdefault(event.service, len(self._services))
+        row = self.open(event.t, event.thread, event.entity, event.call, service)
+        self._by_thread[event.thread].add(row)
+        self._by_entity[event.entity].add(row)
+        self._standing[event.thread] = row
+
+    def finish(self, event: CallUnblocked) -> None:
+        """A call returned; one that its thread does not stand in is passed over."""
+        row = self._standing.get(event.thread)
+        if row is not None and self.table.cell(row, self.CALL) == event.call:
+            self.go_on(event.thread, event.t)
+
+    def go_on(self, thread: ThreadId, at: Nanoseconds) -> None:
+        """A thread does something, and so stands still no longer: the return of its call may be lost."""
+        row = self._standing.pop(thread, None)
+        if row is not None:
+            self.close(row, at)
+
+    def on(self, thread: ThreadId, window: Window) -> Sequence[Blocked]:
+        """Blocked stretches of a thread."""
+        return Answer(self._by_thread[thread].overlapping(window), self._blocked)
+
+    def at(self, at: Nanoseconds) -> Iterator[Blocked]:
+        """The threads that stand still at ``at``."""
+        for lane in list(self._by_thread.values()):
+            yield from map(self._blocked, lane.covering(at))
+
+    def beside(self, entity: EntityId, at: Nanoseconds, step: int) -> Iterator[Nanoseconds]:
+        """Starts and ends of stretches inside the entity's callback, with the nearest beside ``at``."""
+        yield from self._by_entity[entity].starts_beside(at, step)
+        yield from self._by_entity[entity].ends_beside(at, step)
+
+    def _blocked(self, row: Row) -> Blocked:
+        start, end, thread, entity, call, service = self.table.row(row)
+        return Blocked(start, end_or_none(end), thread, entity, call, list(self._services)[service])

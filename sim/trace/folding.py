@@ -1,0 +1,214 @@
+"""What the events of a run come to: each is folded into the stores that a timeline asks."""
+
+from collections import defaultdict
+from collections.abc import Callable, Iterable
+from operator import attrgetter
+from typing import Any, TypeAlias
+
+from sim.trace import events as ev
+from sim.trace.blocking import Blocking
+from sim.trace.calls import Calls
+from sim.trace.cast import Cast
+from sim.trace.events import AnyEvent, EntityId, EntityKind
+from sim.trace.execution import Execution
+from sim.trace.history import History
+from sim.trace.model import Mark, Nanoseconds, Queue
+from sim.trace.publications import Publications
+from sim.trace.queues import Born, QueueHistory
+from sim.trace.scans import Scans
+from sim.trace.spill import Spill
+from sim.trace.table import Table
+from sim.trace.waiting import Waiting
+
+ShellEvent: TypeAlias = ev.LineGiven | ev.LineSaid | ev.LineEnded
+
+
+class Folded:
+    """One store for every kind of thing that is known of a run; ``end`` is the time of the latest event.
+
+    Events may come late by a little: the stores stay in order of time. What is old they spill to one
+    temporary file, so that memory does not grow with the run.
+    """
+
+    def __init__(self) -> None:
+        spill = Spill()
+        self.started: ev.RunStarted | None = None
+        self.ended: ev.RunEnded | None = None
+        self.arena: ev.ArenaShown | None = None
+        self.completed: ev.LineCompleted | None = None
+        self.lost = 0
+        self.contents_lost = 0
+        self.end: Nanoseconds = 0
+        self.cast = Cast()
+        self.execution = Execution(spill)
+        self.waiting = Waiting(spill)
+        self.blocking = Blocking(spill)
+        self.queues: defaultdict[EntityId, QueueHistory] = defaultdict(lambda: QueueHistory(spill))
+        self.dropped_at = Table(spill, 1)
+        self.publications = Publications(spill)
+        self.calls = Calls(spill)
+        self.marks: History[Mark] = History(attrgetter("at"), Mark, spill)
+        self.logs: History[ev.Logged | ev.Printed] = History(attrgetter("t"), ev.Logged | ev.Printed, spill)
+        self.shell: History[ShellEvent] = History(attrgetter("t"), ShellEvent, spill)
+        self.notices: History[ev.Notice] = History(attrgetter("t"), ev.Notice, spill)
+        self.mismatches: History[ev.QosMismatched] = History(attrgetter("t"), ev.QosMismatched, spill)
+        self.robot: History[ev.RobotMoved] = History(attrgetter("t"), ev.RobotMoved, spill)
+        self.velocities: History[ev.VelocityCommanded] = History(attrgetter("t"), ev.VelocityCommanded, spill)
+        self.scans = Scans(spill)
+        self._fold: dict[type, Callable[[Any], object]] = self._folding()
+
+    def extend(self, events: Iterable[AnyEvent]) -> None:
+        """Take in a batch; state after batches is the state after one batch of them all."""
+        fold = self._fold
+        end = self.end
+        for event in events:
+            fold[event.__class__](event)
+            end = max(end, event.t)
+        self.end = end
+
+    def queue(self, entity: EntityId, at: Nanoseconds) -> Queue:
+        """The queue of an entity."""
+        return self.queues[entity].queue(at, self._born(entity))
+
+    def _born(self, entity: EntityId) -> Born:
+        """When came to be what an entity's queue holds; messages and calls are numbered apart."""
+        if self._takes_messages(entity):
+            return self.publications.time_of
+        if self.cast.entities[entity].kind is EntityKind.SERVICE:
+            return self.calls.sent_at
+        return _unknown
+
+    def _takes_messages(self, entity: EntityId) -> bool:
+        known = self.cast.entities.get(entity)
+        return known is None or known.kind is EntityKind.SUBSCRIPTION
+
+    def _folding(self) -> dict[type, Callable[[Any], object]]:
+        return {
+            ev.RunStarted: self._run_started,
+            ev.RunEnded: self._run_ended,
+            ev.ProcessAppeared: self.cast.add_process,
+            ev.ProcessEnded: self.cast.end_process,
+            ev.ThreadAppeared: self.cast.add_thread,
+            ev.ExecutorAppeared: self.cast.add_executor,
+            ev.NodeAppeared: self.cast.add_node,
+            ev.GroupAppeared: self.cast.add_group,
+            ev.EntityAppeared: self._entity_appeared,
+            ev.EntityGone: self._entity_gone,
+            ev.EntityReady: self._ready,
+            ev.MessageDropped: self._message_dropped,
+            ev.WaitStarted: self.waiting.start,
+            ev.WaitEnded: self._wait_ended,
+            ev.CallbackStarted: self._callback_started,
+            ev.CallbackEnded: self.execution.finish,
+            ev.CallbackSuspended: self.execution.suspend,
+            ev.CallbackResumed: self.execution.resume,
+            ev.CallbackFailed: self._callback_failed,
+            ev.Published: self.publications.add,
+            ev.QosMismatched: self.mismatches.add,
+            ev.TopicAppeared: _pass_over,
+            ev.MessageSent: _pass_over,
+            ev.ServiceCalled: self._service_called,
+            ev.ServiceReplied: self._service_replied,
+            ev.RequestLost: self.calls.lose,
+            ev.CallBlocked: self.blocking.start,
+            ev.CallUnblocked: self.blocking.finish,
+            ev.Logged: self.logs.add,
+            ev.Printed: self.logs.add,
+            ev.ArenaShown: self._arena_shown,
+            ev.RobotMoved: self.robot.add,
+            ev.Scanned: self._scanned,
+            ev.VelocityCommanded: self.velocities.add,
+            ev.CommandGiven: self._command_given,
+            ev.InputGiven: _pass_over,
+            ev.TimeHalted: _pass_over,
+            ev.LineGiven: self._line_given,
+            ev.LineSaid: self.shell.add,
+            ev.LineEnded: self.shell.add,
+            ev.LineCompleted: self._line_completed,
+            ev.Notice: self._noticed,
+            ev.EventsLost: self._events_lost,
+            ev.ContentsLost: self._contents_lost,
+        }
+
+    def _run_started(self, event: ev.RunStarted) -> None:
+        self.started = event
+
+    def _run_ended(self, event: ev.RunEnded) -> None:
+        self.ended = event
+
+    def _arena_shown(self, event: ev.ArenaShown) -> None:
+        self.arena = event
+
+    def _entity_appeared(self, event: ev.EntityAppeared) -> None:
+        self.cast.add_entity(event)
+        self.execution.join(event.entity, event.group)
+
+    def _entity_gone(self, event: ev.EntityGone) -> None:
+        self.waiting.finish(event.entity, event.t)
+        self.queues[event.entity].clear(event.t)
+
+    def _ready(self, event: ev.EntityReady) -> None:
+        self.queues[event.entity].arrive(event.t, event.depth, event.message)
+
+    def _message_dropped(self, event: ev.MessageDropped) -> None:
+        self.queues[event.entity].lose(event.t, event.depth, event.message)
+        self.dropped_at.add([event.t])
+
+    def _wait_ended(self, event: ev.WaitEnded) -> None:
+        self.waiting.finish(event.entity, event.t)
+
+    def _callback_started(self, event: ev.CallbackStarted) -> None:
+        self.execution.start(event)
+        self.blocking.go_on(event.thread, event.t)
+        self.queues[event.entity].take(event.t, event.depth, event.message)
+        if self.scans.carried_by(event.message) and self._takes_messages(event.entity):
+            self.scans.take(event.t, event.message)
+
+    def _callback_failed(self, event: ev.CallbackFailed) -> None:
+        self.execution.fail(event)
+        entity = self.cast.entities.get(event.entity)
+        who = entity.spoken_name if entity else "a callback"
+        self.marks.add(Mark(event.t, "error", f"{who} raised {event.error}"))
+
+    def _service_called(self, event: ev.ServiceCalled) -> None:
+        self.calls.send(event)
+        self.marks.add(Mark(event.t, "call", f"{event.service} {event.request}"))
+
+    def _service_replied(self, event: ev.ServiceReplied) -> None:
+        self.calls.reply(event)
+        self.marks.add(Mark(event.t, "reply", f"{event.service} {event.response}"))
+
+    def _scanned(self, event: ev.Scanned) -> None:
+        self.scans.add(event)
+        taken = self.execution.taken_lately(event.message)
+        if taken is not None and self._takes_messages(taken.entity):
+            self.scans.take(taken.start, event.message)
+
+    def _command_given(self, event: ev.CommandGiven) -> None:
+        self.marks.add(Mark(event.t, "command", event.text))
+
+    def _line_given(self, event: ev.LineGiven) -> None:
+        self.shell.add(event)
+        self.marks.add(Mark(event.t, "command", event.text))
+
+    def _line_completed(self, event: ev.LineCompleted) -> None:
+        self.completed = event
+
+    def _noticed(self, event: ev.Notice) -> None:
+        self.notices.add(event)
+        self.marks.add(Mark(event.t, "notice", event.text))
+
+    def _events_lost(self, event: ev.EventsLost) -> None:
+        self.lost = max(self.lost, event.count)
+        self.execution.doubt()
+
+    def _contents_lost(self, event: ev.ContentsLost) -> None:
+        self.contents_lost = max(self.contents_lost, event.count)
+
+
+def _unknown(_: object) -> None:
+    """A reply counts from its arrival, and so does what an action has of messages and calls together."""
+
+
+def _pass_over(_: object) -> None:
+    """Nothing is asked of such events yet but that they happened, which ``end`` tells."""

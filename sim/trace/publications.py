@@ -1,0 +1,44 @@
+"""When each message of a run was published, and by which callback of which node."""
+
+from sim.trace.events import MessageId, Published
+from sim.trace.model import Nanoseconds, Publication
+from sim.trace.spill import Spill
+from sim.trace.table import Table
+
+_TIME, _NODE, _ENTITY = range(1, 4)
+
+
+class Publications:
+    """The publishings, by number of message."""
+
+    __slots__ = ("_latest", "_table")
+
+    def __init__(self, spill: Spill) -> None:
+        self._table = Table(spill, 4)
+        self._latest: MessageId | None = None
+
+    def add(self, event: Published) -> None:
+        """A message was published; of one that is known already the first time counts."""
+        row = [event.message, event.t, event.node, event.entity]
+        if self._latest is None or event.message > self._latest:
+            self._latest = event.message
+            self._table.append(row)
+        elif self._place_of(event.message) is None:
+            self._table.add(row)
+
+    def time_of(self, message: MessageId) -> Nanoseconds | None:
+        """When a message was published; None for one that is not known to have been."""
+        place = self._place_of(message)
+        return None if place is None else self._table.cell(place, _TIME)
+
+    def of(self, message: MessageId) -> Publication | None:
+        """How a message was published; None for one that is not known to have been."""
+        place = self._place_of(message)
+        if place is None:
+            return None
+        return Publication(*(self._table.cell(place, column) for column in (_TIME, _NODE, _ENTITY)))
+
+    def _place_of(self, message: MessageId) -> int | None:
+        place = self._table.before(message)
+        known = place < len(self._table) and self._table.cell(place, 0) == message
+        return place if known else None

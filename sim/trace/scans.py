@@ -1,0 +1,67 @@
+"""What the laser saw, and which of it had reached a callback."""
+
+from collections import OrderedDict
+from operator import attrgetter
+
+from sim.trace.events import MessageId, Scanned
+from sim.trace.history import History
+from sim.trace.model import Nanoseconds, Window
+from sim.trace.spill import Spill
+from sim.trace.table import Table
+
+SCANS_IN_BLOCK = 32
+
+LATEST_KNOWN = 1024
+"""Of so many scans the messages are known without a search."""
+
+
+class Scans:
+    """The scans in order of time, and the times at which callbacks took their messages."""
+
+    def __init__(self, spill: Spill) -> None:
+        self._scans: History[Scanned] = History(attrgetter("t"), Scanned, spill, SCANS_IN_BLOCK)
+        self._times = Table(spill, 2)
+        self._latest: OrderedDict[MessageId, None] = OrderedDict()
+        self._oldest_known: MessageId = 0
+        self._seen = Table(spill, 2)
+
+    def add(self, event: Scanned) -> None:
+        """The laser has looked around."""
+        self._scans.add(event)
+        self._times.add([event.message, event.t])
+        self._latest[event.message] = None
+        if len(self._latest) > LATEST_KNOWN:
+            forgotten, _ = self._latest.popitem(last=False)
+            self._oldest_known = max(self._oldest_known, forgotten + 1)
+
+    def carried_by(self, message: MessageId) -> bool:
+        """Whether a message carried a scan."""
+        if message in self._latest:
+            return True
+        return message < self._oldest_known and self._time_of(message) is not None
+
+    def take(self, at: Nanoseconds, message: MessageId) -> None:
+        """A callback takes a message that carries a scan."""
+        self._seen.add([at, message])
+
+    def latest(self, at: Nanoseconds) -> Scanned | None:
+        """The last scan at or before ``at``."""
+        return self._scans.latest(at)
+
+    def seen(self, at: Nanoseconds) -> Scanned | None:
+        """The scan that a callback took last, at or before ``at``."""
+        place = self._seen.until(at)
+        return self._of(self._seen.cell(place - 1, 1)) if place else None
+
+    def _of(self, message: MessageId) -> Scanned | None:
+        time = self._time_of(message)
+        if time is None:
+            return None
+        same_time = self._scans.within(Window(time, time + 1))
+        return next((scan for scan in reversed(same_time) if scan.message == message), None)
+
+    def _time_of(self, message: MessageId) -> Nanoseconds | None:
+        place = self._times.until(message) - 1
+        if place >= 0 and self._times.cell(place, 0) == message:
+            return self._times.cell(place, 1)
+        return None

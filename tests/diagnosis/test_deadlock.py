@@ -1,0 +1,169 @@
+"""Calls whose reply cannot come as long as they wait for it."""
+
+from collections.abc import Callable
+
+import pytest
+
+from sim.ros.callback_groups import (
+    CallbackGroup,
+    MutuallyExclusiveCallbackGroup,
+    ReentrantCallbackGroup,
+)
+from sim.ros.node import Node
+from tests.diagnosis.findings import Diagnosed, SetBool, diagnosed, once, serve_outside, spin
+from tests.support.builder import ns
+from tests.support.simulation import Simulation
+
+Group = Callable[[], CallbackGroup]
+
+
+def callers(count: int, threads: int | None, group: Group, timeout: float | None = None) -> Diagnosed:
+    """``caller`` is so many timers that at 1 s call a service of another process."""
+
+    def program(simulation: Simulation) -> None:
+        serve_outside(simulation)
+        node = Node("n")
+        for number in range(count):
+            client = node.create_client(SetBool, "/outside", callback_group=group())
+
+            def caller(client: object = client) -> None:
+                client.call(SetBool.Request(), timeout_sec=timeout)  # type: ignore[attr-defined]
+
+            caller.__name__ += f"_{number}"
+            once(node, 1.0, caller, group())
+        spin(node, threads)
+
+    return diagnosed(program)
+
+
+def shared(kind: type[CallbackGroup]) -> Group:
+    group = kind()
+    return lambda: group
+
+
+def test_caller_and_client_in_one_exclusive_group_are_a_deadlock() -> None:
+    run = callers(1, 2, shared(MutuallyExclusiveCallbackGroup))
+    assert run.problems() == {("self-made-deadlock", "caller_0")}
+    found = run.one("self-made-deadlock")
+    assert (found.at, found.until) == (ns(1.0), run.timeline.end)
+    assert run.explained("self-made-deadlock").what == (
+        "caller_0 waits for /outside for ever: the reply of /outside waits for group A, which caller_0 holds"
+    )
+
+
+@pytest.mark.filterwarnings("ignore:MultiThreadedExecutor is used with a single thread")
+@pytest.mark.parametrize("threads", [None, 1])
+def test_a_call_on_the_only_thread_is_a_deadlock_whatever_the_groups(threads: int | None) -> None:
+    run = callers(1, threads, MutuallyExclusiveCallbackGroup)
+    assert run.problems() == {("self-made-deadlock", "caller_0")}
+    assert "needs the only thread, which caller_0 keeps" in run.explained("self-made-deadlock").what
+
+
+@pytest.mark.parametrize("count", [2, 3])
+@pytest.mark.parametrize("kind", [MutuallyExclusiveCallbackGroup, shared(ReentrantCallbackGroup)])
+def test_as_many_calls_as_threads_need_one_thread_more(count: int, kind: Group) -> None:
+    run = callers(count, count, kind)
+    assert {rule for rule, _ in run.problems()} == {"needs-one-more-worker"}
+    told = run.explained("needs-one-more-worker")
+    assert f"all {count} stand still in call()" in told.what
+    assert f"num_threads={count + 1}" in told.cure
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_one_thread_more_than_calls_is_well(count: int) -> None:
+    assert callers(count, count + 1, MutuallyExclusiveCallbackGroup).problems() == set()
+
+
+def test_a_deadlock_that_a_timeout_ended_is_told_as_over() -> None:
+    run = callers(1, 2, shared(MutuallyExclusiveCallbackGroup), timeout=2.0)
+    assert ("self-made-deadlock", "caller_0") in run.problems()
+    found = run.one("self-made-deadlock")
+    assert (found.at, found.until) == (ns(1.0), ns(3.0))
+    assert run.explained("self-made-deadlock").what.startswith("caller_0 waited in vain for /outside:")
+
+
+def test_a_long_answer_is_no_deadlock() -> None:
+    def program(simulation: Simulation) -> None:
+        serve_outside(simulation, seconds=4.0)
+        node = Node("n")
+        client = node.create_client(SetBool, "/outside", callback_group=MutuallyExclusiveCallbackGroup())
+        once(node, 1.0, lambda: client.call(SetBool.Request()))
+        spin(node, 2)
+
+    assert diagnosed(program).problems() == set()
+    assert diagnosed(program, until=3.0).problems() == set()
+
+
+def test_services_that_call_each_other_in_a_circle_are_spelt_out() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def offer(name: str, other: str) -> Callable[[object, object], object]:
+            client = node.create_client(SetBool, other, callback_group=MutuallyExclusiveCallbackGroup())
+
+            def serve(_: object, response: object) -> object:
+                client.call(SetBool.Request())
+                return response
+
+            serve.__name__ = f"serve_{name}"
+            node.create_service(SetBool, name, serve, callback_group=MutuallyExclusiveCallbackGroup())
+            return serve
+
+        offer("a", "b")
+        offer("b", "a")
+        client = node.create_client(SetBool, "a", callback_group=MutuallyExclusiveCallbackGroup())
+        once(node, 1.0, lambda: client.call_async(SetBool.Request()))
+        spin(node, 8)
+
+    run = diagnosed(program)
+    assert run.problems() == {("self-made-deadlock", "serve_a")}
+    what = run.explained("self-made-deadlock").what
+    assert what.startswith("serve_a waits for /b and /a for ever: /b is answered by serve_b; /a waits for ")
+    assert what.endswith("which serve_a holds")
+
+
+def test_a_service_in_the_callers_group_is_a_deadlock() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_service(SetBool, "own", lambda _, response: response)
+        client = node.create_client(SetBool, "own", callback_group=MutuallyExclusiveCallbackGroup())
+
+        def caller() -> None:
+            client.call(SetBool.Request())
+
+        once(node, 1.0, caller)
+        spin(node, 4)
+
+    run = diagnosed(program)
+    assert run.problems() == {("self-made-deadlock", "caller")}
+    assert "/own waits for group" in run.explained("self-made-deadlock").what
+
+
+def test_awaiting_a_reply_in_ones_own_exclusive_group_is_a_deadlock() -> None:
+    def awaiting(group: CallbackGroup | None) -> Diagnosed:
+        def program(simulation: Simulation) -> None:
+            serve_outside(simulation)
+            node = Node("n")
+            client = node.create_client(SetBool, "/outside", callback_group=group)
+
+            async def caller() -> None:
+                await client.call_async(SetBool.Request())
+
+            once(node, 1.0, caller)
+            spin(node, None)
+
+        return diagnosed(program)
+
+    assert awaiting(None).problems() == {("self-made-deadlock", "caller")}
+    assert awaiting(MutuallyExclusiveCallbackGroup()).problems() == set()
+
+
+def test_a_call_from_a_thread_that_is_no_executors_is_well() -> None:
+    def program(simulation: Simulation) -> None:
+        serve_outside(simulation, seconds=2.0)
+        node = Node("n")
+        client = node.create_client(SetBool, "/outside")
+        simulation.start(lambda: spin(node, None))
+        client.call(SetBool.Request())
+
+    assert diagnosed(program).problems() == set()

@@ -1,0 +1,150 @@
+"""Findings are kept up to date by looking at what is new, and come to the same as looking at everything."""
+
+from collections.abc import Iterator, Sequence
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from msgspec.structs import replace
+
+from sim.diagnosis import RULES, Diagnoses, Finding, Look, Rule, Weight, diagnose, findings_text
+from sim.trace.events import (
+    AnyEvent,
+    CallbackStarted,
+    EntityAppeared,
+    WaitStarted,
+)
+from sim.trace.timeline import Timeline
+from tests.ros.systems import System, play, systems
+from tests.support.builder import Run, ns
+from tests.support.runs import shared_group_run
+from tests.trace.systems import legal_runs
+
+SLOWER = 20
+"""Random systems last two seconds; stretched by so much they last longer than what is looked at again."""
+
+
+def timeline_of(events: Sequence[AnyEvent]) -> Timeline:
+    timeline = Timeline()
+    timeline.extend(events)
+    return timeline
+
+
+def stretched(events: Sequence[AnyEvent]) -> Iterator[AnyEvent]:
+    """The events of a run in which everything took longer."""
+    for event in events:
+        later = replace(event, t=event.t * SLOWER)
+        match later:
+            case WaitStarted(since=since):
+                yield replace(later, since=since * SLOWER)
+            case CallbackStarted(age=age):
+                yield replace(later, age=age * SLOWER)
+            case EntityAppeared(period=period):
+                yield replace(later, period=period * SLOWER)
+            case _:
+                yield later
+
+
+@pytest.mark.filterwarnings("ignore:MultiThreadedExecutor is used with a single thread")
+@given(systems(), st.lists(st.floats(0, 1), max_size=8))
+@settings(max_examples=40, deadline=None)
+def test_looking_at_what_is_new_finds_what_looking_at_everything_does(
+    system: System, cuts: list[float]
+) -> None:
+    events = list(stretched(play(system).events))
+    places = sorted({round(cut * len(events)) for cut in cuts} | {len(events)})
+    timeline, diagnoses, begin = Timeline(), Diagnoses(), 0
+    for end in places:
+        timeline.extend(events[begin:end])
+        begin = end
+        known, anew = diagnoses.update(timeline), diagnose(timeline_of(events[:end]))
+        assert list(known) == list(anew)
+
+
+def test_a_lesson_watched_second_by_second_has_the_same_findings_as_afterwards() -> None:
+    events = shared_group_run().events
+    timeline, diagnoses, begin = Timeline(), Diagnoses(), 0
+    for second in range(31):
+        end = next((place for place, each in enumerate(events) if each.t > ns(second)), len(events))
+        timeline.extend(events[begin:end])
+        begin = end
+        diagnoses.update(timeline)
+    assert begin == len(events)
+    assert diagnoses.findings == diagnose(timeline_of(events))
+    assert "dropped-messages" in {each.rule.id for each in diagnoses.findings}
+
+
+def test_an_update_without_news_changes_nothing() -> None:
+    timeline = timeline_of(shared_group_run().events)
+    diagnoses = Diagnoses()
+    first = diagnoses.update(timeline)
+    assert first
+    assert diagnoses.update(timeline) == first
+
+
+def test_another_timeline_begins_anew() -> None:
+    diagnoses = Diagnoses()
+    assert diagnoses.update(timeline_of(shared_group_run().events))
+    assert diagnoses.update(Timeline()) == ()
+
+
+def test_an_update_asks_for_no_more_than_the_last_seconds() -> None:
+    class Watches(Rule):
+        id = "watches"
+        summary = "notes what it is asked to look at"
+
+        def __init__(self) -> None:
+            self.starts: list[int] = []
+
+        def check(self, look: Look) -> Iterator[Finding]:
+            self.starts.append(look.window.start)
+            return iter(())
+
+        explain = None  # type: ignore[assignment]
+
+    rule = Watches()
+    timeline, diagnoses = Timeline(), Diagnoses([rule])
+    run = Run("long")
+    for minute in range(5):
+        run.log("here", minute * 60.0)
+        timeline.extend(run.events[-1:])
+        diagnoses.update(timeline)
+    assert rule.starts == [-1, -1, ns(59), ns(119), ns(179)]
+
+
+def test_problems_come_before_remarks_and_each_rule_has_an_id_of_its_own() -> None:
+    timeline = timeline_of(shared_group_run().events)
+    weights = [each.rule.weigh(each, timeline) for each in diagnose(timeline)]
+    assert weights == sorted(weights, key=lambda weight: weight is Weight.REMARK)
+    assert Weight.PROBLEM in weights
+    assert Weight.REMARK in weights
+    assert len({rule.id for rule in RULES}) == len(RULES)
+    assert all(rule.summary and rule.__doc__ for rule in RULES)
+
+
+def test_the_list_has_a_sign_a_reason_a_cure_and_a_place_for_each_finding() -> None:
+    timeline = timeline_of(shared_group_run().events)
+    lines = findings_text(diagnose(timeline), timeline).splitlines()
+    assert lines[0] == "Diagnosis"
+    begin = next(place for place, line in enumerate(lines) if "scan_callback waited" in line)
+    assert lines[begin : begin + 7] == [
+        "  ! scan_callback waited 20.0 s: group A was held by timer_callback.",
+        "    A mutually exclusive group lets one callback in at a time, however many",
+        "    threads are free.",
+        "    → give scan_callback a callback group of its own, apart from",
+        "      timer_callback, and spin with MultiThreadedExecutor(num_threads=2).",
+        "      node.py:120, at 4.006 s",
+        "  ! timer_callback decided on data at least 10.0 s old: newer messages waited",
+    ]
+    assert any(line.startswith("  · timer_callback took 10.0 s") for line in lines)
+    assert max(map(len, lines)) <= 79
+
+
+def test_where_nothing_was_found_the_list_is_silent() -> None:
+    assert findings_text((), Timeline()) == ""
+
+
+@given(legal_runs(), st.integers(0, 2**64 - 1))
+def test_a_trace_with_gaps_can_be_looked_at_too(events: list[AnyEvent], kept: int) -> None:
+    timeline = timeline_of([event for place, event in enumerate(events) if kept >> place % 64 & 1])
+    findings_text(diagnose(timeline), timeline)

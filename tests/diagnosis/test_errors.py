@@ -1,0 +1,82 @@
+"""Exceptions of callbacks that nobody hears of."""
+
+from contextlib import suppress
+
+import sim.ros as rclpy
+from sim.ros.callback_groups import ReentrantCallbackGroup
+from sim.ros.node import Node
+from sim.trace.events import RunEnded
+from sim.trace.timeline import Timeline
+from tests.diagnosis.findings import Diagnosed, diagnosed, executor_of, once
+from tests.support.simulation import Simulation, Trace
+
+
+def raising(threads: int | None, *, ticks_on: bool) -> Diagnosed:
+    """``fails`` raises at 1 s; ``tick``, if it is there, is called each second; ``spin`` is called again."""
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        group = ReentrantCallbackGroup()
+
+        def fails() -> None:
+            raise ValueError("no scan")
+
+        once(node, 1.0, fails, group)
+        if ticks_on:
+            node.create_timer(1.0, lambda: None, group)
+        executor = executor_of(threads)
+        executor.add_node(node)
+        while rclpy.ok():
+            with suppress(ValueError):
+                executor.spin()
+
+    return diagnosed(program)
+
+
+def test_an_exception_that_no_later_callback_brings_out_is_swallowed() -> None:
+    run = raising(2, ticks_on=False)
+    assert run.problems() == {("exception-swallowed", "fails")}
+    told = run.explained("exception-swallowed")
+    assert told.what == "fails raised ValueError: no scan, and spin() has not raised it"
+
+
+def test_an_exception_that_a_later_callback_brings_out_is_well() -> None:
+    assert raising(2, ticks_on=True).problems() == set()
+
+
+def test_a_single_threaded_executor_swallows_nothing() -> None:
+    assert raising(None, ticks_on=False).problems() == set()
+
+
+def test_an_exception_that_ended_the_run_is_well_and_one_beside_it_is_lost() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        group = ReentrantCallbackGroup()
+
+        def first() -> None:
+            simulation.sleep(0.5)
+            raise ValueError("first")
+
+        def second() -> None:
+            simulation.sleep(0.6)
+            raise ValueError("second")
+
+        once(node, 1.0, first, group)
+        once(node, 1.0, second, group)
+        once(node, 2.0, lambda: None, group)
+        executor = executor_of(3)
+        executor.add_node(node)
+        with suppress(ValueError):
+            executor.spin()
+
+    trace = diagnosed(program).trace
+    events = [each for each in trace.events if not isinstance(each, RunEnded)]
+    end = max(each.t for each in events)
+    ended = RunEnded(end, "node.py:3: the program raised ValueError: first", failed=True)
+    run = Diagnosed(Trace([*events, ended]))
+    assert run.problems() == {("exception-swallowed", "second")}
+
+
+def test_a_timeline_without_errors_is_asked_nothing() -> None:
+    assert Diagnosed(Trace([])).findings == ()
+    assert Timeline().end == 0

@@ -1,0 +1,49 @@
+"""The lessons have exactly these findings: their own trouble, and no false alarm where they are well made."""
+
+import pytest
+
+from sim.diagnosis import Weight, diagnose
+from tests.support.engine_runs import run_lesson
+
+GROUP_HELD = {
+    ("long-callback-among-sensors", "timer_callback"),
+    ("group-starvation", "odom_callback"),
+    ("group-starvation", "scan_callback"),
+    ("stale-data", "timer_callback"),
+    ("dropped-messages", "odom_callback"),
+    ("dropped-messages", "scan_callback"),
+}
+TURNS_FOR_LONG = ("overrun-timer", "timer_callback")
+
+Findings = set[tuple[str, str]]
+
+
+@pytest.mark.parametrize(
+    ("lesson", "calls", "threads", "problems", "remarks"),
+    [
+        ("single-thread", (), None, GROUP_HELD, {TURNS_FOR_LONG}),
+        ("shared-group", (), None, GROUP_HELD, {TURNS_FOR_LONG}),
+        ("shared-group", (), 4, GROUP_HELD, {TURNS_FOR_LONG, ("groups-change-nothing", "odom_callback")}),
+        ("split-groups", (), None, set(), {TURNS_FOR_LONG, ("threads-never-used", "")}),
+        ("exclusive-2-threads", (2.55,), None, set(), set()),
+        ("reentrant-2-threads", (2.55,), None, set(), set()),
+        (
+            "reentrant-1-thread",
+            (2.55,),
+            None,
+            {("no-free-worker", "timer_callback")},
+            {("groups-change-nothing", "SetBool_callback")},
+        ),
+    ],
+)
+def test_a_lesson_has_exactly_its_own_findings(
+    lesson: str, calls: tuple[float, ...], threads: int | None, problems: Findings, remarks: Findings
+) -> None:
+    run = run_lesson(lesson, 30.0 if not calls else 12.0, *calls, threads=threads)
+    timeline = run.timeline
+    found: dict[Weight | None, Findings] = {Weight.PROBLEM: set(), Weight.REMARK: set()}
+    for each in diagnose(timeline):
+        entity = timeline.entities.get(each.subject)
+        name = "" if entity is None else entity.spoken_name
+        found[each.rule.weigh(each, timeline)].add((each.rule.id, name))
+    assert found == {Weight.PROBLEM: problems, Weight.REMARK: remarks}

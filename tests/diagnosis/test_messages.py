@@ -1,0 +1,164 @@
+"""Messages that are lost, that are old when used, or that never come."""
+
+import pytest
+
+from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
+from sim.ros.node import Node
+from sim.ros.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from tests.diagnosis.findings import Diagnosed, Int32, diagnosed, once, spin
+from tests.support.builder import ns
+from tests.support.simulation import Simulation
+
+BEST_EFFORT = QoSProfile(depth=10, reliability=ReliabilityPolicy.BEST_EFFORT)
+RELIABLE = QoSProfile(depth=10, reliability=ReliabilityPolicy.RELIABLE)
+LATCHED = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+def sensor_and_sleeper(
+    depth: int, *, threads: int | None = None, own_group: bool = False, decide_each: float = 1.0
+) -> Diagnosed:
+    """``hear`` gets ten messages a second, ``decide`` sleeps from 3 to 6 s."""
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        simulation.publisher_at_rate("t", 0.1, offset=0.05)
+
+        def hear(_: object) -> None: ...
+
+        def decide() -> None:
+            if 3.0 <= simulation.now < 3.1:
+                simulation.sleep(3.0)
+
+        group = MutuallyExclusiveCallbackGroup() if own_group else None
+        node.create_subscription(Int32, "t", hear, depth, callback_group=group)
+        node.create_timer(decide_each, decide)
+        spin(node, threads)
+
+    return diagnosed(program)
+
+
+def test_lost_messages_are_counted_with_what_their_callback_waited_for() -> None:
+    run = sensor_and_sleeper(10)
+    assert ("dropped-messages", "hear") in run.problems()
+    found = run.one("dropped-messages")
+    assert found.count == run.trace.drops("hear") == 20
+    told = run.explained("dropped-messages").what
+    assert told == "hear lost 20 messages while it waited (group A held by decide): its queue holds 10"
+
+
+def test_a_queue_that_is_long_enough_loses_nothing() -> None:
+    assert "dropped-messages" not in {rule for rule, _ in sensor_and_sleeper(100).told()}
+
+
+def test_a_queue_of_one_is_meant_to_keep_the_newest() -> None:
+    run = sensor_and_sleeper(1)
+    assert ("dropped-messages", "hear") in run.told() - run.problems()
+
+
+def test_a_timer_that_runs_before_the_waiting_messages_decides_on_old_data() -> None:
+    run = sensor_and_sleeper(10)
+    assert ("stale-data", "decide") in run.problems()
+    found = run.one("stale-data")
+    assert (found.at, found.count, found.culprit) == (ns(6.0), 1, run.trace.entity("hear"))
+    assert found.size == ns(2.95)
+    assert "at least 3.0 s old" in run.explained("stale-data").what
+
+
+def test_a_sensor_with_a_thread_and_a_group_of_its_own_is_well() -> None:
+    assert sensor_and_sleeper(10, threads=2, own_group=True).problems() == set()
+
+
+def test_data_that_nobody_has_ever_seen_is_not_old() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_subscription(Int32, "t", lambda _: None, 10)
+        publisher = node.create_publisher(Int32, "t", 10)
+
+        def publish_and_sleep() -> None:
+            publisher.publish(Int32())
+            simulation.sleep(2.0)
+
+        once(node, 1.0, publish_and_sleep)
+        once(node, 1.5, lambda: None)
+        spin(node, None)
+
+    assert "stale-data" not in {rule for rule, _ in diagnosed(program).told()}
+
+
+def test_data_of_another_node_does_not_matter() -> None:
+    def program(simulation: Simulation) -> None:
+        simulation.publisher_at_rate("t", 0.1)
+        hearing, deciding = Node("hearing"), Node("deciding")
+
+        def hear(_: object) -> None:
+            simulation.sleep(1.0)
+
+        hearing.create_subscription(Int32, "t", hear, 100)
+        deciding.create_timer(0.5, lambda: None)
+        simulation.start(lambda: spin(hearing, None))
+        spin(deciding, None)
+
+    assert "stale-data" not in {rule for rule, _ in diagnosed(program).told()}
+
+
+def publisher_and_subscription(offered: QoSProfile, requested: QoSProfile) -> Diagnosed:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_subscription(Int32, "t", hear, requested)
+        publisher = node.create_publisher(Int32, "t", offered)
+        node.create_timer(1.0, lambda: publisher.publish(Int32()))
+        spin(node, None)
+
+    def hear(_: object) -> None: ...
+
+    return diagnosed(program)
+
+
+@pytest.mark.parametrize(
+    ("offered", "requested", "policy"),
+    [(BEST_EFFORT, RELIABLE, "RELIABILITY"), (RELIABLE, LATCHED, "DURABILITY")],
+)
+def test_a_subscription_that_asks_for_more_than_is_offered_is_told(
+    offered: QoSProfile, requested: QoSProfile, policy: str
+) -> None:
+    run = publisher_and_subscription(offered, requested)
+    assert run.told() == {("qos-mismatch", "hear")}
+    told = run.explained("qos-mismatch")
+    assert told.what == f"hear hears nothing from a publisher of /t: {policy} does not match"
+    assert told.place is not None
+
+
+@pytest.mark.parametrize(
+    ("offered", "requested"), [(RELIABLE, BEST_EFFORT), (LATCHED, RELIABLE), (RELIABLE, RELIABLE)]
+)
+def test_a_subscription_that_asks_for_what_is_offered_is_well(
+    offered: QoSProfile, requested: QoSProfile
+) -> None:
+    assert publisher_and_subscription(offered, requested).told() == set()
+
+
+def test_a_publisher_of_another_program_that_does_not_match_is_told() -> None:
+    def program(simulation: Simulation) -> None:
+        outside = simulation.outside_node()
+        outside.create_publisher(Int32, "t", BEST_EFFORT)
+        node = Node("n")
+
+        def hear(_: object) -> None: ...
+
+        node.create_subscription(Int32, "t", hear, RELIABLE)
+        spin(node, None)
+
+    assert diagnosed(program).told() == {("qos-mismatch", "hear")}
+
+
+def test_a_subscription_of_another_program_that_does_not_match_is_told() -> None:
+    def program(simulation: Simulation) -> None:
+        outside = simulation.outside_node()
+        outside.create_subscription(Int32, "t", lambda _: None, RELIABLE)
+        node = Node("n")
+        node.create_publisher(Int32, "t", BEST_EFFORT)
+        spin(node, None)
+
+    run = diagnosed(program)
+    assert run.told() == {("qos-mismatch", "")}
+    assert run.explained("qos-mismatch").what.startswith("a subscription outside the program hears nothing")

@@ -1,0 +1,133 @@
+"""Runs of the engine: what a program leaves behind when it ends is no trouble, and a deadlock is told."""
+
+from pathlib import Path
+
+import pytest
+
+from cbtui.headless import run_set_up
+from sim.diagnosis import diagnose
+from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
+from tests.support.engine_runs import SECOND, Run, program_setup, run_program, run_to_end
+
+TALKER = """
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import Int32
+
+rclpy.init()
+node = Node("talker")
+publisher = node.create_publisher(Int32, "numbers", 10)
+node.create_timer(0.25, lambda: publisher.publish(Int32()))
+rclpy.spin(node)
+"""
+
+LISTENER = """
+import rclpy
+from rclpy.node import Node
+from std_msgs.msg import Int32
+
+class Listener(Node):
+    def __init__(self):
+        super().__init__("listener")
+        self.create_subscription(Int32, "numbers", self.heard, 5)
+
+    def heard(self, number):
+        rclpy.shutdown()
+
+rclpy.init()
+listener = Listener()
+try:
+    rclpy.spin(listener)
+except rclpy.executors.ExternalShutdownException:
+    pass
+"""
+
+CALLER = """
+import rclpy
+from rclpy.node import Node
+from std_srvs.srv import SetBool
+
+class Caller(Node):
+    def __init__(self):
+        super().__init__("caller")
+        self.create_service(SetBool, "own", self.serve)
+        self.client = self.create_client(SetBool, "own")
+        self.create_timer(1.0, self.tick)
+
+    def serve(self, request, response):
+        return response
+
+    def tick(self):
+        self.client.call(SetBool.Request())
+
+rclpy.init()
+rclpy.spin(Caller())
+"""
+
+
+def problems(run: Run) -> list[str]:
+    timeline = run.timeline
+    found = diagnose(timeline)
+    return [f"{each.rule.id}: {each.rule.explain(each, timeline).what}" for each in found]
+
+
+def test_a_program_that_ended_neither_waits_nor_loses_messages(tmp_path: Path) -> None:
+    paths = []
+    for name, source in (("talker.py", TALKER), ("listener.py", LISTENER)):
+        path = tmp_path / name
+        path.write_text(source)
+        paths.append(path)
+    run = run_to_end(
+        RunSetup(
+            title="two",
+            programs=tuple(ProgramSetup(str(path)) for path in paths),
+            clock="virtual",
+            speed=None,
+            until=10 * SECOND,
+            robot=RobotUse.NEVER,
+        )
+    )
+    assert problems(run) == []
+
+
+def test_a_deadlock_is_told_with_the_line_of_its_callback(tmp_path: Path) -> None:
+    run = run_program(tmp_path, CALLER)
+    assert problems(run) == [
+        "self-made-deadlock: tick waits for /own for ever: /own waits for group A, which tick holds"
+    ]
+    timeline = run.timeline
+    (found,) = diagnose(timeline)
+    assert str(found.rule.explain(found, timeline).place) == "node.py:16"
+
+
+@pytest.mark.parametrize(
+    ("source", "told"),
+    [
+        (
+            CALLER,
+            [
+                "Diagnosis",
+                "  ! tick waits for /own for ever: /own waits for group A, which tick holds.",
+                "    The reply is brought by the executor, and needs a group that lets it in and",
+                "    a thread.",
+                "    → use call_async() and return from tick, or give client and service of /own",
+                "      callback groups of their own, and spin with",
+                "      MultiThreadedExecutor(num_threads=2).",
+                "      node.py:16, at 1.000 s",
+            ],
+        ),
+        (TALKER, []),
+    ],
+)
+def test_a_run_without_the_console_lists_its_findings_after_the_summary(
+    source: str, told: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "node.py"
+    path.write_text(source)
+    status = run_set_up(
+        program_setup(path, 3.0), events_path=None, recording_path=None, replace_recording=False
+    )
+    assert status == 0
+    summary, _, listing = capsys.readouterr().out.partition("\nDiagnosis\n")
+    assert summary.startswith("node.py, 3.0 s of virtual time")
+    assert (["Diagnosis", *listing.splitlines()] if listing else []) == told

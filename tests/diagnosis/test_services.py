@@ -1,0 +1,135 @@
+"""Service calls that are never answered."""
+
+from collections.abc import Callable
+
+import sim.ros as rclpy
+from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
+from sim.ros.node import Node
+from tests.diagnosis.findings import Diagnosed, SetBool, diagnosed, once, spin
+from tests.support.simulation import Simulation
+
+
+def served_by(serve: Callable[[object, object], object], until: float = 5.0) -> Diagnosed:
+    """A service that is called at 1 s; its node spins on whatever comes out of ``spin``."""
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_service(SetBool, "s", serve)
+        client = node.create_client(SetBool, "s")
+        once(node, 1.0, lambda: client.call_async(SetBool.Request()))
+        while rclpy.ok():
+            try:
+                rclpy.spin(node)
+            except (TypeError, ValueError):
+                continue
+
+    return diagnosed(program, until)
+
+
+def test_a_callback_that_returns_no_response_leaves_its_caller_waiting() -> None:
+    def serve(_: object, response: object) -> object:
+        return None
+
+    run = served_by(serve)
+    assert run.problems() == {("unreturned-response", "serve")}
+    told = run.explained("unreturned-response")
+    assert told.what == "serve returned no response, so the caller of /s waits for ever"
+    assert told.cure == "end serve with: return response"
+
+
+def test_a_callback_that_raises_leaves_its_caller_waiting() -> None:
+    def serve(_: object, response: object) -> object:
+        raise ValueError("no such angle")
+
+    run = served_by(serve)
+    assert run.problems() == {("unreturned-response", "serve")}
+    assert "serve raised ValueError: no such angle" in run.explained("unreturned-response").what
+
+
+def test_a_callback_that_returns_its_response_is_well() -> None:
+    assert served_by(lambda _, response: response).told() == set()
+
+
+def test_a_callback_that_still_works_when_the_run_ends_is_well() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def serve(_: object, response: object) -> object:
+            simulation.sleep(60.0)
+            return response
+
+        node.create_service(SetBool, "s", serve)
+        client = node.create_client(SetBool, "s")
+        once(node, 1.0, lambda: client.call_async(SetBool.Request()))
+        spin(node, None)
+
+    assert diagnosed(program).problems() == set()
+
+
+def test_a_coroutine_that_answers_later_is_well() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        open_door: rclpy.Future = rclpy.Future()  # type: ignore[type-arg]
+        group = MutuallyExclusiveCallbackGroup()
+
+        async def serve(_: object, response: object) -> object:
+            await open_door
+            return response
+
+        node.create_service(SetBool, "s", serve)
+        client = node.create_client(SetBool, "s", callback_group=group)
+        once(node, 1.0, lambda: client.call_async(SetBool.Request()), group)
+        once(node, 8.0, lambda: open_door.set_result(None), group)
+        spin(node, None)
+
+    assert diagnosed(program).problems() == set()
+    assert diagnosed(program, until=5.0).problems() == set()
+
+
+def calling(name: str, at: float = 1.0) -> Diagnosed:
+    """``caller`` calls a service by name; ``/s`` is offered from 2 s on."""
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        client = node.create_client(SetBool, name)
+
+        def caller() -> None:
+            client.call_async(SetBool.Request())
+
+        once(node, at, caller)
+        simulation.at(2.0, lambda: node.create_service(SetBool, "s", lambda _, response: response))
+        spin(node, None)
+
+    return diagnosed(program)
+
+
+def test_a_call_of_a_service_that_nobody_offers_is_told() -> None:
+    run = calling("/wrong")
+    assert run.told() == {("nobody-offers", "caller")}
+    told = run.explained("nobody-offers")
+    assert told.what == "caller called /wrong, which nobody offered: no reply will come"
+    assert "look at the service's name" in told.cure
+
+
+def test_a_call_before_the_service_is_there_is_told() -> None:
+    run = calling("/s")
+    assert run.told() == {("nobody-offers", "caller")}
+    assert run.explained("nobody-offers").cure.startswith("call wait_for_service() first")
+
+
+def test_a_call_of_a_service_that_is_there_is_well() -> None:
+    assert calling("/s", at=3.0).told() == set()
+
+
+def test_a_call_that_blocks_on_a_service_nobody_offers_is_told_as_that_and_not_as_a_deadlock() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        client = node.create_client(SetBool, "/wrong", callback_group=MutuallyExclusiveCallbackGroup())
+
+        def caller() -> None:
+            client.call(SetBool.Request())
+
+        once(node, 1.0, caller)
+        spin(node, 2)
+
+    assert diagnosed(program).problems() == {("nobody-offers", "caller")}

@@ -1,0 +1,85 @@
+"""Threads and groups that make no difference are remarked on, and never a problem."""
+
+import pytest
+
+from sim.ros.callback_groups import (
+    CallbackGroup,
+    MutuallyExclusiveCallbackGroup,
+    ReentrantCallbackGroup,
+)
+from sim.ros.node import Node
+from tests.diagnosis.findings import Diagnosed, diagnosed, executor_of
+from tests.support.simulation import Simulation
+
+
+def two_timers(
+    groups: tuple[CallbackGroup | None, CallbackGroup | None],
+    threads: int | None,
+    nodes: tuple[str, str] = ("n", "n"),
+) -> Diagnosed:
+    """Two callbacks that would run at the same time for a tenth of a second."""
+
+    def program(simulation: Simulation) -> None:
+        made = {name: Node(name) for name in nodes}
+
+        def work() -> None:
+            simulation.sleep(0.1)
+
+        for name, group in zip(nodes, groups, strict=True):
+            made[name].create_timer(1.0, work, group)
+        executor = executor_of(threads)
+        for node in made.values():
+            executor.add_node(node)
+        executor.spin()
+
+    return diagnosed(program, until=5.0)
+
+
+def rules(run: Diagnosed) -> list[str]:
+    assert run.problems() == set()
+    return [each.rule.id for each in run.findings]
+
+
+def two_groups() -> tuple[CallbackGroup, CallbackGroup]:
+    return MutuallyExclusiveCallbackGroup(), MutuallyExclusiveCallbackGroup()
+
+
+def test_more_threads_than_ever_needed_are_remarked_on() -> None:
+    run = two_timers(two_groups(), threads=4)
+    assert rules(run) == ["threads-never-used"]
+    assert run.explained("threads-never-used").what == "2 of 4 threads were ever needed at once"
+
+
+def test_as_many_threads_as_needed_are_well() -> None:
+    assert rules(two_timers(two_groups(), threads=2)) == []
+
+
+def test_threads_change_nothing_where_all_callbacks_share_a_group() -> None:
+    run = two_timers((None, None), threads=4)
+    assert rules(run) == ["groups-change-nothing"]
+    told = run.explained("groups-change-nothing").what
+    assert told == "4 threads change nothing: all callbacks share group A"
+
+
+def test_groups_change_nothing_where_there_is_one_thread() -> None:
+    run = two_timers(two_groups(), threads=None)
+    assert rules(run) == ["groups-change-nothing"]
+    told = run.explained("groups-change-nothing").what
+    assert told == "groups A and B change nothing: there is only one thread"
+
+
+@pytest.mark.filterwarnings("ignore:MultiThreadedExecutor is used with a single thread")
+def test_a_reentrant_group_changes_nothing_where_there_is_one_thread() -> None:
+    group = ReentrantCallbackGroup()
+    run = two_timers((group, group), threads=1)
+    assert rules(run) == ["groups-change-nothing"]
+    told = run.explained("groups-change-nothing").what
+    assert told == "group A changes nothing: there is only one thread"
+
+
+def test_the_default_groups_of_several_nodes_are_nobodys_choice() -> None:
+    assert rules(two_timers((None, None), threads=None, nodes=("a", "b"))) == []
+
+
+def test_one_thread_and_the_default_group_are_well() -> None:
+    assert rules(two_timers((None, None), threads=None)) == []

@@ -1,0 +1,117 @@
+"""Callbacks that overlap themselves, overrun their period, or sleep among sensors."""
+
+import pytest
+
+from sim.ros.callback_groups import (
+    CallbackGroup,
+    MutuallyExclusiveCallbackGroup,
+    ReentrantCallbackGroup,
+)
+from sim.ros.node import Node
+from tests.diagnosis.findings import Diagnosed, Int32, SetBool, diagnosed, once, spin
+from tests.support.builder import ns
+from tests.support.simulation import Simulation
+
+
+def ticking(length: float, group: CallbackGroup, threads: int | None = 3) -> Diagnosed:
+    """``tick`` is due each second and takes so long."""
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def tick() -> None:
+            simulation.sleep(length)
+
+        node.create_timer(1.0, tick, group)
+        spin(node, threads)
+
+    return diagnosed(program, until=20.0)
+
+
+def test_a_timer_slower_than_its_period_overlaps_itself_in_a_reentrant_group() -> None:
+    run = ticking(1.5, ReentrantCallbackGroup())
+    assert run.problems() == {("overlapping-callback", "tick")}
+    found = run.one("overlapping-callback")
+    assert (found.at, found.lasted, found.count) == (ns(2.0), ns(0.5), 18)
+    assert run.explained("overlapping-callback").what == "tick ran twice at once for 500 ms (18 times in all)"
+
+
+def test_a_timer_slower_than_its_period_overruns_it_in_an_exclusive_group() -> None:
+    run = ticking(1.5, MutuallyExclusiveCallbackGroup())
+    assert run.problems() == {("overrun-timer", "tick")}
+    told = run.explained("overrun-timer").what
+    assert told == "tick took 1.5 s with a period of 1.0 s: 1 tick missed or late (12 overruns in all)"
+
+
+@pytest.mark.parametrize("kind", [ReentrantCallbackGroup, MutuallyExclusiveCallbackGroup])
+def test_a_timer_quicker_than_its_period_is_well(kind: type[CallbackGroup]) -> None:
+    assert ticking(0.9, kind()).problems() == set()
+
+
+def test_a_timer_that_overruns_now_and_then_is_a_remark() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def tick() -> None:
+            simulation.sleep(2.5 if 5.0 <= simulation.now < 5.1 else 0.0)
+
+        node.create_timer(1.0, tick)
+        spin(node, None)
+
+    run = diagnosed(program, until=20.0)
+    assert run.told() == {("overrun-timer", "tick")}
+    assert run.problems() == set()
+
+
+def test_a_service_that_serves_two_at_once_is_a_remark() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        group = ReentrantCallbackGroup()
+
+        def serve(_: object, response: object) -> object:
+            simulation.sleep(2.0)
+            return response
+
+        node.create_service(SetBool, "s", serve, callback_group=group)
+        client = node.create_client(SetBool, "s", callback_group=group)
+        once(node, 1.0, lambda: [client.call_async(SetBool.Request()) for _ in range(2)], group)
+        spin(node, 3)
+
+    run = diagnosed(program)
+    assert ("overlapping-callback", "serve") in run.told()
+    assert run.problems() == set()
+
+
+def sleeper_and_sensor(*, same_group: bool, length: float = 2.0) -> Diagnosed:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        simulation.publisher_at_rate("t", 0.25, until=6.0)
+
+        def hear(_: object) -> None: ...
+
+        def sleeper() -> None:
+            simulation.sleep(length)
+
+        group = MutuallyExclusiveCallbackGroup()
+        node.create_subscription(Int32, "t", hear, 100, callback_group=group)
+        once(node, 1.0, sleeper, group if same_group else MutuallyExclusiveCallbackGroup())
+        spin(node, 2)
+
+    return diagnosed(program)
+
+
+def test_a_sleep_in_a_group_shared_with_a_subscription_is_told() -> None:
+    run = sleeper_and_sensor(same_group=True)
+    assert run.problems() == {("long-callback-among-sensors", "sleeper"), ("group-starvation", "hear")}
+    found = run.one("long-callback-among-sensors")
+    assert (found.at, found.until, found.count) == (ns(1.0), ns(3.0), 1)
+    told = run.explained("long-callback-among-sensors").what
+    assert told == "sleeper slept or worked for 2.0 s in group A, which it shares with hear"
+
+
+def test_a_sleep_in_a_group_of_its_own_is_well() -> None:
+    assert sleeper_and_sensor(same_group=False).told() == set()
+
+
+def test_a_short_sleep_among_sensors_is_well() -> None:
+    assert sleeper_and_sensor(same_group=True, length=0.4).problems() == set()

@@ -1,0 +1,135 @@
+"""Callbacks that are ready and do not run: for their group, for a thread, for somebody to spin."""
+
+import pytest
+
+import sim.ros as rclpy
+from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
+from sim.ros.node import Node
+from tests.diagnosis.findings import Diagnosed, Int32, diagnosed, once, spin
+from tests.support.builder import ns
+from tests.support.simulation import Simulation
+
+
+def slow_and_quick(*, same_group: bool, threads: int | None, length: float = 3.0) -> Diagnosed:
+    """``slow`` works from 1 s on; ``quick`` is due a tenth of a second later."""
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def slow() -> None:
+            simulation.sleep(length)
+
+        def quick() -> None: ...
+
+        first = MutuallyExclusiveCallbackGroup()
+        once(node, 1.0, slow, first)
+        once(node, 1.1, quick, first if same_group else MutuallyExclusiveCallbackGroup())
+        spin(node, threads)
+
+    return diagnosed(program)
+
+
+def test_a_callback_that_waits_long_for_its_group_is_starved_by_who_holds_it() -> None:
+    run = slow_and_quick(same_group=True, threads=2)
+    assert run.problems() == {("group-starvation", "quick")}
+    found = run.one("group-starvation")
+    assert (found.at, found.until, found.count) == (ns(1.1), ns(4.0), 1)
+    assert found.culprit == run.trace.entity("slow")
+    told = run.explained("group-starvation")
+    assert told.what == "quick waited 2.9 s: group A was held by slow"
+    assert told.place is not None
+    assert told.place.file == __file__
+
+
+def test_with_one_thread_the_cure_of_a_held_group_names_a_thread_too() -> None:
+    told = slow_and_quick(same_group=True, threads=None).explained("group-starvation")
+    assert "MultiThreadedExecutor(num_threads=2)" in told.cure
+
+
+def test_a_callback_whose_group_is_free_waits_long_for_a_thread() -> None:
+    run = slow_and_quick(same_group=False, threads=None)
+    assert run.problems() == {("no-free-worker", "quick")}
+    assert run.explained("no-free-worker").what == "quick waited 2.9 s: the only thread ran slow"
+
+
+def test_groups_of_their_own_and_two_threads_are_well() -> None:
+    assert slow_and_quick(same_group=False, threads=2).told() == set()
+
+
+@pytest.mark.parametrize("same_group", [True, False])
+def test_short_waits_are_no_problem(same_group: bool) -> None:
+    run = slow_and_quick(same_group=same_group, threads=None, length=0.5)
+    assert run.problems() == set()
+
+
+def test_waits_that_repeat_are_one_finding_with_the_longest() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def slow() -> None:
+            simulation.sleep(simulation.now / 2)
+
+        def quick() -> None: ...
+
+        group = MutuallyExclusiveCallbackGroup()
+        for at in (2.0, 10.0, 4.0):
+            once(node, at, slow, group)
+            once(node, at + 0.25, quick, group)
+        spin(node, None)
+
+    run = diagnosed(program, until=20.0)
+    worst = max((each for each in run.findings if each.rule.id == "group-starvation"), key=lambda f: f.size)
+    assert worst.lasted == ns(4.75)
+
+
+def test_a_callback_that_waits_for_itself_alone_is_not_starved() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def hear(_: object) -> None:
+            simulation.sleep(2.0)
+
+        node.create_subscription(Int32, "t", hear, 10)
+        publisher = node.create_publisher(Int32, "t", 10)
+        for _ in range(3):
+            publisher.publish(Int32())
+        spin(node, 2)
+
+    assert diagnosed(program).problems() == set()
+
+
+def test_a_node_that_nobody_ever_spins_is_told() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("forgotten")
+
+        def tick() -> None: ...
+
+        node.create_timer(1.0, tick)
+        simulation.sleep(5.0)
+
+    run = diagnosed(program)
+    assert run.problems() == {("node-never-spins", "tick")}
+    told = run.explained("node-never-spins").what
+    assert told == "tick of /forgotten is ready for 4.0 s and does not run: nobody ever spun its node"
+
+
+def test_a_node_that_is_spun_no_more_is_told() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_timer(1.0, lambda: None)
+        rclpy.spin_once(node)
+        simulation.sleep(5.0)
+
+    run = diagnosed(program)
+    assert run.problems() == {("node-never-spins", "<lambda>")}
+    assert run.explained("node-never-spins").what.endswith("nobody spins its node any more")
+
+
+def test_a_node_that_is_spun_after_a_while_is_well() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        node.create_timer(1.0, lambda: None)
+        simulation.sleep(5.0)
+        rclpy.spin(node)
+
+    assert diagnosed(program).told() == set()

@@ -1,0 +1,94 @@
+"""A program that lets no time pass: it is told, takes inputs, and is repeated from them."""
+
+from pathlib import Path
+from queue import Queue
+
+import msgspec
+
+from cbtui.session import Session
+from sim.engine.commands import CallService, InputCommand, Stop
+from sim.engine.inputs import inputs_of
+from sim.trace.events import AnyEvent, CommandGiven, InputGiven, Logged, Notice, RunEnded, TimeHalted
+from tests.support.engine_runs import program_setup, run_to_end
+
+DAWDLES = """
+import time
+import rclpy
+from rclpy.node import Node
+from std_srvs.srv import SetBool
+
+class Dawdler(Node):
+    def __init__(self):
+        super().__init__("dawdler")
+        self.heard = 0
+        self.create_service(SetBool, "go", self.hear)
+
+    def hear(self, request, response):
+        self.heard += 1
+        self.get_logger().info(f"heard {self.heard}")
+        return response
+
+rclpy.init()
+node = Dawdler()
+while node.heard < 2:
+    rclpy.spin_once(node, timeout_sec=0.0)
+    time.sleep(0)
+node.get_logger().info("on it goes")
+time.sleep(1.0)
+"""
+
+
+def live(folder: Path, *given: InputCommand) -> list[AnyEvent]:
+    """Run the dawdler as fast as it can, with inputs, each when the one before was heard; all events."""
+    path = folder / "node.py"
+    path.write_text(DAWDLES)
+    news: Queue[list[AnyEvent] | str | None] = Queue()
+    session = Session(msgspec.structs.replace(program_setup(path, 60.0), speed=1.0), news.put, news.put)
+    events: list[AnyEvent] = []
+    waiting = list(given)
+    session.start()
+    try:
+        session.send(waiting.pop(0))
+        while isinstance(batch := news.get(timeout=20), list):
+            events += batch
+            if any(isinstance(event, Logged) for event in batch) and waiting:
+                session.send(waiting.pop(0))
+    finally:
+        session.stop()
+    return events
+
+
+def without_notices(events: list[AnyEvent]) -> list[AnyEvent]:
+    return [event for event in events if not isinstance(event, (Notice, CommandGiven, TimeHalted))]
+
+
+def test_a_program_that_waits_without_time_takes_its_inputs_and_is_repeated_from_them(tmp_path: Path) -> None:
+    events = live(tmp_path, CallService("/go", True), CallService("/go", False))
+    given = [event for event in events if isinstance(event, InputGiven)]
+    assert [event.t for event in given] == [0, 0]
+    assert 0 < given[0].recess < given[1].recess
+    assert isinstance(events[-1], RunEnded)
+    assert not events[-1].failed
+    setup = msgspec.structs.replace(program_setup(tmp_path / "node.py", 60.0), inputs=inputs_of(events))
+    assert without_notices(run_to_end(setup).events)[1:] == without_notices(events)[1:]
+
+
+def test_that_time_stands_is_told_once_with_the_place(tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    path.write_text("import time\n\ndef dawdle():\n    while True:\n        time.sleep(0)\n\ndawdle()\n")
+    run = run_to_end(program_setup(path, 60.0))
+    told = [event for event in run.events if isinstance(event, Notice)]
+    assert [notice.text.partition(";")[0] for notice in told] == [
+        "time stands still: MainThread (node.py:5, in dawdle) and whatever else runs came to 10,000 waits "
+        "in one moment"
+    ]
+    ended = run.events[-1]
+    assert isinstance(ended, RunEnded)
+    assert ended.failed
+    assert ended.reason.startswith("time stands still: MainThread (node.py:5, in dawdle)")
+
+
+def test_a_program_that_lets_no_time_pass_can_be_stopped(tmp_path: Path) -> None:
+    events = live(tmp_path, Stop())
+    assert isinstance(events[-1], RunEnded)
+    assert (events[-1].t, events[-1].reason) == (0, "it was stopped")

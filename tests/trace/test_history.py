@@ -1,0 +1,56 @@
+"""A history answers like a sorted list, whatever of it is spilled."""
+
+from bisect import insort_right
+from operator import attrgetter
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sim.trace.events import CommandGiven
+from sim.trace.history import History
+from sim.trace.model import Window
+from sim.trace.spill import Spill
+
+times = st.integers(-20, 20)
+items = st.lists(st.builds(CommandGiven, times, st.text(max_size=3)), max_size=60)
+spills = st.builds(Spill, at_hand=st.integers(1, 400), entries=st.integers(1, 7))
+
+
+def history_of(spill: Spill, items: list[CommandGiven]) -> History[CommandGiven]:
+    history: History[CommandGiven] = History(attrgetter("t"), CommandGiven, spill)
+    for item in items:
+        history.add(item)
+    return history
+
+
+def in_order(items: list[CommandGiven]) -> list[CommandGiven]:
+    naive: list[CommandGiven] = []
+    for item in items:
+        insort_right(naive, item, key=attrgetter("t"))
+    return naive
+
+
+@given(spills, items)
+def test_items_stand_in_order_of_time_then_of_arrival(spill: Spill, items: list[CommandGiven]) -> None:
+    history, naive = history_of(spill, items), in_order(items)
+    assert len(history) == len(naive)
+    assert history == naive
+    assert [history[place] for place in range(-len(naive), len(naive))] == naive + naive
+    assert list(reversed(history)) == naive[::-1]
+
+
+@given(spills, items, st.slices(60))
+def test_a_history_is_cut_like_a_list(spill: Spill, items: list[CommandGiven], cut: slice) -> None:
+    assert history_of(spill, items)[cut] == in_order(items)[cut]
+
+
+@given(spills, items, times, times)
+def test_a_window_and_a_moment_are_found_by_time(
+    spill: Spill, items: list[CommandGiven], start: int, end: int
+) -> None:
+    history, naive = history_of(spill, items), in_order(items)
+    assert history.within(Window(start, end)) == [item for item in naive if start <= item.t < end]
+    until = [item for item in naive if item.t <= start]
+    assert history.until(start) == len(until)
+    assert history.before(start) == len([item for item in naive if item.t < start])
+    assert history.latest(start) == (until[-1] if until else None)
