@@ -4,6 +4,7 @@ A screen only implements ``action_<id>`` for the actions of its scope, and says 
 them have a meaning now.
 """
 
+import re
 from collections.abc import Iterable
 from enum import StrEnum
 from itertools import groupby
@@ -12,6 +13,7 @@ from typing import NamedTuple
 
 from textual.actions import parse
 from textual.binding import Binding
+from textual.keys import format_key, key_to_character
 
 from cbtui.theme import Charset
 
@@ -21,9 +23,19 @@ class Scope(StrEnum):
 
     EVERYWHERE = "Everywhere"
     MENU = "Menu"
+    SEARCH = "Search in the menu"
+    OPENING = "Opening a file"
     LESSON = "Lesson"
+    COMPARE = "Comparison"
+    LOG = "Log"
+    FILTER = "Filter of the log"
+    CODE = "Code"
     PROMPT = "Prompt"
     THREADS = "Choice of threads"
+    GROUP = "Choice of a group"
+    SETUP = "Set-up"
+    DIAGNOSES = "Diagnoses"
+    NUMBER = "Choice of a number"
     MOMENT = "Choice of a moment"
     HELP = "Help"
 
@@ -48,13 +60,27 @@ class Action(NamedTuple):
         return self.series or self.help
 
 
-_ALONE = (Scope.PROMPT, Scope.THREADS, Scope.MOMENT, Scope.HELP)
+_ALONE = (
+    Scope.SEARCH,
+    Scope.OPENING,
+    Scope.FILTER,
+    Scope.PROMPT,
+    Scope.THREADS,
+    Scope.GROUP,
+    Scope.SETUP,
+    Scope.DIAGNOSES,
+    Scope.NUMBER,
+    Scope.MOMENT,
+    Scope.HELP,
+)
+_ON_A_PANE = (Scope.LOG, Scope.CODE)
+"""Scopes of a pane of a lesson, whose actions work there beside the lesson's."""
 
-PANES = ("guide", "code", "robot", "log", "shell")
+PANES = ("guide", "code", "factory", "robot", "log", "shell")
 """The panes of a lesson, in the order of their keys."""
 
 ACTIONS = (
-    Action("open", "enter", "open", "Open the highlighted lesson", Scope.MENU),
+    Action("open", "enter", "open", "Open the highlighted lesson or file", Scope.MENU),
     *(
         Action(
             f"open_number({number})",
@@ -66,8 +92,47 @@ ACTIONS = (
         )
         for number in range(1, 10)
     ),
-    Action("previous", "up", "choose", "Highlight the lesson above", Scope.MENU),
-    Action("next", "down", "choose", "Highlight the lesson below", Scope.MENU),
+    Action("previous", "up", "choose", "Highlight what is above", Scope.MENU, "Highlight another"),
+    Action("next", "down", "choose", "Highlight what is below", Scope.MENU, "Highlight another"),
+    Action("search", "/", "search", "Show only lessons and files that have some words", Scope.MENU),
+    Action("open_file", "o", "file", "Open a program or a recording of your own", Scope.MENU),
+    Action("forget", "delete", "take off", "Take the highlighted file off the list", Scope.MENU),
+    Action("end_search", "escape", "show all", "Show all lessons and files again", Scope.MENU),
+    Action("submit", "enter", "open", "Open what is highlighted", Scope.SEARCH),
+    Action("above", "up", "choose", "Highlight what is above", Scope.SEARCH, "Highlight another"),
+    Action("below", "down", "choose", "Highlight what is below", Scope.SEARCH, "Highlight another"),
+    Action("give_up", "escape", "show all", "Show all lessons and files again", Scope.SEARCH),
+    Action("go", "enter", "open", "Open the file", Scope.OPENING),
+    Action("complete", "tab", "complete", "Complete the path as far as there is one way", Scope.OPENING),
+    Action("close", "escape", "close", "Close the window, and open nothing", Scope.OPENING),
+    Action("filter", "/", "filter", "Show some lines only, by words, level or writer", Scope.LOG),
+    Action(
+        "follow",
+        "f",
+        "follow",
+        "Go to the end of the log, and follow it",
+        Scope.LOG,
+        "Follow the end of the log, or stay at these lines",
+    ),
+    Action(
+        "stay",
+        "f",
+        "stay",
+        "Stay at these lines of the log",
+        Scope.LOG,
+        "Follow the end of the log, or stay at these lines",
+    ),
+    Action("line_above", "up", "line", "Pick the line above", Scope.LOG, "Pick the line above or below"),
+    Action("line_below", "down", "line", "Pick the line below", Scope.LOG, "Pick the line above or below"),
+    Action("pick_line", "enter", "go there", "Move the cursor of every pane to the line's time", Scope.LOG),
+    Action("copy", "y", "copy", "Copy the picked line, or those in view", Scope.LOG),
+    Action("let_go", "escape", "let go", "Have no line picked", Scope.LOG),
+    Action("line_above", "up", "line", "Go to the line above", Scope.CODE, "Go to the line above or below"),
+    Action("line_below", "down", "line", "Go to the line below", Scope.CODE, "Go to the line above or below"),
+    Action("pick_callback", "enter", "go to lane", "Go from the line's callback to its lane", Scope.CODE),
+    Action("open_here", "o", "editor", "Open the file at the line in $EDITOR", Scope.CODE),
+    Action("copy", "y", "copy", "Copy the callback at the line", Scope.CODE),
+    Action("let_go", "escape", "let go", "Pick no line, and go to what runs again", Scope.CODE),
     Action("call_service", "s", "service", "Call the lesson's SetBool service with true", Scope.LESSON),
     Action("call_service_off", "S", "false", "Call the lesson's SetBool service with false", Scope.LESSON),
     Action("pause", "space", "pause", "Stop time for every thread", Scope.LESSON),
@@ -82,8 +147,18 @@ ACTIONS = (
     Action(
         "threads", "t", "threads", "Choose how many threads the executor gets, and run again", Scope.LESSON
     ),
+    Action("group", "g", "group", "Give the selected callback another group, and run again", Scope.LESSON),
+    Action("set_up", "p", "set-up", "Change timers' periods and all else of the set-up", Scope.LESSON),
     Action("reset_world", "r", "reset", "Put the robot back to its start", Scope.LESSON),
     Action("run_again", "r", "run again", "Run again, when the run is over", Scope.LESSON),
+    Action("compare", "C", "compare", "Compare this run with the one before", Scope.LESSON),
+    Action(
+        "diagnoses",
+        "d",
+        "diagnoses",
+        "List what goes wrong in this run, why, and what to do about it",
+        Scope.LESSON,
+    ),
     Action("next_lesson", "n", "next", "Open the next lesson", Scope.LESSON),
     Action("live", "0", "live", "Go back to the present", Scope.LESSON),
     *(
@@ -98,21 +173,114 @@ ACTIONS = (
         for number, name in enumerate(PANES, start=1)
     ),
     Action("prompt", "colon", "ros2", "Type a ros2 line; tab completes, up brings lines back", Scope.LESSON),
+    Action("filter_log", "/", "filter", "Go to the log, and filter it", Scope.LESSON),
+    Action("open_source", "o", "editor", "Open the code in $EDITOR", Scope.LESSON),
     Action(
         "record", "R", "record", "Begin a recording of the run in the current folder, or end it", Scope.LESSON
     ),
-    Action("go_to_time", "g", "go to", "Look back at a moment, or run on until it has come", Scope.LESSON),
+    Action("go_to_time", "G", "go to", "Look back at a moment, or run on until it has come", Scope.LESSON),
+    Action(
+        "cycle_camera", "c", "camera", "Show the robot's map, the camera's picture, or both", Scope.LESSON
+    ),
     Action("step_back", "comma", "look back", "Look at the event before the moment on screen", Scope.LESSON),
-    Action("earlier", "left", "look back", "Look at an earlier stretch of the run", Scope.LESSON),
-    Action("later", "right", "look back", "Look at a later stretch of the run", Scope.LESSON),
+    Action("earlier", "left_square_bracket", "look back", "Move the cursor of every pane back", Scope.LESSON),
+    Action("later", "right_square_bracket", "look back", "Move the cursor of every pane on", Scope.LESSON),
     Action("slower", "minus", "speed", "Let time pass more slowly", Scope.LESSON),
     Action("faster", "plus", "speed", "Let time pass faster", Scope.LESSON),
     Action("zoom_out", "less_than_sign", "zoom", "Show a longer stretch of time", Scope.LESSON),
     Action("zoom_in", "greater_than_sign", "zoom", "Show a shorter stretch of time", Scope.LESSON),
+    Action(
+        "pan_earlier",
+        "left",
+        "pan",
+        "Show an earlier stretch, and leave the cursor",
+        Scope.LESSON,
+        "Show an earlier or later stretch, and leave the cursor",
+    ),
+    Action(
+        "pan_later",
+        "right",
+        "pan",
+        "Show a later stretch, and leave the cursor",
+        Scope.LESSON,
+        "Show an earlier or later stretch, and leave the cursor",
+    ),
+    Action("select", "enter", "select", "Go to the lanes and select a bar, to see what it is", Scope.LESSON),
+    Action("to_code", "enter", "code", "Go from the selected bar to its code", Scope.LESSON),
+    Action(
+        "lane_above",
+        "up",
+        "lane",
+        "Select the lane above",
+        Scope.LESSON,
+        "Select the lane above or below, when on the lanes",
+    ),
+    Action(
+        "lane_below",
+        "down",
+        "lane",
+        "Select the lane below",
+        Scope.LESSON,
+        "Select the lane above or below, when on the lanes",
+    ),
+    Action(
+        "previous_event",
+        "left_curly_bracket",
+        "event",
+        "Go back to the selected lane's bar before",
+        Scope.LESSON,
+        "Go to the selected lane's bar before or after the cursor",
+    ),
+    Action(
+        "next_event",
+        "right_curly_bracket",
+        "event",
+        "Go on to the selected lane's next bar",
+        Scope.LESSON,
+        "Go to the selected lane's bar before or after the cursor",
+    ),
+    Action("deselect", "escape", "deselect", "Leave the lanes, and select nothing", Scope.LESSON),
     Action("next_pane", "tab", "next pane", "Go to the next pane", Scope.LESSON),
     Action("maximise", "z", "enlarge", "Let one pane fill the screen; press again to go back", Scope.LESSON),
     Action("leave", "q", "menu", "End the run and go back to the menu", Scope.LESSON),
     Action("leave", "q", "quit", "Leave the console", Scope.MENU),
+    Action(
+        "window",
+        "w",
+        "whole or screen",
+        "Let the table tell of whole runs, or of what is on screen",
+        Scope.COMPARE,
+    ),
+    Action("earlier", "left_square_bracket", "look back", "Move the cursor back", Scope.COMPARE),
+    Action("later", "right_square_bracket", "look back", "Move the cursor on", Scope.COMPARE),
+    Action(
+        "pan_earlier",
+        "left",
+        "pan",
+        "Show an earlier stretch, and leave the cursor",
+        Scope.COMPARE,
+        "Show an earlier or later stretch, and leave the cursor",
+    ),
+    Action(
+        "pan_later",
+        "right",
+        "pan",
+        "Show a later stretch, and leave the cursor",
+        Scope.COMPARE,
+        "Show an earlier or later stretch, and leave the cursor",
+    ),
+    Action("zoom_out", "less_than_sign", "zoom", "Show a longer stretch of time", Scope.COMPARE),
+    Action("zoom_in", "greater_than_sign", "zoom", "Show a shorter stretch of time", Scope.COMPARE),
+    Action("go_to_time", "G", "go to", "Go to a moment", Scope.COMPARE),
+    Action("live", "0", "end", "Go to the end", Scope.COMPARE),
+    Action("maximise", "z", "table", "Let the table fill the screen; press again to go back", Scope.COMPARE),
+    Action("scroll_table_up", "up", "scroll", "Show what lies above in the table", Scope.COMPARE),
+    Action("scroll_table_down", "down", "scroll", "Show what lies below in the table", Scope.COMPARE),
+    Action("step_back", "comma", "event", "Go to the event before, of either run", Scope.COMPARE),
+    Action("step", "full_stop", "event", "Go to the next event, of either run", Scope.COMPARE),
+    Action("leave", "q", "back", "Leave the comparison", Scope.COMPARE),
+    Action("submit", "enter", "keep", "Go to the lines that the filter lets through", Scope.FILTER),
+    Action("drop_filter", "escape", "clear", "Show every line again", Scope.FILTER),
     Action("submit", "enter", "run", "Carry out the line", Scope.PROMPT),
     Action("complete", "tab", "complete", "Complete the word at the cursor", Scope.PROMPT),
     Action("older", "up", "lines before", "Bring back the line before", Scope.PROMPT),
@@ -125,6 +293,27 @@ ACTIONS = (
     ),
     Action("choose(0)", "o", "the program's own", "Run with the program's own number", Scope.THREADS),
     Action("close", "escape,q", "close", "Close the window, and leave everything as it is", Scope.THREADS),
+    *(
+        Action(f"choose('{name}')", key, "group", f"Give it {group}", Scope.GROUP)
+        for key, name, group in (
+            ("o", "own", "a group of its own"),
+            ("s", "shared", "the shared group"),
+            ("r", "reentrant", "the reentrant group"),
+            ("d", "default", "the node's default group"),
+        )
+    ),
+    Action("choose('')", "p", "the program's", "Give it the group that the program says", Scope.GROUP),
+    Action("close", "escape,q", "close", "Close the window, and leave everything as it is", Scope.GROUP),
+    Action("change", "enter", "change", "Change what is highlighted", Scope.SETUP),
+    Action("run", "r", "run with it", "Run again with what is changed", Scope.SETUP),
+    Action("undo_all", "u", "undo all", "Have everything as the program says", Scope.SETUP),
+    Action("close", "escape,q", "close", "Close the window, and let the run go on as it is", Scope.SETUP),
+    Action("previous", "up", "choose", "Highlight what is above", Scope.DIAGNOSES, "Highlight another"),
+    Action("next", "down", "choose", "Highlight what is below", Scope.DIAGNOSES, "Highlight another"),
+    Action("go", "enter", "go there", "Go to the moment and to the code", Scope.DIAGNOSES),
+    Action("close", "escape,q", "close", "Close the window, and stay where you are", Scope.DIAGNOSES),
+    Action("go", "enter", "take", "Take the number", Scope.NUMBER),
+    Action("close", "escape", "close", "Close the window, and leave the number as it is", Scope.NUMBER),
     Action("go", "enter", "go", "Go to the moment", Scope.MOMENT),
     Action("close", "escape", "close", "Close the window, and stay where you are", Scope.MOMENT),
     Action("close", "escape,q,question_mark", "close", "Go back to where you were", Scope.HELP),
@@ -134,8 +323,14 @@ ACTIONS = (
 
 
 def actions_of(scope: Scope) -> tuple[Action, ...]:
-    """Return the actions that work in a scope; outside of prompt and windows also those of everywhere."""
-    scopes = (scope,) if scope in _ALONE else (scope, Scope.EVERYWHERE)
+    """Return the actions that work in a scope, on a pane also those of its lesson.
+
+    Outside of lines that are typed and of windows those of everywhere work too.
+    """
+    if scope in _ON_A_PANE:
+        scopes: tuple[Scope, ...] = (scope, Scope.LESSON, Scope.EVERYWHERE)
+    else:
+        scopes = (scope,) if scope in _ALONE else (scope, Scope.EVERYWHERE)
     return tuple(action for action in ACTIONS if action.scope in scopes)
 
 
@@ -144,7 +339,14 @@ def bindings_of(*scopes: Scope) -> list[Binding]:
     return [_binding(action) for action in ACTIONS if action.scope in scopes]
 
 
-_PLACES = {Scope.EVERYWHERE: "app", Scope.PROMPT: "focused"}
+_PLACES = {
+    Scope.EVERYWHERE: "app",
+    Scope.SEARCH: "focused",
+    Scope.LOG: "focused",
+    Scope.FILTER: "focused",
+    Scope.CODE: "focused",
+    Scope.PROMPT: "focused",
+}
 """What implements the actions of a scope, where it is not the screen."""
 
 
@@ -153,13 +355,19 @@ def target_of(action: Action) -> str:
     return f"{_PLACES.get(action.scope, 'screen')}.{action.id}"
 
 
+def key_id(action: Action) -> str:
+    """Return the name by which an action's keys are chosen: ``lesson.pause``, ``lesson.show_pane_guide``."""
+    words = re.findall(r"\w+", action.id)
+    return f"{action.scope.name.lower()}.{'_'.join(words)}"
+
+
 def _binding(action: Action) -> Binding:
     return Binding(
         action.key,
         action.id,
         action.label,
         tooltip=action.help,
-        id=f"{action.scope.name.lower()}.{action.id}",
+        id=key_id(action),
         priority=action.key in _KEYS_THAT_WIDGETS_WANT,
     )
 
@@ -174,17 +382,8 @@ _SIGNS = {
     "down": "↓",
     "left": "←",
     "right": "→",
-    "minus": "-",
-    "plus": "+",
-    "less_than_sign": "<",
-    "greater_than_sign": ">",
-    "question_mark": "?",
-    "comma": ",",
-    "full_stop": ".",
-    "colon": ":",
-    "ctrl+p": "^p",
-    "ctrl+c": "^c",
     "escape": "esc",
+    "delete": "del",
 }
 _PLAIN_SIGNS = _SIGNS | {
     "enter": "enter",
@@ -198,12 +397,31 @@ _PLAIN_SIGNS = _SIGNS | {
 
 def signs_of(actions: Iterable[Action], charset: Charset) -> str:
     """Return the keys of some actions as people write them."""
-    signs = _PLAIN_SIGNS if charset is Charset.ASCII else _SIGNS
     keys = [action.key.partition(",")[0] for action in actions]
     digits = [key for key in keys if key.isdigit()]
-    if len(digits) > 2:
+    if len(digits) > 2 and "".join(digits) in "0123456789":
         keys = [key for key in keys if key not in digits] + [f"{digits[0]}-{digits[-1]}"]
-    return " ".join(signs.get(key, key) for key in keys)
+    return " ".join(_sign(key, charset) for key in keys)
+
+
+def character_of(key: str) -> str | None:
+    """Return what a key types, such as ``?`` for ``question_mark``; None for space and what types nothing."""
+    if len(key) == 1:
+        return key
+    character = key_to_character(key)
+    if character is None and len(format_key(key)) == 1 and format_key(key).isascii():
+        character = format_key(key)  # minus, slash and others that Textual has own names for
+    return character if character is not None and character.isprintable() and character != " " else None
+
+
+def _sign(key: str, charset: Charset) -> str:
+    signs = _PLAIN_SIGNS if charset is Charset.ASCII else _SIGNS
+    character = character_of(key)
+    if key in signs:
+        return signs[key]
+    if character is not None and (character.isascii() or charset is not Charset.ASCII):
+        return character
+    return key.replace("ctrl+", "^")
 
 
 def method_of(action: Action) -> tuple[str, tuple[object, ...]]:

@@ -1,7 +1,9 @@
 """The application: opens the menu and the lessons, and knows what the terminal can show."""
 
+import sys
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
+from time import time
 from typing import TYPE_CHECKING, Any, ClassVar
 
 from textual.app import App, SystemCommand
@@ -12,6 +14,9 @@ from textual.types import CSSPathType
 
 from cbtui.actions import Scope, bindings_of
 from cbtui.ascii_filter import AsciiFilter
+from cbtui.colour_themes import STANDARD, THEMES
+from cbtui.keymap import Keymap
+from cbtui.recent import Kind, Opened, Recents
 from cbtui.screens.menu import MenuScreen
 from cbtui.theme import Charset
 from lessons.catalogue import find, lessons
@@ -20,6 +25,8 @@ from lessons.lesson import Lesson
 if TYPE_CHECKING:
     from textual.command import Provider
 
+    from cbtui.changes import Changes
+    from cbtui.contenders import Contender, Terms
     from cbtui.live_run import Deliver, Ended, OpenSession, Session
     from cbtui.subject import Subject
     from sim.engine.setup import RunSetup
@@ -32,6 +39,12 @@ def _actions_provider() -> "type[Provider]":
     return ActionsProvider
 
 
+def _unheard_session(setup: "RunSetup", deliver: "Deliver", ended: "Ended") -> "Session":
+    from cbtui.session import Session  # imported when the menu draws a lesson
+
+    return Session(setup, deliver, ended)
+
+
 def _engine_session(setup: "RunSetup", deliver: "Deliver", ended: "Ended") -> "Session":
     from cbtui.listening import ListeningSession  # imported when a lesson opens
 
@@ -42,8 +55,10 @@ class CbtuiApp(App[None]):
     """The console.
 
     ``start_lesson`` is the id of a lesson to open at once, ``start_file`` a program file, its arguments and
-    its clock, ``start_recording`` a recording to show; ``open_session`` starts engines, the real ones unless
-    a test says otherwise.
+    its clock, ``start_changes`` what is changed about either, ``start_recording`` a recording to show,
+    ``start_comparison`` two runs to compare;
+    ``theme`` is the name of a colour theme, ``keys`` the keys in force, and ``complaints`` are sentences to
+    begin with; ``open_session`` starts engines in place of the real ones.
     """
 
     TITLE = "cbtui"
@@ -62,45 +77,113 @@ class CbtuiApp(App[None]):
         charset: str = Charset.BRAILLE,
         start_lesson: str | None = None,
         start_file: tuple[Path, Sequence[str], str] | None = None,
+        start_changes: "Changes | None" = None,
         start_recording: "Recording | None" = None,
-        open_session: "OpenSession" = _engine_session,
+        start_comparison: "tuple[Contender, Contender, Terms] | None" = None,
+        theme: str = STANDARD,
+        keys: Keymap | None = None,
+        complaints: Sequence[str] = (),
+        open_session: "OpenSession | None" = None,
     ) -> None:
         super().__init__()
         self.charset = Charset(charset)
         self._start_lesson = start_lesson
         self._start_file = start_file
+        self._start_changes = start_changes
         self._start_recording = start_recording
-        self._open_session = open_session
+        self._start_comparison = start_comparison
+        self._complaints = complaints
+        self._open_session = open_session or _engine_session
+        self._open_preview = open_session or _unheard_session
+        self._recents = Recents()
+        for each in THEMES:
+            self.register_theme(each)
+        self.theme = theme
+        self.keys = keys or Keymap()
+        self.set_keymap(self.keys.for_textual())
         self._ascii = AsciiFilter()
+        self.saved: list[str] = []
+        """Sentences on what was saved as screens were left."""
+
+    def run(self, *args: Any, **options: Any) -> Any:
+        """Run the console to its end, and say then what was saved as its screens were left."""
+        result = super().run(*args, **options)
+        sys.stderr.writelines(f"{sentence}\n" for sentence in self.saved)
+        return result
+
+    def tell_saved(self, sentence: str) -> None:
+        """Say what was saved when a screen was left: now, and once more when the terminal is as it was."""
+        self.saved.append(sentence)
+        self.notify(sentence, markup=False)
 
     def get_default_screen(self) -> Screen[Any]:
         """Begin with the menu."""
-        return MenuScreen(lessons(), self.charset)
+        return MenuScreen(lessons(), self._recents, self._open_preview, self.charset)
 
     def on_mount(self) -> None:
         """Open the lesson that was asked for."""
+        for sentence in self._complaints:
+            self.notify(sentence, severity="warning", timeout=12, markup=False)
         if self._start_lesson is not None:
-            self.open_lesson(find(self._start_lesson))
+            self.open_lesson(find(self._start_lesson), self._start_changes)
         elif self._start_file is not None:
-            from cbtui.subject import of_file
-
-            self._show(of_file(*self._start_file))
+            path, arguments, clock = self._start_file
+            self._run_file(path, arguments, clock, self._start_changes)
         elif self._start_recording is not None:
-            from cbtui.screens.replay import ReplayScreen
+            self._show_recording(self._start_recording)
+        elif self._start_comparison is not None:
+            from cbtui.screens.gathering import GatheringScreen
 
-            self.push_screen(ReplayScreen(self._start_recording, self.charset))
+            self.push_screen(GatheringScreen(*self._start_comparison, self.charset))
 
-    def open_lesson(self, lesson: Lesson) -> None:
-        """Run a lesson on screen, in place of another that may be open."""
+    def open_lesson(self, lesson: Lesson, changes: "Changes | None" = None) -> None:
+        """Run a lesson on screen, in place of another that may be open, as it is or with changes."""
         from cbtui.subject import of_lesson
 
-        self._show(of_lesson(lesson, lessons()))
+        self._show(of_lesson(lesson, lessons()), changes)
+        self._note(Kind.LESSON, lesson.id)
 
-    def _show(self, subject: "Subject") -> None:
+    def open_file(self, entry: Opened) -> None:
+        """Run a program or show a recording, in place of the window that asked for it.
+
+        Raises:
+            CannotOpenError: it is not there, or nothing that can be opened.
+        """
+        from cbtui.own_files import check, read_recording
+
+        path = Path(entry.what)
+        check(path)
+        if entry.kind is Kind.RECORDING:
+            self._show_recording(read_recording(path))
+        else:
+            self._run_file(path, entry.arguments, entry.clock, None)
+
+    def _run_file(self, path: Path, arguments: Sequence[str], clock: str, changes: "Changes | None") -> None:
+        from cbtui.subject import of_file
+
+        self._show(of_file(path, arguments, clock), changes)
+        self._note(Kind.PROGRAM, str(path.absolute()), tuple(arguments), clock)
+
+    def _show_recording(self, recording: "Recording") -> None:
+        from cbtui.screens.replay import ReplayScreen
+
+        self._put(ReplayScreen(recording, self.charset))
+        self._note(Kind.RECORDING, str(recording.path.absolute()))
+
+    def _note(self, kind: Kind, what: str, arguments: tuple[str, ...] = (), clock: str = "real") -> None:
+        """Remember what was opened."""
+        self._recents.note(Opened(kind, what, int(time()), arguments, clock))
+        for sentence in self._recents.troubles():
+            self.notify(sentence, severity="warning", markup=False)
+
+    def _show(self, subject: "Subject", changes: "Changes | None") -> None:
         from cbtui.screens.lesson import LessonScreen  # the menu has to be there before all that is needed
 
-        screen = LessonScreen(subject, self._open_session, self.charset)
-        if isinstance(self.screen, LessonScreen):
+        self._put(LessonScreen(subject, self._open_session, self.charset, changes))
+
+    def _put(self, screen: Screen[Any]) -> None:
+        """Show a screen over the menu, in place of a lesson or a question for a file."""
+        if getattr(self.screen, "SCOPE", None) in (Scope.LESSON, Scope.OPENING):
             self.switch_screen(screen)
         else:
             self.push_screen(screen)

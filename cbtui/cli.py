@@ -8,8 +8,27 @@ import sys
 from collections.abc import Callable, Sequence
 from typing import NoReturn
 
-from cbtui.commands import compare, console, export, info, listing, run
+from cbtui.commands import (
+    appearance,
+    check,
+    compare,
+    console,
+    eject,
+    export,
+    grade,
+    info,
+    keys,
+    lint_lesson,
+    listing,
+    more_lessons,
+    new_lesson,
+    reset,
+    run,
+    serve,
+    start,
+)
 from cbtui.commands.ros2 import ros2
+from cbtui.commands.targets import refuse
 
 
 class _Parser(argparse.ArgumentParser):
@@ -21,7 +40,10 @@ class _Parser(argparse.ArgumentParser):
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line; returns the exit code: 0 well, 1 the run failed, 2 the command was wrong."""
+    """Run the command line; returns the exit code.
+
+    0 is well, 1 the run failed, 2 the command was wrong, 130 it was interrupted.
+    """
     words = list(sys.argv[1:] if argv is None else argv)
     if words[:1] == ["ros2"]:
         return ros2(words[1:])
@@ -29,7 +51,22 @@ def main(argv: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(words[:split])
     options.arguments = words[split + 1 :]
     action: Callable[[argparse.Namespace], int] = options.action
-    return action(options)
+    with more_lessons.brought_in(options):
+        try:
+            return action(options)
+        except KeyboardInterrupt:
+            return 130
+        except ValueError as error:
+            _refuse_bad_lesson(error)
+            raise
+
+
+def _refuse_bad_lesson(error: ValueError) -> None:
+    """End the program with one line and 2, if it is a lesson that is at fault."""
+    from lessons.lesson import BadLesson
+
+    if isinstance(error, BadLesson):
+        refuse(str(error))
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -39,11 +76,14 @@ def _parser() -> argparse.ArgumentParser:
         epilog="Without a command the console opens on its menu of lessons.",
     )
     parser.add_argument("--version", action="version", version=f"cbtui {_version()}")
-    console.add_options(parser)
+    appearance.add_options(parser)
+    appearance.set_defaults(parser)
+    more_lessons.add_option(parser)
     parser.set_defaults(action=console.open_console, target=None, clock="real")
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
 
     listing_parser = commands.add_parser("list", help="list the lessons")
+    more_lessons.add_option(listing_parser)
     listing_parser.set_defaults(action=listing.list_lessons)
 
     opening = commands.add_parser(
@@ -52,6 +92,7 @@ def _parser() -> argparse.ArgumentParser:
         usage="%(prog)s [options] LESSON|FILE.py [-- ARGUMENTS of the file]",
     )
     console.add_open_options(opening)
+    more_lessons.add_option(opening)
     opening.set_defaults(action=console.open_console)
 
     running = commands.add_parser(
@@ -62,7 +103,10 @@ def _parser() -> argparse.ArgumentParser:
         "stdout. Several files run at once, each as a process of its own would.",
     )
     run.add_options(running)
+    more_lessons.add_option(running)
     running.set_defaults(action=run.run)
+
+    _add_exercises(commands)
 
     replaying = commands.add_parser("replay", help="show a recording in the console")
     console.add_replay_options(replaying)
@@ -75,8 +119,11 @@ def _parser() -> argparse.ArgumentParser:
     comparing = commands.add_parser(
         "compare",
         help="put two runs side by side",
-        description="Put the same window of two runs side by side. Lessons and files are run for that, "
-        "headless on virtual time.",
+        usage="%(prog)s [options] A B [-- ARGUMENTS of a file]",
+        description="Put the same window of two runs side by side: in the console, one above the other on a "
+        "common time axis, with what differs; as text with --text or where there is no terminal. Lessons and "
+        "files are run for that, headless on virtual time. A lesson can be compared with itself, with other "
+        "numbers of threads.",
     )
     compare.add_options(comparing)
     comparing.set_defaults(action=compare.compare)
@@ -89,8 +136,76 @@ def _parser() -> argparse.ArgumentParser:
     export.add_options(exporting)
     exporting.set_defaults(action=export.export_command)
 
+    ejecting = commands.add_parser(
+        "eject",
+        help="take the lessons' nodes home, as ROS 2 packages",
+        description="Write each unit as an ament_python package into a folder, for colcon build and ros2 "
+        "launch on a ROS 2 machine. The nodes are the lessons' own, word for word. Nothing is written where "
+        "a file that you have changed is in the way.",
+    )
+    eject.add_options(ejecting)
+    ejecting.set_defaults(action=eject.eject)
+
+    serving = commands.add_parser(
+        "serve",
+        help="show the console in a browser",
+        usage="%(prog)s [options] [-- what cbtui open gets]",
+        description="Show the console in a browser, each visitor one of their own. Without more it opens on "
+        "the menu; what stands behind -- is opened as cbtui open would.",
+    )
+    serve.add_options(serving)
+    serving.set_defaults(action=serve.serve)
+
+    naming = commands.add_parser("keys", help="print every key, as a configuration to copy from")
+    appearance.add_options(naming)
+    naming.set_defaults(action=keys.print_keys)
+
+    _add_authoring(commands)
     commands.add_parser("ros2", help="carry out a ros2 line in the run that is going on", add_help=False)
     return parser
+
+
+def _add_exercises(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    starting = commands.add_parser("start", help="begin a lesson's exercise in a file of your own")
+    start.add_options(starting)
+    starting.set_defaults(action=start.start)
+
+    checking = commands.add_parser(
+        "check",
+        help="check your file for an exercise",
+        description="Run your file on virtual time, and look whether it does what the exercise asks. "
+        "Ends with 0 if it does, with 1 if not.",
+    )
+    check.add_options(checking)
+    checking.set_defaults(action=check.check)
+
+    grading = commands.add_parser(
+        "grade",
+        help="check the files of many learners",
+        description="Run and check what lies in DIR: a folder for each learner with files such as "
+        "split_groups.py, or a file for each. Ends with 0 if all pass. The files are programs, and are run.",
+    )
+    grade.add_options(grading)
+    grading.set_defaults(action=grade.grade)
+
+    resetting = commands.add_parser("reset", help="forget how far you have come in a lesson")
+    reset.add_options(resetting)
+    resetting.set_defaults(action=reset.reset)
+
+
+def _add_authoring(commands: "argparse._SubParsersAction[_Parser]") -> None:
+    making = commands.add_parser("new-lesson", help="make a lesson of your own to begin with")
+    new_lesson.add_options(making)
+    making.set_defaults(action=new_lesson.new_lesson)
+
+    linting = commands.add_parser(
+        "lint-lesson",
+        help="prove that a lesson is right",
+        description="Run a lesson's node, starter and solution, and look whether all that its files say of "
+        "them is so. Ends with 0 if it is.",
+    )
+    lint_lesson.add_options(linting)
+    linting.set_defaults(action=lint_lesson.lint_lesson)
 
 
 def _version() -> str:

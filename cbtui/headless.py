@@ -1,4 +1,4 @@
-"""Runs a program without the console: its log to stderr, its summary to stdout, its events to files."""
+"""Runs a program without the console: log to stderr, summary and diagnosis to stdout, events to files."""
 
 import sys
 from collections.abc import Iterator, Sequence
@@ -13,6 +13,7 @@ import msgspec
 from cbtui.listening import ListeningSession
 from cbtui.program_log import ProgramLog
 from cbtui.record import CannotRecordError, start_recording
+from sim.diagnosis import diagnose, findings_text
 from sim.engine.commands import Stop
 from sim.engine.setup import RunSetup, TimedCall, TimedLine
 from sim.trace.events import AnyEvent
@@ -96,7 +97,7 @@ class _Headless:
         self._log = ProgramLog()
 
     def run(self) -> int:
-        """Run to the end, whatever ends it, and print the summary."""
+        """Run to the end, whatever ends it, and print the summary and what the rules found."""
         self._session.start()
         interrupted = False
         try:
@@ -108,6 +109,8 @@ class _Headless:
         finally:
             self._session.stop()
         sys.stdout.write(plain_text(summarise(self._timeline)))
+        found = findings_text(diagnose(self._timeline), self._timeline)
+        sys.stdout.write(f"\n{found}" if found else "")
         sys.stdout.flush()
         return 130 if interrupted else self._verdict(loss)
 

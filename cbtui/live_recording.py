@@ -7,7 +7,7 @@ from pathlib import Path
 from cbtui.record import start_recording
 from sim.engine.setup import RunSetup
 from sim.trace.events import AnyEvent
-from sim.trace.recording import Beginning, Recorder
+from sim.trace.recording import BackgroundRecorder, Beginning
 
 _LONGEST_TITLE = 60
 _TRIES = 1000
@@ -16,20 +16,24 @@ _TRIES = 1000
 class LiveRecording:
     """Records none or any number of stretches of a run, each to a file of its own.
 
-    It follows the run all the time, since a stretch has to tell what was there when it began. Not
-    thread-safe.
+    It follows the run all the time, since a stretch has to tell what was there when it began. Files are
+    written on threads of their own. It belongs to one thread, but ``end`` may be called from any.
     """
 
     def __init__(self, setup: RunSetup) -> None:
         self._setup = setup
         self._beginning = Beginning()
-        self._recorder: Recorder | None = None
-        self._count = 0
+        self._recorder: BackgroundRecorder | None = None
 
     @property
     def count(self) -> int | None:
         """How many events have been recorded; None if nothing is being recorded."""
-        return None if self._recorder is None else self._count
+        return None if self._recorder is None else self._recorder.count
+
+    @property
+    def lost(self) -> int:
+        """How many events came too fast to be recorded; 0 if nothing is being recorded."""
+        return 0 if self._recorder is None else self._recorder.lost
 
     def begin(self) -> str:
         """Begin a recording in the current folder, and say so.
@@ -37,33 +41,29 @@ class LiveRecording:
         Raises:
             CannotRecordError: it cannot be made.
         """
-        self._recorder = start_recording(unused_name(self._setup.title), self._setup)
-        self._count = 0
-        self._record(self._beginning.events())
+        self._recorder = BackgroundRecorder(start_recording(unused_name(self._setup.title), self._setup))
+        self._recorder.take(self._beginning.events())
         return f"Recording to {self._recorder.path}; R again ends it"
 
     def take(self, events: list[AnyEvent]) -> str | None:
         """Follow the run; a sentence if its recording came to an end for it cannot be written."""
         self._beginning.take(events)
-        self._record(events)
-        if self._recorder is not None and self._recorder.failure is not None:
-            return self.end()
-        return None
+        recorder = self._recorder
+        if recorder is None:
+            return None
+        recorder.take(events)
+        return None if recorder.failure is None else self.end()
 
     def end(self) -> str | None:
-        """Finish the recording, and say what it holds; None if there is none."""
+        """Finish the recording, and say what it holds; None if there is none. Waits for the disk."""
         recorder, self._recorder = self._recorder, None
         if recorder is None:
             return None
         recorder.close()
         if recorder.failure is not None:
             return f"The recording {recorder.path} is not whole: {recorder.failure}"
-        return f"Recorded {self._count:,} events in {recorder.path}"
-
-    def _record(self, events: list[AnyEvent]) -> None:
-        if self._recorder is not None and events:
-            self._recorder.take(events)
-            self._count += len(events)
+        lost = f"; {recorder.lost:,} came too fast and are missing in it" if recorder.lost else ""
+        return f"Recorded {recorder.count:,} events in {recorder.path}{lost}"
 
 
 def unused_name(title: str) -> Path:

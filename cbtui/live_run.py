@@ -131,16 +131,24 @@ class LiveRun:
         self.loss = loss
         return self._recording.end()
 
-    def stop(self) -> None:
-        """End the engine and a recording. Blocks for up to a second; may be called from any thread."""
+    def stop(self) -> str | None:
+        """End the engine and a recording, and say what that holds.
+
+        Blocks for up to a second and until the recording is written; may be called from any thread.
+        """
         if self._started:
             self._session.stop()
-        self._recording.end()
+        return self._recording.end()
 
     @property
     def recorded(self) -> int | None:
         """How many events have been recorded; None if the run is not being recorded."""
         return self._recording.count
+
+    @property
+    def unrecorded(self) -> int:
+        """How many events came too fast to be recorded."""
+        return self._recording.lost
 
     def record(self) -> str:
         """Begin a recording in the current folder, and say so.

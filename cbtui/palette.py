@@ -6,7 +6,9 @@ from typing import Any
 
 from textual.command import DiscoveryHit, Hit, Hits, Provider
 
-from cbtui.actions import Action, Scope, actions_of, method_of, target_of
+from cbtui.actions import Action, Scope, actions_of, method_of, signs_of, target_of
+from cbtui.keymap import keymap_of
+from cbtui.theme import Charset
 
 
 class ActionsProvider(Provider):
@@ -23,13 +25,14 @@ class ActionsProvider(Provider):
         for action in self._actions():
             score = max(matcher.match(action.help), matcher.match(action.label))
             if score > 0:
-                yield Hit(score, matcher.highlight(action.help), self._run(action), help=f"key {action.key}")
+                keys = signs_of([action], Charset.ASCII)
+                yield Hit(score, matcher.highlight(action.help), self._run(action), help=f"key {keys}")
 
     def _actions(self) -> Iterator[Action]:
         scope: Scope | None = getattr(self.screen, "SCOPE", None)
         if scope is None:
             return
-        for action in actions_of(scope):
+        for action in keymap_of(self.app).of(actions_of(scope)):
             if action.id != "command_palette" and self.screen.check_action(*method_of(action)) is not False:
                 yield action
 

@@ -6,38 +6,62 @@ from sim.trace.events import EntityId
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
-_SECOND = 1_000_000_000
-SPANS = tuple(
-    length * unit
-    for unit in (_SECOND // 1000, _SECOND // 100, _SECOND // 10, _SECOND, 10 * _SECOND, 100 * _SECOND)
-    for length in (1, 2, 5)
+_MILLISECOND = 1_000_000
+_SECOND = 1000 * _MILLISECOND
+_MINUTE = 60 * _SECOND
+SPANS = (
+    *(length * unit * _MILLISECOND for unit in (1, 10, 100, 1000) for length in (1, 2, 5)),
+    *(length * _SECOND for length in (10, 20, 30)),
+    *(length * _MINUTE for length in (1, 2, 5, 10)),
 )
-"""The stretches of time that the lanes can show: 1 ms to 500 s."""
+"""The stretches of time that the lanes can show: 1 ms to 10 minutes."""
+
+_STEPS = 10
+"""Into how many steps a stretch is divided for moving the cursor and for panning."""
 
 
 @dataclass(frozen=True)
 class Playhead:
-    """Follows the end of a run (``at`` None), or stands where the person looked back to."""
+    """The cursor, and the stretch of time around which the lanes are drawn; each can be moved alone.
+
+    The cursor follows the end of the run (``at`` None), or stands where the person looked back to: every pane
+    shows that moment. The stretch ends at the cursor (``start`` None), or begins where it was moved to and
+    stands still while the run goes on.
+    """
 
     span: Nanoseconds = 10 * _SECOND
     at: Nanoseconds | None = None
+    start: Nanoseconds | None = None
+
+    @property
+    def follows(self) -> bool:
+        """Whether cursor and stretch both go with the end of the run."""
+        return self.at is None and self.start is None
 
     def now(self, end: Nanoseconds) -> Nanoseconds:
         """The moment on screen, in a run that has come to ``end``."""
         return end if self.at is None else min(self.at, end)
 
     def window(self, end: Nanoseconds) -> Window:
-        """The stretch on screen: it ends now, and while the run is younger than that begins at 0."""
-        last = max(self.now(end), self.span)
-        return Window(last - self.span, last)
+        """The stretch on screen; one that ends at a cursor younger than it is long begins at 0."""
+        start = max(0, self.now(end) - self.span) if self.start is None else self.start
+        return Window(start, start + self.span)
+
+    # the cursor
 
     def moved(self, steps: int, end: Nanoseconds) -> "Playhead":
-        """Go steps of a tenth of the stretch into the past (< 0) or back; past the end is live again."""
-        return self.sought(self.now(end) + steps * self.span // 10, end)
+        """Move the cursor by steps of a tenth of the stretch, < 0 into the past; past the end is live."""
+        return self.sought(self.now(end) + steps * self.span // _STEPS, end)
 
     def sought(self, at: Nanoseconds, end: Nanoseconds) -> "Playhead":
-        """Go to a moment, the beginning if it lies before it; at or past the end is live again."""
-        return replace(self, at=None if at >= end else max(0, at))
+        """Put the cursor to a moment, the beginning if it lies before that; at or past the end is live again.
+
+        The stretch stands still as long as it shows the cursor.
+        """
+        if at >= end:
+            return self.live()
+        at = max(0, at)
+        return replace(self, at=at, start=self._start_that_shows(at, end))
 
     def beside(self, timeline: Timeline, step: int, entity: EntityId | None = None) -> "Playhead":
         """Go to the event before (``step`` < 0) or after, of an entity or of any; after the last is live."""
@@ -48,9 +72,39 @@ class Playhead:
 
     def live(self) -> "Playhead":
         """Follow the end again."""
-        return replace(self, at=None)
+        return replace(self, at=None, start=None)
 
-    def zoomed(self, steps: int) -> "Playhead":
-        """Show a longer (> 0) or shorter stretch."""
+    def _start_that_shows(self, at: Nanoseconds, end: Nanoseconds) -> Nanoseconds:
+        """Where the stretch has to begin: with a far moment in its middle, else as near as it stands.
+
+        At its left edge some of what was before stays on screen: the first column may be cut off.
+        """
+        shown, margin = self.window(end), self.span // (2 * _STEPS)
+        if not shown.start - self.span // 2 <= at <= shown.end + self.span // 2:
+            return max(0, at - self.span // 2)
+        if at < shown.start + margin:
+            return max(0, at - 2 * margin)
+        return max(shown.start, at - self.span)
+
+    # the stretch
+
+    def panned(self, steps: int, end: Nanoseconds) -> "Playhead":
+        """Move the stretch by steps of a tenth of itself and leave the cursor; at the end it follows that."""
+        return self._beginning_at(self.window(end).start + steps * self.span // _STEPS, end)
+
+    def zoomed(self, steps: int, end: Nanoseconds) -> "Playhead":
+        """Show a longer (> 0) or shorter stretch: around the cursor, or around its middle without one."""
         place = SPANS.index(self.span) + steps
-        return replace(self, span=SPANS[max(0, min(place, len(SPANS) - 1))])
+        other = replace(self, span=SPANS[max(0, min(place, len(SPANS) - 1))])
+        if self.follows:
+            return other
+        shown, fixed = self.window(end), self.now(end)
+        if not shown.start <= fixed <= shown.end:
+            fixed = shown.start + self.span // 2
+        return other._beginning_at(fixed - (fixed - shown.start) * other.span // self.span, end)
+
+    def _beginning_at(self, start: Nanoseconds, end: Nanoseconds) -> "Playhead":
+        """The stretch from ``start``, as near to it as the run's beginning and end allow."""
+        latest = max(0, end - self.span)
+        start = max(0, min(start, latest))
+        return replace(self, start=None if self.at is None and start == latest else start)

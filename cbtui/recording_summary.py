@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
+from cbtui.changes import changes_in
+from cbtui.record import setup_of
 from sim.trace.events import AnyEvent, ContentsLost, EventsLost, RunEnded, RunStarted
 from sim.trace.recording import Recording, RecordingError, Topic, read
 
@@ -79,6 +81,9 @@ def _lines(recording: Recording, tally: _Tally, topics: list[Topic], size: int) 
         yield _line("program", program + (", with its source" if program in recording.sources else ""))
     if about.arguments:
         yield _line("arguments", " ".join(about.arguments))
+    changed = _changed(recording)
+    if changed:
+        yield _line("changed", changed)
     ending = "it was going on" if tally.ended is None else tally.ended.reason
     yield _line("lasts", f"{tally.last / _SECOND:.3f} s; {ending}")
     yield _line("events", f"{tally.events:,}; the file has {size:,} bytes")
@@ -87,6 +92,12 @@ def _lines(recording: Recording, tally: _Tally, topics: list[Topic], size: int) 
     if tally.contents_lost:
         yield _line("lost", f"{tally.contents_lost:,} messages came too fast for their contents to be kept")
     yield from _topic_lines(topics)
+
+
+def _changed(recording: Recording) -> str:
+    """What a person changed about the program, beside its arguments."""
+    setup = setup_of(recording.about)
+    return "" if setup is None else changes_in(setup).words
 
 
 def _moment(nanoseconds: int) -> str:

@@ -27,7 +27,8 @@ _GUIDE = """# Recording of {title}
 Every pane shows the moment that the status line tells.
 
 - `space` plays it from here, from its beginning at its end; `+` and `-` change how fast.
-- The arrow keys go back and on, `,` and `.` by one event, `g` to a moment, `0` to the end.
+- `[` and `]` go back and on, `,` and `.` by one event, `g` to a moment, `0` to the end.
+- The left and right arrow keys show another stretch of time, and leave that moment.
 """
 
 
@@ -162,6 +163,7 @@ def of_recording(recording: Recording) -> Subject:
         executor="",
         set_up=lambda _threads, _speed: setup,
         source=source,
+        sources=recording.sources,
     )
 
 

@@ -1,7 +1,7 @@
 """What a lesson screen runs and shows: a lesson of the catalogue, or a file of the learner's own."""
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TypeAlias
 
@@ -20,7 +20,8 @@ Your own file, on {clock} time. Every thread that runs callbacks has a lane; bel
 the order in which the program fills them, with what waits in them and why.
 
 - `s` calls the first SetBool service that your program offers, `S` the same with false.
-- `t` runs it again with another number of threads.
+- `t` runs it again with another number of threads, `g` with another group for the selected callback, `p` with
+  other timers' periods, and tells which line of code would do that.
 - `r` puts the robot back to its start, and runs the file again when it is over.
 
 The lessons' robot is there for your file too: `/odom`, `/scan`, `/cmd_vel`, `/reset_world`, `/motor_power`.
@@ -31,7 +32,8 @@ The lessons' robot is there for your file too: `/odom`, `/scan`, `/cmd_vel`, `/r
 class Subject:
     """One program to run on screen; ``service`` is empty where it shows only when the program runs.
 
-    ``source`` is the program's text where it is not the one that lies at ``node_path`` now.
+    ``source`` is the program's text where it is not the one that lies at ``node_path`` now, ``sources`` the
+    texts that a recording holds, by path.
     """
 
     heading: str
@@ -43,6 +45,7 @@ class Subject:
     lesson: Lesson | None = None
     following: Lesson | None = None
     source: str | None = None
+    sources: Mapping[str, str] = field(default_factory=dict)
 
 
 def of_lesson(lesson: Lesson, lessons: Sequence[Lesson]) -> Subject:

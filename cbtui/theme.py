@@ -9,6 +9,8 @@ from rich.color import Color, blend_rgb
 from rich.color_triplet import ColorTriplet
 from rich.style import Style
 
+from cbtui.contrast import legible, readable_on
+from cbtui.palettes import Palette
 from sim.trace.events import Reason
 
 
@@ -46,12 +48,14 @@ class Ink(NamedTuple):
     """How a run of text is to look.
 
     ``number`` is the place of a callback group (0 for A) for the roles that show one, and the age step
-    for ``TRAIL`` (0 the oldest). ``later`` marks what lies after the cursor.
+    for ``TRAIL`` (0 the oldest). ``later`` marks what lies after the cursor, ``selected`` what the person
+    has selected.
     """
 
     role: Role
     number: int = -1
     later: bool = False
+    selected: bool = False
 
 
 class Run(NamedTuple):
@@ -63,57 +67,6 @@ class Run(NamedTuple):
 
 TRAIL_STEPS = 4
 """Into how many ages the robot's trail is divided."""
-
-
-@dataclass(frozen=True)
-class Palette:
-    """Colours for one background. Groups beyond ``groups`` get ``other`` and are told by their letter."""
-
-    groups: tuple[str, ...]
-    other: str
-    text: str
-    faint: str
-    warn: str
-    mark: str
-    now: str
-    wall: str
-    sphere: str
-    robot: str
-    trail: str
-    true_scan: str
-    seen_scan: str
-
-
-DARK = Palette(
-    groups=("#56B4E9", "#E69F00", "#009E73", "#F0E442", "#CC79A7", "#D55E00"),
-    other="#B0B0B0",
-    text="#E4E4E4",
-    faint="#7C8790",
-    warn="#FF8A6A",
-    mark="#FFFFFF",
-    now="#FFFFFF",
-    wall="#8A949C",
-    sphere="#F0E442",
-    robot="#FFFFFF",
-    trail="#CC79A7",
-    true_scan="#56B4E9",
-    seen_scan="#E69F00",
-)
-LIGHT = Palette(
-    groups=("#040457", "#570404", "#278686", "#C63DF4", "#F2460C"),
-    other="#5A5A5A",
-    text="#1C1C1C",
-    faint="#6B7075",
-    warn="#B3200B",
-    mark="#000000",
-    now="#000000",
-    wall="#6B7075",
-    sphere="#8A6A00",
-    robot="#000000",
-    trail="#C63DF4",
-    true_scan="#1F5FA8",
-    seen_scan="#D2450A",
-)
 
 
 @dataclass(frozen=True)
@@ -130,10 +83,13 @@ class Glyphs:
     cursor: str
     up: str
     back: str
+    forth: str
     now: str
     ellipsis: str
     degree: str
     cross: str
+    lost: str
+    blocked: str
     between: str
 
 
@@ -152,10 +108,13 @@ _BLOCKS = Glyphs(
     cursor="┊",
     up="▲",
     back="◂",
+    forth="▸",
     now="▲",
     ellipsis="…",
     degree="°",
     cross="✗",
+    lost="×",
+    blocked="░",
     between="·",
 )
 _PLAIN = Glyphs(
@@ -169,10 +128,13 @@ _PLAIN = Glyphs(
     cursor=":",
     up="^",
     back="<",
+    forth=">",
     now="^",
     ellipsis="~",
     degree=" deg",
     cross="X",
+    lost="*",
+    blocked="%",
     between="-",
 )
 GLYPHS = {Charset.BRAILLE: _BLOCKS, Charset.BLOCK: _BLOCKS, Charset.ASCII: _PLAIN}
@@ -184,17 +146,23 @@ def group_colour(number: int, palette: Palette) -> str:
 
 
 @lru_cache(maxsize=2048)
-def style_of(ink: Ink, dark: bool, background: str) -> Style:
-    """Return the Rich style of an ink on a background (``#RRGGBB``)."""
-    palette = DARK if dark else LIGHT
+def style_of(ink: Ink, palette: Palette, background: str) -> Style:
+    """Return the Rich style of an ink on a background (``#RRGGBB``), as contrasting as the palette asks."""
     ground = _triplet(background)
-    colour = _triplet(_colour(ink, palette))
+    least = palette.shapes if ink.role in _SHAPES else palette.words
+    colour = legible(_triplet(_colour(ink, palette)), ground, least)
     if ink.role is Role.TRAIL:
         colour = blend_rgb(ground, colour, 0.4 + 0.6 * ink.number / (TRAIL_STEPS - 1))
     if ink.later:
         colour = blend_rgb(colour, ground, 0.55)
+        if ink.role not in _SHAPES:
+            colour = legible(colour, ground, least * _LATER)
+    if ink.selected:
+        bright = _triplet(palette.text)
+        ground = blend_rgb(ground, bright, 0.25)
+        colour = legible(blend_rgb(colour, bright, 0.45), ground, least)
     if ink.role is Role.LABEL:
-        return Style(color=Color.from_triplet(_readable_on(colour)), bgcolor=Color.from_triplet(colour))
+        return Style(color=Color.from_triplet(readable_on(colour)), bgcolor=Color.from_triplet(colour))
     return Style(
         color=Color.from_triplet(colour),
         bgcolor=Color.from_triplet(ground),
@@ -202,8 +170,22 @@ def style_of(ink: Ink, dark: bool, background: str) -> Style:
     )
 
 
+_LATER = 2 / 3
+"""How much of their contrast words keep at least that lie after the cursor."""
+
 _BOLD = {Role.STRONG, Role.LETTER, Role.WARN, Role.MARK, Role.NOW, Role.ROBOT}
 _OF_A_GROUP = {Role.LETTER, Role.BAR, Role.LABEL, Role.LINE, Role.HATCH}
+_SHAPES = {
+    Role.BAR,
+    Role.LABEL,
+    Role.WALL,
+    Role.SPHERE,
+    Role.ROBOT,
+    Role.TRAIL,
+    Role.TRUE_SCAN,
+    Role.SEEN_SCAN,
+}
+"""What is drawn rather than written; a label's own contrast is with its bar."""
 
 
 def _colour(ink: Ink, palette: Palette) -> str:
@@ -217,11 +199,3 @@ def _colour(ink: Ink, palette: Palette) -> str:
 
 def _triplet(colour: str) -> ColorTriplet:
     return Color.parse(colour).get_truecolor()
-
-
-def _readable_on(ground: ColorTriplet) -> ColorTriplet:
-    """Return black or white, whichever contrasts more, by WCAG 2's relative luminance."""
-    shares = (part / 255 for part in ground)
-    linear = [part / 12.92 if part <= 0.04045 else ((part + 0.055) / 1.055) ** 2.4 for part in shares]
-    luminance = 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
-    return ColorTriplet(0, 0, 0) if luminance > 0.179 else ColorTriplet(255, 255, 255)

@@ -1,22 +1,38 @@
-"""All lessons in teaching order, and the way to one of them by its id."""
+"""All lessons in teaching order, and the way to one of them by its id.
 
+Beside the lessons that come with the package there are those of other people: in folders that the environment
+names, and in packages that announce themselves under the entry-point group ``cbtui.lessons``.
+"""
+
+import os
+from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-from lessons.lesson import DESCRIPTION_FILE, Lesson, read_lesson
+from msgspec import structs
+
+from lessons.lesson import DESCRIPTION_FILE, BadLesson, Lesson, read_lesson
 
 ROOT = Path(__file__).parent
+VARIABLE = "CBTUI_LESSONS"
+"""The environment variable that names folders with more lessons, as ``PATH`` does."""
+ENTRY_POINTS = "cbtui.lessons"
+"""The entry-point group whose values are packages in whose folders lessons lie."""
 
 
 class UnknownLesson(LookupError):  # noqa: N818 - the sentence it carries is what a reader sees
     """No lesson has the id that was asked for; the text is one sentence naming the nearest."""
 
 
-@cache
 def lessons() -> tuple[Lesson, ...]:
-    """Return every lesson in teaching order. Read once; raises BadLesson when a folder is at fault."""
-    found = (read_lesson(path.parent) for path in ROOT.glob(f"unit*/*/{DESCRIPTION_FILE}"))
-    return tuple(sorted(found, key=lambda lesson: lesson.number))
+    """Return every lesson in teaching order, numbered from 1; those from elsewhere follow the package's own.
+
+    Read once for each value of the environment variable.
+
+    Raises:
+        BadLesson: a lesson's folder is at fault, two lessons have one id, or a place for lessons has none.
+    """
+    return _lessons(os.environ.get(VARIABLE, ""))
 
 
 def find(lesson_id: str) -> Lesson:
@@ -28,6 +44,68 @@ def find(lesson_id: str) -> Lesson:
         f"No lesson is called {lesson_id!r}; the nearest is {_nearest(lesson_id)!r}, "
         "and 'cbtui list' shows all."
     )
+
+
+def lessons_in(folder: Path) -> tuple[Lesson, ...]:
+    """Return the lessons that lie in a folder, or in folders in it, by their numbers; the folder may be one.
+
+    Raises:
+        BadLesson: one of them is at fault.
+    """
+    places = ("", "*/", "*/*/")
+    paths = [path for place in places for path in folder.glob(f"{place}{DESCRIPTION_FILE}")]
+    found = [read_lesson(path.parent) for path in sorted(paths)]
+    return tuple(sorted(found, key=lambda lesson: lesson.number))
+
+
+@cache
+def _lessons(folders: str) -> tuple[Lesson, ...]:
+    own = [lesson for unit in ROOT.glob("unit*") for lesson in lessons_in(unit)]
+    every = sorted(own, key=lambda lesson: lesson.number)
+    for folder, source in {folder: source for source, folder in _elsewhere(folders)}.items():
+        added = lessons_in(folder)
+        if not added:
+            raise BadLesson(f"{source}: there is no lesson in {folder}")
+        every += added
+    _check_ids(every)
+    return tuple(structs.replace(lesson, number=place) for place, lesson in enumerate(every, start=1))
+
+
+def _elsewhere(folders: str) -> Iterator[tuple[str, Path]]:
+    """Where more lessons are, each place with who says so."""
+    for name in filter(None, folders.split(os.pathsep)):
+        folder = Path(name).resolve()
+        if not folder.is_dir():
+            raise BadLesson(f"{VARIABLE}: there is no folder {name}")
+        yield VARIABLE, folder
+    yield from _announced()
+
+
+def _announced() -> Iterator[tuple[str, Path]]:
+    from importlib.metadata import entry_points
+    from importlib.util import find_spec
+
+    for point in entry_points(group=ENTRY_POINTS):
+        source = f"the entry point {point.name!r} of {ENTRY_POINTS}"
+        try:
+            spec = find_spec(point.value)
+        except (ImportError, ValueError):  # a package around it is missing, or the name is none
+            spec = None
+        if spec is None or not spec.submodule_search_locations:
+            raise BadLesson(f"{source}: there is no package {point.value!r}")
+        for location in spec.submodule_search_locations:
+            yield source, Path(location)
+
+
+def _check_ids(every: list[Lesson]) -> None:
+    known: dict[str, Lesson] = {}
+    for lesson in every:
+        other = known.setdefault(lesson.id, lesson)
+        if other is not lesson:
+            path = lesson.folder / DESCRIPTION_FILE
+            raise BadLesson(
+                f"{path}: the field 'id' is wrong: the lesson in {other.folder} is called {lesson.id!r} too"
+            )
 
 
 def _nearest(lesson_id: str) -> str:

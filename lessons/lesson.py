@@ -2,73 +2,25 @@
 
 import re
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import msgspec
-from msgspec import Meta, Struct, structs
+from msgspec import structs
+
+from lessons.description import Description, Setting, Try, number_after, with_argument
+
+__all__ = ["BadLesson", "Lesson", "Setting", "Try", "number_after", "read_lesson", "with_argument"]
 
 DESCRIPTION_FILE = "lesson.toml"
 GUIDE_FILE = "guide.md"
-
-Text = Annotated[str, Meta(min_length=1)]
-LessonId = Annotated[str, Meta(pattern=r"^[a-z0-9]+(-[a-z0-9]+)*$")]
-Number = Annotated[int, Meta(ge=1)]
-PythonFile = Annotated[str, Meta(pattern=r"^\w+\.py$")]
-ServiceName = Annotated[str, Meta(pattern=r"^(/[A-Za-z_]\w*)+$")]
-ServiceType = Annotated[str, Meta(pattern=r"^[a-z]\w*/srv/[A-Z]\w*$")]
+EXPLANATION_FILE = "explain.md"
+CHECKS_FILE = "checks.py"
 
 
 class BadLesson(ValueError):  # noqa: N818 - the sentence it carries is what a reader sees
     """A lesson's folder cannot be used; the text is one sentence naming the file, the field and the fault."""
-
-
-class Setup(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Which node a lesson runs, and how it is started."""
-
-    node: PythonFile
-    """File name of the node, in the lesson's folder."""
-    arguments: tuple[str, ...] = ()
-    """Command line of the node, without the program's name."""
-    threads_argument: Text | None = None
-    """The argument that carries the number of threads; None when the node fixes its executor itself."""
-
-    def __post_init__(self) -> None:
-        if self.arguments and self.arguments[-1] == self.threads_argument:
-            raise ValueError(f"{self.threads_argument} stands last in arguments and has no number after it")
-
-
-class Service(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The service that a lesson's `s` key calls."""
-
-    name: ServiceName
-    type: ServiceType
-
-
-class Try(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """One thing a learner is invited to do: the key to press and what to look for."""
-
-    key: Text
-    text: Text
-
-
-class Description(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """Everything a `lesson.toml` says."""
-
-    id: LessonId
-    """Name of the lesson on the command line; the lesson's folder has the same name."""
-    number: Number
-    """Place in the teaching order."""
-    unit: Text
-    title: Text
-    teaches: Text
-    executor: Text
-    """The executor as the menu shows it."""
-    groups: Text
-    """The callback groups as the menu shows them."""
-    setup: Setup
-    service: Service
-    tries: tuple[Try, ...] = msgspec.field(name="try", default=())
 
 
 class Lesson(Description, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -86,6 +38,32 @@ class Lesson(Description, frozen=True, kw_only=True, forbid_unknown_fields=True)
         """The Markdown text that goes with the lesson."""
         return (self.folder / GUIDE_FILE).read_text(encoding="utf-8")
 
+    @property
+    def explanation(self) -> str:
+        """The Markdown text that is for after the run; empty where there is none."""
+        path = self.folder / EXPLANATION_FILE
+        return path.read_text(encoding="utf-8") if path.is_file() else ""
+
+    @property
+    def checks_path(self) -> Path:
+        """The file that reads answers and checks off a run; it is there for every prediction and exercise."""
+        return self.folder / CHECKS_FILE
+
+    @property
+    def starter_path(self) -> Path | None:
+        """The file that a learner begins the exercise with; None without an exercise."""
+        return None if self.exercise is None else self.folder / self.exercise.starter
+
+    @property
+    def solution_path(self) -> Path | None:
+        """A file that does what the exercise asks; None without an exercise."""
+        return None if self.exercise is None else self.folder / self.exercise.solution
+
+    @property
+    def file_name(self) -> str:
+        """What a learner's own file for the exercise is called: `split_groups.py`."""
+        return f"{self.id.replace('-', '_')}.py"
+
     def arguments_with(self, threads: int | None) -> list[str]:
         """Return the node's command line with its number of threads replaced.
 
@@ -96,17 +74,14 @@ class Lesson(Description, frozen=True, kw_only=True, forbid_unknown_fields=True)
         name = self.setup.threads_argument
         if threads is None or name is None:
             return arguments
-        if name not in arguments:
-            return [*arguments, name, str(threads)]
-        arguments[arguments.index(name) + 1] = str(threads)
-        return arguments
+        return with_argument(arguments, name, str(threads))
 
 
 def read_lesson(folder: Path) -> Lesson:
     """Read the lesson in a folder.
 
     Raises BadLesson when `lesson.toml` is missing, is not TOML or does not describe a lesson, when
-    its id is not the folder's name, or when the node or the guide is missing.
+    its id is not the folder's name, or when a file that it needs is missing.
     """
     path = folder / DESCRIPTION_FILE
     try:
@@ -115,11 +90,22 @@ def read_lesson(folder: Path) -> Lesson:
         raise BadLesson(f"{path}: {_fault(str(error))}") from error
     if description.id != folder.name:
         raise BadLesson(f"{path}: the field 'id' is wrong: {description.id!r} is not the name of its folder")
-    for field, file in (("setup.node", description.setup.node), (None, GUIDE_FILE)):
+    for field, file in _files_of(description):
         if not (folder / file).is_file():
             wanted_by = f"the field {field!r} is wrong: " if field else ""
             raise BadLesson(f"{path}: {wanted_by}there is no file {file!r} beside it")
     return Lesson(**structs.asdict(description), folder=folder)
+
+
+def _files_of(description: Description) -> Iterator[tuple[str | None, str]]:
+    """The files that must be there, each with the field that names it."""
+    yield "setup.node", description.setup.node
+    yield None, GUIDE_FILE
+    if description.exercise is not None:
+        yield "exercise.starter", description.exercise.starter
+        yield "exercise.solution", description.exercise.solution
+    if description.exercise is not None or description.predictions:
+        yield None, CHECKS_FILE
 
 
 def _table(path: Path) -> dict[str, Any]:
@@ -141,6 +127,8 @@ def _fault(error: str) -> str:
     parts = _ERROR.fullmatch(error)
     assert parts is not None, "the pattern matches every text"
     what, where = parts["what"], parts["where"]
+    if not where and not _FIELD_ERROR.fullmatch(what):
+        return what
     if about_field := _FIELD_ERROR.fullmatch(what):
         field = ".".join(filter(None, (where, about_field["field"])))
         missing = about_field["kind"] == "missing required"

@@ -1,17 +1,29 @@
 """``cbtui compare``: two runs side by side; each is a recording, a lesson or a file."""
 
 import argparse
+import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from cbtui.commands import values
+from cbtui.commands import appearance, values
 from cbtui.commands.run import DEFAULT_SECONDS
-from cbtui.commands.targets import file_of, is_file_name, lesson_of
+from cbtui.commands.targets import file_of, is_file_name, lesson_of, refuse
+
+if TYPE_CHECKING:
+    from cbtui.contenders import Contender, Terms
+
+_SECOND = 1_000_000_000
+_RECORDING = ".mcap"
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Give the command its arguments."""
     for name in ("A", "B"):
-        parser.add_argument(name, help="a recording (.mcap), a lesson's id, or a node file")
+        parser.add_argument(name, help=f"a recording ({_RECORDING}), a lesson's id, or a node or launch file")
+    appearance.add_options(parser)
+    parser.add_argument(
+        "--text", action="store_true", help="print the table, as it is done where there is no terminal"
+    )
     parser.add_argument(
         "--from",
         dest="start",
@@ -27,6 +39,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         type=values.duration,
         help=f"where to end (where the shorter recording does; {DEFAULT_SECONDS:g} where there is none)",
     )
+    for letter in "ab":
+        parser.add_argument(
+            f"--threads-{letter}",
+            metavar="N",
+            type=values.threads,
+            help=f"number of threads of {letter.upper()}'s executor, instead of its own",
+        )
     parser.add_argument(
         "--call",
         dest="calls",
@@ -36,24 +55,102 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="call the SetBool service of what is run at that time; may be given again",
     )
+    parser.add_argument(
+        "--at",
+        dest="lines",
+        metavar=("SECONDS", "LINE"),
+        nargs=2,
+        action=values.TimedLine,
+        default=[],
+        help="carry out a ros2 line in what is run at that time; may be given again",
+    )
+    parser.add_argument(
+        "--inputs",
+        metavar=f"FILE{_RECORDING}",
+        help="give what is run what a recorded run was given, at the same moments",
+    )
 
 
 def compare(options: argparse.Namespace) -> int:
-    """Put two runs side by side; returns the exit code."""
-    from cbtui.contenders import Contender, compare_runs
+    """Put two runs side by side, in the console or as text; returns the exit code."""
+    names = [options.A, options.B]
+    threads = [options.threads_a, options.threads_b]
+    _check(options, names, threads)
+    first, second = (
+        _contender(name, number, options.arguments) for name, number in zip(names, threads, strict=True)
+    )
+    terms = _terms(options)
+    if options.text or not (sys.stdin.isatty() and sys.stdout.isatty()):
+        from cbtui.contenders import compare_runs
+
+        return compare_runs(first, second, terms)
+    look = appearance.appearance(options)
+    app = appearance.console_of(look, start_comparison=(first, second, terms))
+    app.run()
+    return app.return_code or 0
+
+
+def _check(options: argparse.Namespace, names: list[str], threads: list[int | None]) -> None:
+    """Refuse what does not fit together."""
+    for letter, name, number in zip("ab", names, threads, strict=True):
+        if number is not None and _is_recording(name):
+            refuse(f"{name} is a recording and has the threads it had; leave out --threads-{letter}")
+    if all(map(_is_recording, names)):
+        for option, given in (
+            ("--call", options.calls),
+            ("--at", options.lines),
+            ("--inputs", options.inputs),
+        ):
+            if given:
+                refuse(f"two recordings are compared and nothing is run; leave out {option}")
+    if options.inputs is not None and (options.calls or options.lines):
+        refuse("--inputs gives what is run all its inputs; leave out --call and --at")
+    if options.arguments and not any(is_file_name(name) for name in names if not _is_recording(name)):
+        refuse("only a file takes arguments; leave out what stands behind --")
+
+
+def _is_recording(name: str) -> bool:
+    return name.endswith(_RECORDING)
+
+
+def _contender(name: str, threads: int | None, arguments: list[str]) -> "Contender":
+    from cbtui.contenders import Contender
     from cbtui.lesson_setup import setup_for, setup_for_files
 
-    def contender(name: str) -> Contender:
-        if name.endswith(".mcap"):
-            return Contender(name, Path(name))
-        if is_file_name(name):
-            return Contender(name, setup_for_files([file_of(name)]))
-        return Contender(name, setup_for(lesson_of(name)))
+    if _is_recording(name):
+        return Contender(name, _readable(Path(name)))
+    called = name if threads is None else f"{name}, {threads} thread{'s'[: threads - 1]}"
+    if is_file_name(name):
+        return Contender(called, setup_for_files([file_of(name)], arguments, threads=threads))
+    return Contender(called, setup_for(lesson_of(name), threads=threads))
 
-    return compare_runs(
-        contender(options.A),
-        contender(options.B),
-        start=options.start,
-        end=options.end,
-        calls=options.calls,
+
+def _readable(path: Path) -> Path:
+    """A recording's path; one that cannot be opened ends the program with one line and 2."""
+    from sim.trace.recording import RecordingError, read
+
+    try:
+        read(path)
+    except (RecordingError, ValueError) as error:
+        refuse(str(error))
+    return path
+
+
+def _terms(options: argparse.Namespace) -> "Terms":
+    from cbtui.contenders import Terms
+
+    end = None if options.end is None else _nanoseconds(options.end)
+    start = _nanoseconds(options.start)
+    if end is not None and end <= start:
+        refuse(f"nothing is left to compare from {options.start:g} s to {options.end:g} s")
+    return Terms(
+        start=start,
+        end=end,
+        calls=[_nanoseconds(at) for at in options.calls],
+        lines=[(_nanoseconds(at), text) for at, text in options.lines],
+        inputs=None if options.inputs is None else _readable(Path(options.inputs)),
     )
+
+
+def _nanoseconds(seconds: float) -> int:
+    return round(seconds * _SECOND)

@@ -3,22 +3,16 @@
 import argparse
 from pathlib import Path
 
+from cbtui.commands import changes
+from cbtui.commands.appearance import add_options, appearance, console_of
 from cbtui.commands.targets import file_of, is_file_name, lesson_of, need_terminal, refuse
-
-_CHARSETS = ("braille", "block", "ascii")
-
-
-def add_options(parser: argparse.ArgumentParser) -> None:
-    """Give the command the options of everything that opens the console."""
-    parser.add_argument(
-        "--charset", choices=_CHARSETS, default="braille", help="what the screen is drawn with (%(default)s)"
-    )
 
 
 def add_open_options(parser: argparse.ArgumentParser) -> None:
     """Give ``cbtui open`` its arguments."""
     parser.add_argument("target", metavar="LESSON|FILE.py", help="a lesson's id, see cbtui list, or a file")
     add_options(parser)
+    changes.add_options(parser)
     parser.add_argument(
         "--clock", choices=("virtual", "real"), default="real", help="which time a file runs on (%(default)s)"
     )
@@ -38,11 +32,19 @@ def open_console(options: argparse.Namespace) -> int:
         start_file = (file_of(target), options.arguments, options.clock)
     elif target is not None:
         lesson = lesson_of(target).id
+    look = appearance(options)
     need_terminal("cbtui run")
-    from cbtui.app import CbtuiApp
-
-    CbtuiApp(charset=options.charset, start_lesson=lesson, start_file=start_file).run()
+    _read_lessons()
+    changed = None if target is None else changes.changes_of(options)
+    console_of(look, start_lesson=lesson, start_file=start_file, start_changes=changed).run()
     return 0
+
+
+def _read_lessons() -> None:
+    """Find a lesson that is at fault before the console takes the screen."""
+    from lessons.catalogue import lessons
+
+    lessons()
 
 
 def replay(options: argparse.Namespace) -> int:
@@ -53,8 +55,7 @@ def replay(options: argparse.Namespace) -> int:
         recording = read(Path(options.recording))
     except (RecordingError, ValueError) as error:
         refuse(str(error))
+    look = appearance(options)
     need_terminal("cbtui info")
-    from cbtui.app import CbtuiApp
-
-    CbtuiApp(charset=options.charset, start_recording=recording).run()
+    console_of(look, start_recording=recording).run()
     return 0

@@ -4,7 +4,7 @@ import argparse
 import math
 from pathlib import Path
 
-from cbtui.commands import values
+from cbtui.commands import changes, values
 from cbtui.commands.targets import file_of, is_file_name, lesson_of, refuse, setup_of_targets
 
 DEFAULT_SECONDS = 60.0
@@ -25,12 +25,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         type=values.duration,
         help=f"how long the run lasts in its own time ({DEFAULT_SECONDS:g})",
     )
-    parser.add_argument(
-        "--threads",
-        metavar="N",
-        type=values.threads,
-        help="number of threads of the executor, instead of its own",
-    )
+    changes.add_options(parser)
     parser.add_argument(
         "--call",
         dest="calls",
@@ -105,7 +100,7 @@ def run(options: argparse.Namespace) -> int:
         program = setup_for_files(paths, options.arguments, threads=options.threads, speed=speed)
     robot = program.robot if options.robot else RobotUse.NEVER
     return run_headless(
-        msgspec.structs.replace(program, clock=clock, robot=robot),
+        changes.changes_of(options).applied(msgspec.structs.replace(program, clock=clock, robot=robot)),
         seconds=options.seconds,
         calls=options.calls,
         call_data=options.call_data == "true",
@@ -138,6 +133,7 @@ def _repeat(options: argparse.Namespace) -> int:
         refuse(str(error))
     if not options.robot:
         setup = msgspec.structs.replace(setup, robot=RobotUse.NEVER)
+    setup = changes.changes_of(options).applied(setup)
     return run_set_up(
         msgspec.structs.replace(setup, speed=speed, contents=setup.contents or options.record is not None),
         events_path=options.events,

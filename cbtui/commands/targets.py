@@ -1,9 +1,12 @@
 """What a command is to run: a lesson, or files; what is neither ends the program with one line and 2."""
 
 import argparse
+import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
+
+from cbtui.terminal import is_browser, is_dumb
 
 if TYPE_CHECKING:
     from lessons.lesson import Lesson
@@ -28,8 +31,12 @@ def refuse(sentence: str) -> NoReturn:
 
 def need_terminal(instead: str) -> None:
     """End the program where there is no terminal; ``instead`` is the command that needs none."""
+    if is_browser(os.environ):
+        return
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
         refuse(f"the console needs a terminal; use {instead} where there is none")
+    if is_dumb(os.environ):
+        refuse(f"this terminal (TERM={os.environ['TERM']}) cannot place its cursor; use {instead}")
 
 
 def setup_of_targets(options: argparse.Namespace, speed: float | None) -> "RunSetup":

@@ -2,7 +2,12 @@
 
 import argparse
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+from cbtui.quantities import PERIOD, SENSOR_RATE, BadQuantityError, Quantity
+
+if TYPE_CHECKING:
+    from cbtui.changes import Place
 
 _MAX_THREADS = 64
 
@@ -55,6 +60,44 @@ def speed(text: str) -> float:
     if factor <= 0:
         raise argparse.ArgumentTypeError(f"time cannot pass {text} times as fast; give more than 0, or max")
     return factor
+
+
+def group_change(text: str) -> "tuple[Place, str]":
+    """Read which callback gets which group, such as ``odom_callback=own``."""
+    from cbtui.changes import WISHES  # with what a set-up is made of
+
+    place, group = _place_and_value(text, "a group, such as odom_callback=own")
+    if group not in WISHES:
+        sentence = f"{group!r} is no group; give {', '.join(WISHES[:-1])} or {WISHES[-1]}"
+        raise argparse.ArgumentTypeError(sentence)
+    return place, group
+
+
+def period_change(text: str) -> "tuple[Place, int]":
+    """Read which timer's callback gets which period, such as ``timer_callback=0.2``; nanoseconds."""
+    place, seconds = _place_and_value(text, "seconds, such as timer_callback=0.2")
+    return place, round(_quantity(PERIOD, seconds) * 1_000_000_000)
+
+
+def sensor_rate(text: str) -> float:
+    """Read how often a second sensors measure."""
+    return _quantity(SENSOR_RATE, text)
+
+
+def _place_and_value(text: str, what: str) -> "tuple[Place, str]":
+    """Take ``NODE:CALLBACK=VALUE`` apart; without a node, any node is meant."""
+    name, equals, value = text.rpartition("=")
+    node, colon, callback = name.rpartition(":")
+    if not (equals and callback and value) or (colon and not node):
+        raise argparse.ArgumentTypeError(f"{text!r} is not a callback and its value; give {what}")
+    return ("/" + node.lstrip("/") if node else "", callback), value
+
+
+def _quantity(quantity: Quantity, text: str) -> float:
+    try:
+        return quantity.read(text)
+    except BadQuantityError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
 
 
 class TimedLine(argparse.Action):

@@ -10,11 +10,23 @@ from textual.content import Content
 from textual.widgets import Static
 
 from cbtui.actions import ACTIONS, Action, Scope, bindings_of, signs_of, together
+from cbtui.keymap import Keymap, keymap_of
 from cbtui.screens.sized import SizedModal
 from cbtui.theme import Charset
 from cbtui.widgets.key_bar import KeyBar
 
-_SHOWN = (Scope.LESSON, Scope.PROMPT, Scope.MENU, Scope.EVERYWHERE)
+_SHOWN = (
+    Scope.LESSON,
+    Scope.CODE,
+    Scope.LOG,
+    Scope.FILTER,
+    Scope.PROMPT,
+    Scope.COMPARE,
+    Scope.MENU,
+    Scope.SEARCH,
+    Scope.OPENING,
+    Scope.EVERYWHERE,
+)
 
 
 class HelpScreen(SizedModal[None]):
@@ -33,17 +45,24 @@ class HelpScreen(SizedModal[None]):
         with Container(classes="window") as window:
             window.border_title = "Keys"
             with VerticalScroll():
-                yield Static(Content("\n").join(_sections(self._charset)))
+                keymap = keymap_of(self.app)
+                yield Static(Content("\n").join(_sections(self._scope_below, keymap, self._charset)))
             yield KeyBar(Scope.HELP, self._charset)
+
+    @property
+    def _scope_below(self) -> Scope | None:
+        """What the person looked at when they asked for help; that comes first."""
+        scope: Scope | None = getattr(self.app.screen_stack[-2], "SCOPE", None)
+        return scope
 
     def action_close(self) -> None:
         """Go back."""
         self.dismiss()
 
 
-def _sections(charset: Charset) -> Iterator[Content]:
-    for scope in _SHOWN:
-        actions = [action for action in ACTIONS if action.scope is scope]
+def _sections(first: Scope | None, keymap: Keymap, charset: Charset) -> Iterator[Content]:
+    for scope in sorted(_SHOWN, key=lambda scope: scope is not first):
+        actions = keymap.of(action for action in ACTIONS if action.scope is scope)
         rows = [_row(group, charset) for group in together(actions, "line")]
         yield Content("\n").join([Content.styled(scope.value, "bold $text-primary"), *rows, Content("")])
 

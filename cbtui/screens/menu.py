@@ -1,117 +1,330 @@
-"""The menu: the lessons by unit, and what the highlighted one teaches."""
+"""The menu: the lessons by unit and what was opened lately, and what the highlighted one is about."""
 
-from collections.abc import Sequence
-from itertools import groupby
+import asyncio
+from collections.abc import Callable, Sequence
+from time import time
 from typing import TYPE_CHECKING, ClassVar, cast
 
+from textual import on
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Container
-from textual.content import Content
-from textual.widgets import OptionList
-from textual.widgets.option_list import Option
+from textual.events import DescendantBlur, DescendantFocus
+from textual.message import Message
+from textual.timer import Timer
+from textual.widgets import Input, OptionList
 
 from cbtui.actions import Scope, bindings_of
+from cbtui.keymap import keymap_of
+from cbtui.preview import CALLS, LENGTH, CannotPreviewError, GivenUpError, PreviewRun
+from cbtui.recent import Opened, Recents
+from cbtui.screens.layout import Layout
 from cbtui.screens.sized import SizedScreen
 from cbtui.theme import Charset
-from cbtui.widgets.about import About
+from cbtui.widgets.about import About, Description, of_file, of_lesson
 from cbtui.widgets.banner import Banner
-from cbtui.widgets.cells import fit
+from cbtui.widgets.choices import Choices, Rows, WideRows, with_words
 from cbtui.widgets.key_bar import KeyBar
+from cbtui.widgets.menu_search import MenuSearch
+from cbtui.widgets.miniature import Miniature, Subject
 from lessons.lesson import Lesson
 
 if TYPE_CHECKING:
     from cbtui.app import CbtuiApp
+    from cbtui.live_run import OpenSession
 
-
-class LessonList(OptionList, inherit_bindings=False):
-    """The lessons; the screen's keys move its highlight."""
+_REST = 0.3
+"""Seconds that the highlight has to rest on a lesson before it is run for its picture."""
+_PATIENCE = 1.0
+"""Seconds that the console waits at its end for an engine that draws; it is killed before."""
+_CALLED = " and ".join(f"{at / 1e9:g}" for at in CALLS)
+_TITLE = f"first {LENGTH / 1e9:g} s, s pressed at {_CALLED} s"
+_WAIT = f"Rest on a lesson, and {LENGTH / 1e9:g} s of it are run and drawn here."
 
 
 class MenuScreen(SizedScreen[None]):
-    """Where the console begins and every lesson comes back to."""
+    """Where the console begins and every lesson comes back to.
+
+    The lesson on which the highlight rests is run once for its picture, one at a time and only while the menu
+    is on top.
+    """
 
     SCOPE = Scope.MENU
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.MENU)]
 
-    def __init__(self, lessons: Sequence[Lesson], charset: Charset) -> None:
+    class Drawn(Message):
+        """A lesson's short run is over: ``subject`` is what to draw, a sentence, or None if given up."""
+
+        def __init__(self, lesson: Lesson, subject: Subject | str | None) -> None:
+            super().__init__()
+            self.lesson = lesson
+            self.subject = subject
+
+    def __init__(
+        self,
+        lessons: Sequence[Lesson],
+        recents: Recents,
+        open_session: "OpenSession",
+        charset: Charset,
+        now: Callable[[], float] = time,
+    ) -> None:
         super().__init__()
         self._lessons = lessons
+        self._recents = recents
+        self._open_session = open_session
         self._charset = charset
+        self._now = now
+        self._subjects: dict[str, Subject | str] = {}
+        self._run: PreviewRun | None = None
+        self._rest: Timer | None = None
+        self._filled_with: object = None
+        self._words = ""
 
     def compose(self) -> ComposeResult:
         """Lay out head, list, description and keys."""
         yield Banner()
         with Container(id="choice"):
-            yield LessonList(*self._options(), id="lessons")
+            yield Choices(id="lessons")
             yield About()
+            yield Miniature()
         yield KeyBar(Scope.MENU, self._charset)
 
     def on_mount(self) -> None:
-        """Highlight the first lesson."""
-        self._list.highlighted = self._list.get_option_index(self._lessons[0].id)
+        """Let the list have the keys."""
+        self._list.focus()
 
-    def on_option_list_option_highlighted(self, event: OptionList.OptionHighlighted) -> None:
-        """Tell what the highlighted lesson teaches."""
-        self.query_one(About).lesson = self._lesson(event.option.id)
+    def on_screen_resume(self) -> None:
+        """Show what was opened meanwhile, and draw again."""
+        if self._filled_with == self._contents:
+            self._describe()
+        else:
+            self._fill()
 
-    def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
-        """Open the lesson that was clicked or confirmed."""
-        self._open(self._lesson(event.option.id))
+    def on_screen_suspend(self) -> None:
+        """End the engine that draws: another one may start now."""
+        if self._rest is not None:
+            self._rest.stop()
+        self._give_up()
+
+    async def on_unmount(self) -> None:
+        """Leave no engine behind."""
+        if self._run is not None:
+            self._run.give_up()
+            await asyncio.to_thread(self._run.wait, _PATIENCE)
+
+    def laid_out(self) -> None:
+        """Tell more in the list where there is room."""
+        if self._filled_with != self._contents:
+            self._fill()
+
+    # the list
+
+    @property
+    def _contents(self) -> object:
+        """What the list depends on beside the search."""
+        return self.layout_now, self._recents.entries
+
+    def _fill(self) -> None:
+        self._filled_with = self._contents
+        rows = (WideRows if self.layout_now is Layout.GRID else Rows)(self._recents.lessons, self._now())
+        wanted = with_words(self._words)
+        self._list.show(filter(wanted, self._lessons), filter(wanted, self._recents.files), rows)
+        self._tell_troubles()
+        self._describe()
+
+    def _tell_troubles(self) -> None:
+        for sentence in self._recents.troubles():
+            self.notify(sentence, severity="warning", markup=False)
+
+    def _describe(self) -> None:
+        """Tell about what is highlighted, and draw it, if it is a lesson, when it stays so."""
+        chosen = self._list.chosen
+        about = self.query_one(About)
+        about.description = self._description
+        about.set_class(not isinstance(chosen, Lesson), "-alone")
+        self._miniature.display = isinstance(chosen, Lesson)
+        self._miniature.border_title = _TITLE
+        self._show_drawn()
+        if self._rest is not None:
+            self._rest.stop()
+        if isinstance(chosen, Lesson) and chosen.id not in self._subjects:
+            self._rest = self.set_timer(_REST, self._draw)
+        self.query_one(KeyBar).changed()
+
+    @property
+    def _description(self) -> Description:
+        chosen = self._list.chosen
+        if isinstance(chosen, Lesson):
+            return of_lesson(chosen, self._recents.lessons.get(chosen.id), self._now())
+        if chosen is not None:
+            forget = keymap_of(self.app).sign(Scope.MENU, "forget", self._charset)
+            return of_file(chosen, self._now(), forget)
+        return Description("Nothing found", "No lesson and no recent file has all of these words.")
+
+    @on(OptionList.OptionHighlighted)
+    def _show_highlighted(self) -> None:
+        self._describe()
+
+    @on(OptionList.OptionSelected)
+    def _open_selected(self, event: OptionList.OptionSelected) -> None:
+        self._open(self._list.choice(str(event.option.id)))
+
+    # the picture
+
+    def _draw(self) -> None:
+        """Run the highlighted lesson for its picture; another one that is being run is given up first."""
+        chosen = self._list.chosen
+        if not isinstance(chosen, Lesson) or chosen.id in self._subjects or not self.is_active:
+            return
+        if self._run is not None:
+            self._run.give_up()
+            return
+        run = self._run = PreviewRun(chosen, self._open_session)
+        self.run_worker(lambda: self._draw_with(run, chosen), thread=True)
+
+    def _draw_with(self, run: PreviewRun, lesson: Lesson) -> None:
+        """Run a lesson, on a thread of its own."""
+        subject: Subject | str | None
+        try:
+            timeline = run.run()
+        except CannotPreviewError as error:
+            subject = f"It could not be run for its picture: {error}."
+        except GivenUpError:
+            subject = None
+        else:
+            from cbtui.widgets.lanes import Painter  # on this thread: the screen must not stand still for it
+
+            subject = Subject(timeline, Painter(self._charset, lesson.service.name))
+        self.post_message(self.Drawn(lesson, subject))
+
+    @on(Drawn)
+    def _take_drawn(self, message: Drawn) -> None:
+        self._run = None
+        if message.subject is not None:
+            self._subjects[message.lesson.id] = message.subject
+            self._show_drawn()
+        self._draw()
+
+    def _show_drawn(self) -> None:
+        chosen = self._list.chosen
+        subject = self._subjects.get(chosen.id) if isinstance(chosen, Lesson) else None
+        self._miniature.sentence = subject if isinstance(subject, str) else _WAIT
+        self._miniature.subject = subject if isinstance(subject, Subject) else None
+
+    def _give_up(self) -> None:
+        if self._run is not None:
+            self._run.give_up()
+
+    # the search
+
+    @on(Input.Changed)
+    def _search_for(self, event: Input.Changed) -> None:
+        self._words = event.value
+        self._list.highlight_first()
+        self._fill()
+
+    @on(Input.Submitted)
+    def _open_found(self) -> None:
+        self._list.action_select()
+
+    @on(MenuSearch.Moved)
+    def _move(self, message: MenuSearch.Moved) -> None:
+        if message.step < 0:
+            self.action_previous()
+        else:
+            self.action_next()
+
+    @on(MenuSearch.GivenUp)
+    def action_end_search(self) -> None:
+        """Show everything again."""
+        self._list.focus()
+        self.query(MenuSearch).remove()
+        self._words = ""
+        self._fill()
+
+    def on_descendant_focus(self, event: DescendantFocus) -> None:
+        """Show the keys of what is typed in."""
+        self.query_one(KeyBar).show(Scope.SEARCH if isinstance(event.widget, MenuSearch) else Scope.MENU)
+
+    def on_descendant_blur(self, event: DescendantBlur) -> None:
+        """Have no search that looks for nothing."""
+        if isinstance(event.widget, MenuSearch) and not self._words:
+            self.query(MenuSearch).remove()
+
+    # the keys
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer the numbers of lessons that exist."""
-        if action == "open_number":
-            return any(lesson.number == parameters[0] for lesson in self._lessons)
+        """Offer what has a meaning for what is highlighted, and the numbers of lessons that exist."""
+        match action:
+            case "open_number":
+                return any(lesson.number == parameters[0] for lesson in self._lessons)
+            case "open" | "submit":
+                return self._list.chosen is not None
+            case "forget":
+                return isinstance(self._list.chosen, Opened)
+            case "end_search":
+                return bool(self._words)
         return True
 
     def action_open(self) -> None:
-        """Open the highlighted lesson."""
+        """Open what is highlighted."""
         self._list.action_select()
 
     def action_open_number(self, number: int) -> None:
         """Open the lesson with a number."""
         for lesson in self._lessons:
             if lesson.number == number:
-                self._list.highlighted = self._list.get_option_index(lesson.id)
+                self._list.choose(lesson.id)
                 self._open(lesson)
 
     def action_previous(self) -> None:
-        """Highlight the lesson above."""
+        """Highlight what is above."""
         self._list.action_cursor_up()
 
     def action_next(self) -> None:
-        """Highlight the lesson below."""
+        """Highlight what is below."""
         self._list.action_cursor_down()
+
+    def action_search(self) -> None:
+        """Let words be typed."""
+        if not self.query(MenuSearch):
+            self.mount(MenuSearch(), before="#choice")
+        self.query_one(MenuSearch).focus()
+
+    def action_open_file(self) -> None:
+        """Ask for a file."""
+        from cbtui.screens.opening import OpeningScreen
+
+        self.app.push_screen(OpeningScreen(self._charset))
+
+    def action_forget(self) -> None:
+        """Take the highlighted file off the list."""
+        chosen = self._list.chosen
+        if isinstance(chosen, Opened):
+            self._recents.forget(chosen)
+            self._fill()
 
     def action_leave(self) -> None:
         """Leave the console."""
         self.app.exit()
 
     @property
-    def _list(self) -> LessonList:
-        return self.query_one(LessonList)
+    def _list(self) -> Choices:
+        return self.query_one(Choices)
 
-    def _open(self, lesson: Lesson) -> None:
-        cast("CbtuiApp", self.app).open_lesson(lesson)
+    @property
+    def _miniature(self) -> Miniature:
+        return self.query_one(Miniature)
 
-    def _lesson(self, lesson_id: str | None) -> Lesson:
-        return next(lesson for lesson in self._lessons if lesson.id == lesson_id)
+    def _open(self, choice: Lesson | Opened) -> None:
+        app = cast("CbtuiApp", self.app)
+        if isinstance(choice, Lesson):
+            app.open_lesson(choice)
+            return
+        from cbtui.own_files import CannotOpenError
 
-    def _options(self) -> list[Option]:
-        options = []
-        for unit, lessons in groupby(self._lessons, key=lambda lesson: lesson.unit):
-            heading = Content.styled(f"Unit {unit}", "bold $text-primary")
-            options.append(Option(heading, disabled=True))
-            options += [Option(row(lesson), id=lesson.id) for lesson in lessons]
-        return options
-
-
-def row(lesson: Lesson) -> Content:
-    """Return a lesson's line in the list."""
-    return Content.assemble(
-        (f"{lesson.number:>3}  ", "bold $text-accent"),
-        (fit(lesson.title, 24, Charset.BRAILLE), "bold"),
-        fit(lesson.executor, 26, Charset.BRAILLE),
-        (lesson.groups, "$text-muted"),
-    )
+        try:
+            app.open_file(choice)
+        except CannotOpenError as error:
+            self.notify(str(error), severity="error", markup=False)
+            self._describe()

@@ -7,7 +7,9 @@ from typing import NoReturn
 from textual import on
 from textual.message import Message
 
+from cbtui.changes import Changes, changes_in
 from cbtui.live_run import Deliver, Ended, LiveRun
+from cbtui.record import setup_of
 from cbtui.replay import ReplayRun, of_recording
 from cbtui.screens.lesson import FRAMES_A_SECOND, LessonScreen
 from cbtui.theme import Charset
@@ -19,7 +21,17 @@ _AHEAD = 2
 _PATIENCE = 0.5
 """Seconds after which the reader goes on although the screen has taken nothing: it may be gone."""
 _REFUSED = frozenset(
-    {"call_service", "call_service_off", "prompt", "reset_world", "run_again", "threads", "record"}
+    {
+        "call_service",
+        "call_service_off",
+        "prompt",
+        "reset_world",
+        "run_again",
+        "threads",
+        "group",
+        "set_up",
+        "record",
+    }
 )
 """Actions that need an engine."""
 
@@ -31,7 +43,9 @@ class ReplayScreen(LessonScreen):
         self._recording = recording
         self._room = threading.Semaphore(_AHEAD)
         self._played_at = 0
-        super().__init__(of_recording(recording), _no_engine, charset)
+        recorded = setup_of(recording.about)
+        changes = Changes() if recorded is None else changes_in(recorded)
+        super().__init__(of_recording(recording), _no_engine, charset, changes)
 
     def on_mount(self) -> None:
         """Start the clock that plays; there is nobody to carry out a line."""
@@ -94,7 +108,8 @@ class ReplayScreen(LessonScreen):
         if not self._run.paused:
             now = monotonic_ns()
             elapsed, self._played_at = now - self._played_at, now
-            self._move(self.replay_run.played(self._playhead, elapsed))
+            self._playhead = self.replay_run.played(self._playhead, elapsed)
+            self._grown = True
 
 
 def _no_engine(*_: object) -> NoReturn:

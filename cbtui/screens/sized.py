@@ -31,9 +31,10 @@ class SizedScreen(Screen[Result]):
 
     def _lay_out(self, size: Size) -> None:
         self.layout_now = layout_for(size)
-        for layout in Layout:
-            self.set_class(layout is self.layout_now, layout.value, update=False)
-        self.update_node_styles(animate=False)
+        if not self.has_class(self.layout_now.value):
+            for layout in Layout:
+                self.set_class(layout is self.layout_now, layout.value, update=False)
+            self.update_node_styles(animate=False)
         for sentence in self.query(".too-small").results(Static):
             sentence.update(too_small(size))
         self.laid_out()

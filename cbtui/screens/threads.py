@@ -2,6 +2,7 @@
 
 from typing import ClassVar
 
+from textual import on
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Container
@@ -10,6 +11,9 @@ from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
 from cbtui.actions import Scope, bindings_of
+from cbtui.changeable import Changeable
+from cbtui.equivalent_code import code_of_threads
+from cbtui.keymap import keymap_of
 from cbtui.screens.sized import SizedModal
 from cbtui.theme import Charset
 from cbtui.widgets.key_bar import KeyBar
@@ -24,10 +28,10 @@ class ThreadsScreen(SizedModal[int]):
     CSS_PATH = "window.tcss"
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.THREADS)]
 
-    def __init__(self, usual: str, chosen: int | None, charset: Charset) -> None:
+    def __init__(self, about: Changeable, chosen: int | None, charset: Charset) -> None:
         super().__init__()
         self._charset = charset
-        self._usual = usual
+        self._about = about
         self._chosen = chosen or 0
 
     def compose(self) -> ComposeResult:
@@ -36,11 +40,18 @@ class ThreadsScreen(SizedModal[int]):
             window.border_title = "Threads"
             yield Static("How many threads does the executor get?\nThe run starts again with them.")
             yield OptionList(*self._options())
+            yield Static(classes="code")
             yield KeyBar(Scope.THREADS, self._charset)
 
     def on_mount(self) -> None:
         """Highlight what is in force."""
         self.query_one(OptionList).highlighted = self._chosen
+
+    @on(OptionList.OptionHighlighted)
+    def _show_code(self, event: OptionList.OptionHighlighted) -> None:
+        number = event.option_index
+        code = code_of_threads(number, self._about) if number else "# as it is written"
+        self.query_one(".code", Static).update(Content(code))
 
     def on_option_list_option_selected(self, event: OptionList.OptionSelected) -> None:
         """Take the number that was clicked or confirmed."""
@@ -55,9 +66,13 @@ class ThreadsScreen(SizedModal[int]):
         self.dismiss(None)
 
     def _options(self) -> list[Option]:
-        own = Content.assemble(("o", "bold $text-accent"), f"  the program's own: {self._usual}")
-        numbers = [
-            Content.assemble((str(number), "bold $text-accent"), f"  {number} thread{'s'[: number - 1]}")
-            for number in range(1, MOST + 1)
+        own = f"  the program's own: {self._about.executor}"
+        texts = [own, *(f"  {number} thread{'s'[: number - 1]}" for number in range(1, MOST + 1))]
+        return [
+            Option(Content.assemble((self._key(number), "bold $text-accent"), text))
+            for number, text in enumerate(texts)
         ]
-        return [Option(each) for each in (own, *numbers)]
+
+    def _key(self, number: int) -> str:
+        """The key that takes a number."""
+        return keymap_of(self.app).sign(Scope.THREADS, f"choose({number})", self._charset)

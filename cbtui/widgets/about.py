@@ -1,11 +1,14 @@
-"""What a lesson is about: what it teaches, what it is made of, what there is to try."""
+"""What the highlighted thing of the menu is about: a lesson, or a file that was opened before."""
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
 from textwrap import wrap
 
 from textual.geometry import Size
 from textual.reactive import reactive
 
+from cbtui.recent import Kind, Opened, ago
 from cbtui.theme import Charset, Ink, Role, Run
 from cbtui.widgets.cells import fit, visible
 from cbtui.widgets.painted import Painted
@@ -18,43 +21,81 @@ _KEYS = 7
 _FACTS = 10
 
 
-class About(Painted):
-    """Describes a lesson; what there is not room for is cut off at the bottom."""
+@dataclass(frozen=True)
+class Description:
+    """A title, what there is to say, what it is made of, and keys with what they do."""
 
-    lesson: reactive[Lesson | None] = reactive(None)
+    title: str
+    text: str
+    facts: tuple[tuple[str, str], ...] = ()
+    keys: tuple[tuple[str, str], ...] = ()
+
+
+class About(Painted):
+    """Describes something; keys that have no room are left out, the rest is cut off at the bottom."""
+
+    description: reactive[Description | None] = reactive(None, repaint=False)
 
     def rows(self, size: Size) -> Sequence[Sequence[Run]]:
-        """Paint the description; a low widget leaves out what the list says already."""
-        if self.lesson is None or not size.width:
+        """Paint the description."""
+        if self.description is None or not size.width:
             return []
-        facts = _facts(self.lesson) if size.height >= _FACTS + 2 else ()
-        return list(described(self.lesson, facts, size.width))[: size.height]
+        return described(self.description, size)[: size.height]
 
-    def watch_lesson(self) -> None:
-        """Describe another lesson."""
+    def watch_description(self) -> None:
+        """Describe something else."""
         self.changed()
 
 
-def described(lesson: Lesson, facts: Sequence[tuple[str, str]], width: int) -> Iterator[list[Run]]:
-    """Yield the lines of a description, each ``width`` columns wide."""
-    yield [_line(lesson.title, width, _STRONG)]
-    for text in wrap(visible(lesson.teaches, Charset.BRAILLE), width):
-        yield [_line(text, width, _PLAIN)]
-    yield [_line("", width, _PLAIN)]
-    for name, fact in facts:
-        yield from _entry(name, fact, width, _FACTS, _FAINT)
-    if facts:
-        yield [_line("", width, _PLAIN)]
-    for attempt in lesson.tries:
-        yield from _entry(attempt.key, attempt.text, width, _KEYS, _STRONG)
-
-
-def _facts(lesson: Lesson) -> tuple[tuple[str, str], ...]:
-    return (
+def of_lesson(lesson: Lesson, opened: int | None, now: float) -> Description:
+    """Describe a lesson that was opened at a moment, None for never; times are seconds since 1970."""
+    facts = (
         ("executor", lesson.executor),
         ("groups", lesson.groups),
-        ("service", f"{lesson.service.name} ({lesson.service.type})"),
+        ("service", lesson.service.name),
+        *(() if opened is None else (("opened", ago(opened, now)),)),
     )
+    keys = tuple((attempt.key, attempt.text) for attempt in lesson.tries)
+    return Description(lesson.title, lesson.teaches, facts, keys)
+
+
+_WHAT = {
+    Kind.PROGRAM: "A program of your own: it is run again, on {clock} time.",
+    Kind.RECORDING: "A recording: it is shown, and nothing in it is run.",
+}
+
+
+def of_file(entry: Opened, now: float, forget_key: str) -> Description:
+    """Describe a program or a recording at a moment, in seconds since 1970.
+
+    ``forget_key`` takes one off the list that is gone.
+    """
+    path = Path(entry.what)
+    facts = [("folder", str(path.parent)), ("opened", ago(entry.at, now))]
+    if entry.arguments:
+        facts.append(("arguments", " ".join(entry.arguments)))
+    if not path.is_file():
+        gone = f"There is no file {entry.name} there any more."
+        return Description(entry.name, gone, tuple(facts), ((forget_key, "Take it off this list."),))
+    return Description(entry.name, _WHAT[entry.kind].format(clock=entry.clock), tuple(facts))
+
+
+def described(about: Description, size: Size) -> list[list[Run]]:
+    """Return the lines of a description, each ``size.width`` columns wide; there may be too many."""
+    width = size.width
+    rows = [[_line(about.title, width, _STRONG)]]
+    rows += [[_line(text, width, _PLAIN)] for text in wrap(visible(about.text, Charset.BRAILLE), width)]
+    rows.append([_line("", width, _PLAIN)])
+    for name, fact in about.facts:
+        rows += _entry(name, fact, width, _FACTS, _FAINT)
+    between = [[_line("", width, _PLAIN)]]
+    for key, text in about.keys:
+        told = [*between, *_entry(key, text, width, _KEYS, _STRONG)]
+        if len(rows) + len(told) > size.height:
+            break
+        rows += told
+        between = []
+    return rows
 
 
 def _entry(name: str, text: str, width: int, indent: int, ink: Ink) -> Iterator[list[Run]]:

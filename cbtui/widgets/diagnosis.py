@@ -1,14 +1,16 @@
 """What a moment of a run means, in one sentence: who waits longest and why, or that nothing waits."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import Enum, auto
 
-from cbtui.concurrency import Concurrency
+from cbtui.findings import Told
 from cbtui.live_run import LiveRun, State
 from cbtui.playhead import Playhead
 from cbtui.widgets.durations import duration
+from sim.trace.concurrency import Concurrency
 from sim.trace.events import Notice, Reason, Severity
-from sim.trace.model import Call, Moment, Nanoseconds, Wait
+from sim.trace.model import Call, Moment, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
 from sim.trace.words import name_of
 
@@ -30,7 +32,7 @@ class Weight(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Diagnosis:
-    """A sentence about a moment, and how much it matters.
+    """A sentence about a moment, and how much it matters; ``at_length`` is said instead where it fits.
 
     One that stays (a notice, how a run ended) is shown whole, on several lines if need be; the others change
     from moment to moment, and the screen must not jump with them.
@@ -39,6 +41,7 @@ class Diagnosis:
     text: str
     weight: Weight
     stays: bool = field(default=False, compare=False)
+    at_length: str = ""
 
 
 def verdict(run: LiveRun, playhead: Playhead, concurrency: Concurrency) -> Diagnosis:
@@ -56,10 +59,25 @@ def verdict(run: LiveRun, playhead: Playhead, concurrency: Concurrency) -> Diagn
     return diagnose(timeline, playhead.now(timeline.end), concurrency)
 
 
+def with_worst(moment: Diagnosis, told: Sequence[Told]) -> Diagnosis:
+    """Return what to say where the rules have told of a run: its worst problem, if the moment has none.
+
+    What stays is said in any case.
+    """
+    worst = next((each for each in told if each.is_problem), None)
+    if worst is None or moment.stays or moment.weight is not Weight.FINE:
+        return moment
+    what = worst.explanation.what
+    if worst.at is None:
+        return Diagnosis(what, Weight.TROUBLE, at_length=f"{worst.name}: {what}")
+    text = f"at {worst.at / 1e9:.1f} s: {what}"
+    return Diagnosis(text, Weight.TROUBLE, at_length=f"{worst.name} {text}")
+
+
 def _of_the_end(timeline: Timeline, way_on: str) -> Diagnosis:
     ended = timeline.ended
     if ended is None:
-        return Diagnosis(f"the run is over; {way_on}", Weight.FINE)
+        return Diagnosis(f"the run is over; {way_on}", Weight.FINE, stays=True)
     weight = Weight.TROUBLE if ended.failed else Weight.FINE
     return Diagnosis(f"the run is over: {ended.reason.rstrip('.')}; {way_on}", weight, stays=True)
 
@@ -84,7 +102,8 @@ def diagnose(timeline: Timeline, at: Nanoseconds, concurrency: Concurrency) -> D
 
 def call_note(timeline: Timeline, at: Nanoseconds) -> str:
     """Return how the latest call from outside stands: waiting for its reply, or just answered; else ""."""
-    calls = [call for call in timeline.calls if call.caller == 0 and call.sent <= at]
+    lately = Window(at - _REPLY_STAYS - 1, at + 1)
+    calls = [call for call in timeline.calls_within(lately) if call.caller == 0]
     pending = [call for call in calls if call.replied is None or call.replied > at]
     if pending:
         more = f" and {len(pending) - 1} more" if len(pending) > 1 else ""
@@ -126,7 +145,8 @@ def _of_waits(waits: list[Wait], moment: Moment, timeline: Timeline) -> Diagnosi
         f"; {len(waits) - 1} more wait" if len(waits) > 2 else "; 1 more waits" if len(waits) == 2 else ""
     )
     text = f"{name_of(longest.entity, timeline)} waits {duration(waited)}: {_why(longest, moment, timeline)}"
-    return Diagnosis(text + others, Weight.TROUBLE if waited >= _SERIOUS else Weight.WAITS)
+    weight = Weight.TROUBLE if waited >= _SERIOUS else Weight.WAITS
+    return Diagnosis(text, weight, at_length=text + others)
 
 
 def _why(wait: Wait, moment: Moment, timeline: Timeline) -> str:

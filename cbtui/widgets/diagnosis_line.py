@@ -1,11 +1,11 @@
-"""The line at the bottom that says in words what the moment on screen means."""
+"""The line at the bottom: what the moment on screen means in words, and how many problems there are."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 from textwrap import wrap
 
 from textual.events import Resize
 from textual.geometry import Size
+from textual.message import Message
 from textual.reactive import reactive
 
 from cbtui.theme import Charset, Ink, Role, Run
@@ -19,23 +19,39 @@ _INKS = {
     Weight.TROUBLE: Ink(Role.WARN),
 }
 _INDENT = 3
+_GAP = 2
+"""Columns between what is said and what stands at the right."""
+_LEAST_NOTE = 12
 _MOST = 4
 """Lines that a sentence may take."""
 _SIGNS = {Weight.FINE: "✓", Weight.WAITS: "·", Weight.TROUBLE: "!"}
 
 
 class DiagnosisLine(Painted):
-    """Shows a diagnosis, and at the right how the latest service call stands."""
+    """Shows a diagnosis; at the right how the latest service call stands, and the number of problems."""
 
-    diagnosis: reactive[Diagnosis] = reactive(Diagnosis("", Weight.FINE))
-    note: reactive[str] = reactive("")
+    diagnosis: reactive[Diagnosis] = reactive(Diagnosis("", Weight.FINE), repaint=False)
+    note: reactive[str] = reactive("", repaint=False)
+    problems: reactive[str] = reactive("", repaint=False)
+
+    class Clicked(Message):
+        """The person clicked on the line."""
 
     def rows(self, size: Size) -> Sequence[Sequence[Run]]:
-        """Paint the line; the note gives way when there is not room for both."""
-        return diagnosis_rows(self.diagnosis, self.note, size.width)
+        """Paint the line; the note gives way when there is not room for all."""
+        return diagnosis_rows(self.diagnosis, self.note, self.problems, size.width)
 
     def watch_diagnosis(self) -> None:
         """Say something else, on as many lines as it takes."""
+        self._take_room(self.size)
+        self.changed()
+
+    def watch_note(self) -> None:
+        """Say something else of the latest call."""
+        self.changed()
+
+    def watch_problems(self) -> None:
+        """Tell of another number of problems."""
         self._take_room(self.size)
         self.changed()
 
@@ -43,36 +59,47 @@ class DiagnosisLine(Painted):
         """Break the lines anew."""
         self._take_room(event.size)
 
+    def on_click(self) -> None:
+        """Tell of a click."""
+        self.post_message(self.Clicked())
+
     def _take_room(self, size: Size) -> None:
-        lines = len(diagnosis_rows(self.diagnosis, self.note, size.width)) if size.width else 1
-        if self.styles.height is None or self.styles.height.value != lines:
-            self.styles.height = lines
-
-    def watch_note(self) -> None:
-        """Say something else of the latest call."""
-        self.changed()
+        rows = diagnosis_rows(self.diagnosis, self.note, self.problems, size.width) if size.width else [[]]
+        if self.styles.height is None or self.styles.height.value != len(rows):
+            self.styles.height = len(rows)
 
 
-def diagnosis_rows(diagnosis: Diagnosis, note: str, width: int) -> list[list[Run]]:
+def diagnosis_rows(diagnosis: Diagnosis, note: str, problems: str, width: int) -> list[list[Run]]:
     """Return the lines, each in exactly ``width`` columns: one, but for a sentence that stays."""
-    first, *others = wrap(diagnosis.text, max(20, width - _INDENT)) or [""]
+    taken = " " * (_GAP + len(problems) + 1 if problems else 0)
+    first, *others = wrap(diagnosis.text, max(20, width - _INDENT), initial_indent=taken) or [""]
     if not diagnosis.stays or not others:
-        return [diagnosis_row(diagnosis, note, width)]
+        return [diagnosis_row(diagnosis, note, problems, width)]
     ink = _INKS[diagnosis.weight]
-    head = diagnosis_row(replace(diagnosis, text=first), "", width)
+    head = diagnosis_row(Diagnosis(first.strip(), diagnosis.weight), "", problems, width)
     kept = [Run(fit(" " * _INDENT + line, width, Charset.BRAILLE), ink) for line in others[: _MOST - 1]]
     return [head, *([run] for run in kept)]
 
 
-def diagnosis_row(diagnosis: Diagnosis, note: str, width: int) -> list[Run]:
-    """Return the line in exactly ``width`` columns."""
-    text = f" {_SIGNS[diagnosis.weight]} {diagnosis.text}"
-    right = f"{note} " if note else ""
-    room = width - len(text) - 3
-    if not right or room < 12:
-        return [Run(fit(text, width, Charset.BRAILLE), _INKS[diagnosis.weight])]
-    right = fit(right, min(len(right), room), Charset.BRAILLE)
-    return [
-        Run(fit(text, width - len(right), Charset.BRAILLE), _INKS[diagnosis.weight]),
-        Run(right, Ink(Role.FAINT)),
+def diagnosis_row(diagnosis: Diagnosis, note: str, problems: str, width: int) -> list[Run]:
+    """Return the line in exactly ``width`` columns; at its right only the problems are there in any case."""
+    ink = _INKS[diagnosis.weight]
+    at_right = f"{problems} " if problems else ""
+    gap = _GAP if problems else 0
+    room = width - len(at_right) - gap
+    sign = _SIGNS[diagnosis.weight]
+    text, at_length = (f" {sign} {each}" for each in (diagnosis.text, diagnosis.at_length))
+    if diagnosis.at_length and len(at_length) <= room:
+        text = at_length
+    shown_note = _fitting(note, room - len(text) - _INDENT)
+    runs = [
+        Run(fit(text, room - len(shown_note), Charset.BRAILLE), ink),
+        Run(shown_note + " " * gap, Ink(Role.FAINT)),
+        Run(at_right, Ink(Role.STRONG)),
     ]
+    return [run for run in runs if run.text]
+
+
+def _fitting(note: str, room: int) -> str:
+    """The note and a blank in the room that is left, cut if need be; nothing where that says too little."""
+    return fit(f"{note} ", min(len(note) + 1, room), Charset.BRAILLE) if note and room >= _LEAST_NOTE else ""

@@ -47,12 +47,15 @@ class Dots:
         self.plot(np.linspace(start[0], end[0], steps), np.linspace(start[1], end[1], steps), layer)
 
     def rows(self, inks: Sequence[Ink], signs: str) -> list[Row]:
-        """Return the picture; ``inks`` and ``signs`` (for ASCII) are those of layers 0, 1, …; 0 is blank."""
+        """Return the picture; ``inks`` and ``signs`` (for ASCII) are those of layers 0, 1, …; 0 is blank.
+
+        Blank cells take the ink of what stands before them: the fewer runs, the less a terminal is sent.
+        """
         lines, dots = self._layers.shape
         cells = self._layers.reshape(lines // self.down, self.down, dots // self.across, self.across)
         tops = cells.max(axis=(1, 3))
         rows = []
-        for glyphs, layers in zip(self._glyphs(cells, tops, signs), tops.tolist(), strict=True):
+        for glyphs, layers in zip(self._glyphs(cells, tops, signs), _carried_on(tops).tolist(), strict=True):
             row = Row(len(layers), self._charset)
             row.cells = list(glyphs)
             row.inks = [inks[layer] for layer in layers]
@@ -72,3 +75,10 @@ class Dots:
         lines, dots = self._layers.shape
         inside = (x >= 0) & (x < dots) & (y >= 0) & (y < lines)
         return y[inside].astype(np.int64), x[inside].astype(np.int64)
+
+
+def _carried_on(layers: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Return rows of layers in which every 0 is what stands before it."""
+    columns = np.arange(layers.shape[1])
+    last = np.maximum.accumulate(np.where(layers > 0, columns, 0), axis=1)
+    return np.take_along_axis(layers, last, axis=1)

@@ -1,6 +1,7 @@
 """A view of lines that grows at its end and stays there unless the person scrolls away."""
 
 from textual.geometry import Size
+from textual.reactive import var
 
 from cbtui.widgets.inked import Inked
 
@@ -8,11 +9,14 @@ from cbtui.widgets.inked import Inked
 class Following(Inked):
     """Draws its lines itself, those in view only. ``grow`` tells it of more lines."""
 
+    follows: var[bool] = var(True)
+    """Whether it goes on to its end when that moves."""
+
     def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
         super().__init__(id=id)
         self._count = 0
         self._widest = 0
-        self._follows = True
+        self._fitting = False
 
     def beside(self) -> int:
         """Columns that every line takes beside its text."""
@@ -24,6 +28,15 @@ class Following(Inked):
         self._fit_size()
         self.refresh()
 
+    def follow(self) -> None:
+        """Go to the end, and stay there however it moves."""
+        self.follows = True
+        self._go_to_end()
+
+    def stay(self) -> None:
+        """Show the lines that are in view, whatever comes."""
+        self.follows = False
+
     def on_resize(self) -> None:
         """Stay at the end."""
         self._fit_size()
@@ -31,15 +44,19 @@ class Following(Inked):
     def watch_scroll_y(self, old_value: float, new_value: float) -> None:
         """Follow the end if that is where the person has scrolled to."""
         super().watch_scroll_y(old_value, new_value)
-        self._follows = new_value >= self.max_scroll_y
+        if not self._fitting:
+            self.follows = new_value >= self.max_scroll_y
 
     def _fit_size(self) -> None:
-        follows = self._follows
+        self._fitting = True
         size = Size(self._widest + self.beside(), self._count)
         if size != self.virtual_size:
             # Assigning it would lay out the whole screen anew for every line.
             self.set_reactive(Following.virtual_size, size)
             self._scroll_update(size)
-        if follows:
-            self.scroll_to(y=self.max_scroll_y, animate=False, immediate=True, force=True)
-            self._follows = True
+        if self.follows:
+            self._go_to_end()
+        self._fitting = False
+
+    def _go_to_end(self) -> None:
+        self.scroll_to(y=self.max_scroll_y, animate=False, immediate=True, force=True)

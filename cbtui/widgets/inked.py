@@ -1,8 +1,11 @@
 """A scrolling view whose lines are drawn in inks, one by one as they come into view."""
 
+from collections.abc import Sequence
+
 from rich.style import Style
 from textual.scroll_view import ScrollView
 
+from cbtui.colour_themes import palette_of
 from cbtui.theme import Ink, style_of
 
 
@@ -26,7 +29,7 @@ class Inked(ScrollView):
         """Return the style of an ink on the view's background."""
         if ink not in self._inks:
             ground = self.background_colors[1].hex6.lower()
-            self._inks[ink] = style_of(ink, self.app.current_theme.dark, ground)
+            self._inks[ink] = style_of(ink, palette_of(self.app.current_theme), ground)
         return self._inks[ink]
 
     def in_class(self, component: str) -> Style:
@@ -35,3 +38,9 @@ class Inked(ScrollView):
             style = self.get_component_rich_style(component) if component else self.rich_style
             self._classes_drawn[component] = style
         return self._classes_drawn[component]
+
+    def copy(self, lines: Sequence[str]) -> None:
+        """Put lines into the terminal's clipboard (OSC 52, which works over ssh), and say how many."""
+        if lines:
+            self.app.copy_to_clipboard("\n".join(lines))
+            self.notify(f"copied {len(lines)} line{'' if len(lines) == 1 else 's'}")

@@ -7,7 +7,8 @@ from textual.events import Click
 from textual.geometry import Size
 
 from cbtui.actions import Action, Scope, actions_of, method_of, signs_of, target_of, together
-from cbtui.theme import Charset, Ink, Role, Run
+from cbtui.keymap import keymap_of
+from cbtui.theme import GLYPHS, Charset, Ink, Role, Run
 from cbtui.widgets.painted import Painted
 
 _KEY = Ink(Role.STRONG)
@@ -43,6 +44,10 @@ class KeyBar(Painted):
         self._scope = scope
         self.changed()
 
+    def working(self, labels: Sequence[str]) -> list[Action]:
+        """Return the actions with some labels that have a meaning now."""
+        return [action for action in self._working() if action.label in labels]
+
     def rows(self, size: Size) -> Sequence[Sequence[Run]]:
         """Paint the keys."""
         return [key_row(self._entries(size.width), size.width)]
@@ -58,8 +63,12 @@ class KeyBar(Painted):
             start += entry.width
 
     def _entries(self, width: int) -> list[Entry]:
+        return choose(entries(self._working(), self._charset), width - 1)
+
+    def _working(self) -> list[Action]:
+        """The actions that have a meaning now, with the keys in force."""
         working = [action for action in actions_of(self._scope) if self._works(action)]
-        return choose(entries(working, self._charset), width - 1)
+        return keymap_of(self.app).of(working)
 
     def _works(self, action: Action) -> bool:
         return self.screen.check_action(*method_of(action)) is not False
@@ -68,6 +77,12 @@ class KeyBar(Painted):
 def entries(actions: Iterable[Action], charset: Charset) -> list[Entry]:
     """Return what the bar says of some actions."""
     return [Entry(signs_of(group, charset), group[0].label, group) for group in together(actions, "label")]
+
+
+def hint(actions: Iterable[Action], charset: Charset) -> str:
+    """Return what the frame of a widget says of some actions: ``zoom < >``, parted by dots."""
+    between = f" {GLYPHS[charset].between} "
+    return between.join(f"{entry.label} {entry.keys}" for entry in entries(actions, charset))
 
 
 def key_row(shown: Iterable[Entry], width: int) -> list[Run]:

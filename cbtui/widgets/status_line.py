@@ -29,7 +29,7 @@ class Status:
     """What the line tells.
 
     ``back`` is how long before the end the moment on screen lies, 0 for live; ``recorded`` how many events
-    have been recorded, None if nothing is being recorded.
+    have been recorded, None if nothing is being recorded, ``unrecorded`` how many came too fast for that.
     """
 
     title: str
@@ -41,6 +41,7 @@ class Status:
     dropped: int
     lost: int
     recorded: int | None = None
+    unrecorded: int = 0
 
 
 def status_of(title: str, run: LiveRun, playhead: Playhead, usual_executor: str) -> Status:
@@ -57,6 +58,7 @@ def status_of(title: str, run: LiveRun, playhead: Playhead, usual_executor: str)
         dropped=timeline.dropped(at),
         lost=timeline.lost,
         recorded=run.recorded,
+        unrecorded=run.unrecorded,
     )
 
 
@@ -69,7 +71,7 @@ def _pace(run: LiveRun) -> str:
 class StatusLine(Painted):
     """Shows a status."""
 
-    status: reactive[Status | None] = reactive(None)
+    status: reactive[Status | None] = reactive(None, repaint=False)
 
     def rows(self, size: Size) -> Sequence[Sequence[Run]]:
         """Paint the line."""
@@ -88,7 +90,7 @@ def status_row(status: Status, width: int) -> list[Run]:
     time = Run(f"t {status.at / 1e9:.3f} s", _STRONG)
     executor = Run(status.executor, _PLAIN)
     losses = _losses(status)
-    recording = [] if status.recorded is None else [Run(f"REC {status.recorded:,}", _WARN), _GAP]
+    recording = _recording(status)
     whole = len(title.text) + 2
     for parts, least in (
         ([state, pace, _GAP, time, _GAP, executor, _GAP, *recording, *losses], whole),
@@ -118,6 +120,13 @@ _STATES = {
     State.REPLAY_STANDS: Run("‖ REPLAY", _STRONG),
     State.REPLAY_PLAYS: Run("▶ REPLAY", _STRONG),
 }
+
+
+def _recording(status: Status) -> list[Run]:
+    if status.recorded is None:
+        return []
+    lost = f", lost {status.unrecorded:,}" if status.unrecorded else ""
+    return [Run(f"REC {status.recorded:,}{lost}", _WARN), _GAP]
 
 
 def _losses(status: Status) -> list[Run]:

@@ -2,22 +2,28 @@
 
 from collections.abc import Iterator, Sequence
 
+from rich.cells import cell_len
 from textual.events import Click
 from textual.geometry import Size
 from textual.message import Message
 from textual.reactive import reactive
 
 from cbtui.actions import PANES
-from cbtui.theme import Ink, Role, Run
+from cbtui.theme import Charset, Ink, Role, Run
+from cbtui.widgets.cells import fit
 from cbtui.widgets.painted import Painted
 
 _LINE = Ink(Role.FAINT)
+_NOTE = Ink(Role.TEXT)
+_BETWEEN = " · "
 
 
 class Tabs(Painted):
     """Names the panes with their numbers, the one that is shown in brackets."""
 
-    current: reactive[str] = reactive(PANES[0])
+    current: reactive[str] = reactive(PANES[0], repaint=False)
+    note: reactive[str] = reactive("", repaint=False)
+    """What the pane that is shown says of itself, the weightiest first; stands at the right."""
 
     class Picked(Message):
         """A pane was clicked."""
@@ -32,11 +38,16 @@ class Tabs(Painted):
         for pane, text in _labels(self.current):
             shown = pane == self.current
             runs.append(Run(text, Ink(Role.STRONG if shown else Role.TEXT)))
-        taken = sum(len(run.text) for run in runs)
-        return [[*runs, Run("─" * (size.width - taken), _LINE)]]
+        room = max(0, size.width - sum(len(run.text) for run in runs))
+        note = _shortened(self.note, room - 2)
+        return [[*runs, Run("─" * (room - cell_len(note)), _LINE), Run(note, _NOTE)]]
 
     def watch_current(self) -> None:
         """Show another one in brackets."""
+        self.changed()
+
+    def watch_note(self) -> None:
+        """Say something else of the pane."""
         self.changed()
 
     def on_click(self, event: Click) -> None:
@@ -46,6 +57,15 @@ class Tabs(Painted):
             if start <= event.x < start + len(text):
                 self.post_message(self.Picked(pane))
             start += len(text)
+
+
+def _shortened(note: str, room: int) -> str:
+    """Return a note with as many of its parts as there is room for, the first one cut off if need be."""
+    parts = note.split(_BETWEEN)
+    while len(parts) > 1 and cell_len(_BETWEEN.join(parts)) > room:
+        parts.pop()
+    text = _BETWEEN.join(parts)
+    return f" {fit(text, min(cell_len(text), room), Charset.BRAILLE)} " if text and room > 0 else ""
 
 
 def title_of(pane: str) -> str:

@@ -268,6 +268,10 @@ class Timeline:
         """The velocity command in force: the latest at or before ``at``."""
         return self._run.velocities.latest(at)
 
+    def commands(self, window: Window) -> Sequence[ev.VelocityCommanded]:
+        """The velocity commands that the robot got in the window."""
+        return self._run.velocities.within(window)
+
     def trail(self, window: Window) -> Sequence[ev.RobotMoved]:
         """Where the robot was in the window."""
         return self._run.robot.within(window)

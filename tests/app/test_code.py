@@ -4,8 +4,9 @@ import pytest
 from textual.app import App, ComposeResult
 
 from cbtui.widgets.code import CodeView
+from cbtui.widgets.code.files import SourceFiles
 from cbtui.widgets.code.highlight import Kind, highlight
-from cbtui.widgets.code.marks import Doing, Marked, Marks
+from cbtui.widgets.code.marks import Doing, Marked, marks_at
 from lessons.catalogue import lessons
 from lessons.lesson import Lesson
 from sim.trace.timeline import Timeline
@@ -40,7 +41,8 @@ def sleeper(file: str = "node.py") -> tuple[Run, Timeline]:
 
 
 def marked(path: Path, timeline: Timeline, at: float) -> list[Marked]:
-    return Marks(path).at(timeline, ns(at))
+    files = SourceFiles(path)
+    return marks_at(timeline, ns(at), files).get(files.main, [])
 
 
 @pytest.mark.parametrize("lesson", lessons(), ids=lambda lesson: lesson.id)

@@ -1,11 +1,22 @@
 import pytest
 
-from cbtui.concurrency import Concurrency
+from cbtui.findings import Told, Watch
 from cbtui.live_run import LiveRun
 from cbtui.playhead import Playhead
-from cbtui.widgets.diagnosis import Diagnosis, Weight, call_note, diagnose, executor_label, verdict
+from cbtui.widgets.diagnosis import (
+    Diagnosis,
+    Weight,
+    call_note,
+    diagnose,
+    executor_label,
+    verdict,
+    with_worst,
+)
 from cbtui.widgets.diagnosis_line import diagnosis_row, diagnosis_rows
+from sim.diagnosis import RULES, Explanation, Finding
+from sim.diagnosis import Weight as RuleWeight
 from sim.engine.setup import ProgramSetup, RunSetup
+from sim.trace.concurrency import Concurrency
 from sim.trace.events import Reason, Severity
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
@@ -45,8 +56,9 @@ def verdict_of(live: LiveRun, playhead: Playhead | None = None) -> Diagnosis:
 
 
 def test_the_longest_wait_is_named_with_its_reason() -> None:
+    told = "odom_callback waits 8.9 s: group A is held by timer_callback"
     assert said(shared_group_run(), 12.9) == Diagnosis(
-        "odom_callback waits 8.9 s: group A is held by timer_callback; 1 more waits", Weight.TROUBLE
+        told, Weight.TROUBLE, at_length=f"{told}; 1 more waits"
     )
 
 
@@ -163,19 +175,20 @@ def test_executors_are_written_as_code_would_make_them() -> None:
 
 @pytest.mark.parametrize("width", [80, 100, 140])
 @pytest.mark.parametrize("note", ["", "/motor_power replied success=True"])
-def test_the_line_is_as_wide_as_the_screen(width: int, note: str) -> None:
-    runs = diagnosis_row(said(shared_group_run(), 12.9), note, width)
+@pytest.mark.parametrize("problems", ["", "12 problems · d"])
+def test_the_line_is_as_wide_as_the_screen(width: int, note: str, problems: str) -> None:
+    runs = diagnosis_row(said(shared_group_run(), 12.9), note, problems, width)
     assert sum(len(run.text) for run in runs) == width
 
 
 def test_the_note_gives_way_to_the_diagnosis() -> None:
-    runs = diagnosis_row(Diagnosis("w" * 70, Weight.TROUBLE), "/motor_power replied success=True", 80)
+    runs = diagnosis_row(Diagnosis("w" * 70, Weight.TROUBLE), "/motor_power replied success=True", "", 80)
     assert "motor_power" not in "".join(run.text for run in runs)
 
 
 def test_a_sentence_that_stays_is_shown_whole_on_several_lines() -> None:
     sentence = "the run is over: " + "word " * 30 + "press r to run again"
-    rows = diagnosis_rows(Diagnosis(sentence, Weight.TROUBLE, stays=True), "a note", 80)
+    rows = diagnosis_rows(Diagnosis(sentence, Weight.TROUBLE, stays=True), "a note", "", 80)
     shown = ["".join(run.text for run in row) for row in rows]
     assert len(shown) == 3
     assert {len(line) for line in shown} == {80}
@@ -183,4 +196,78 @@ def test_a_sentence_that_stays_is_shown_whole_on_several_lines() -> None:
 
 
 def test_a_sentence_of_the_moment_keeps_to_one_line() -> None:
-    assert len(diagnosis_rows(Diagnosis("word " * 60, Weight.TROUBLE), "", 80)) == 1
+    assert len(diagnosis_rows(Diagnosis("word " * 60, Weight.TROUBLE), "", "", 80)) == 1
+
+
+def told_of(run: Run, until: float) -> tuple[Told, ...]:
+    watch = Watch(timeline_of(run, until))
+    watch.look()
+    return watch.told
+
+
+def line(diagnosis: Diagnosis, width: int, note: str = "", problems: str = "7 problems · d") -> str:
+    return "".join(run.text for run in diagnosis_row(diagnosis, note, problems, width))
+
+
+def test_a_moment_that_is_well_tells_of_the_runs_worst_problem() -> None:
+    told = with_worst(said(shared_group_run(), 3.0), told_of(shared_group_run(), 15.0))
+    what = "timer_callback slept or worked for 10.0 s in group A"
+    assert told.weight is Weight.TROUBLE
+    assert told.text.startswith(f"at 4.0 s: {what}")
+    assert told.at_length.startswith(f"long callback among sensors at 4.0 s: {what}")
+
+
+def test_a_moment_that_is_not_well_is_told_of_itself() -> None:
+    problems = told_of(shared_group_run(), 15.0)
+    for moment in (12.9, 4.4):
+        assert with_worst(said(shared_group_run(), moment), problems) == said(shared_group_run(), moment)
+
+
+def test_how_a_run_ended_and_how_to_go_on_is_told_whatever_went_wrong() -> None:
+    ended = shared_group_run()
+    ended.over(15.0, "its program returned", failed=False)
+    moment = verdict_of(live_run(ended, 15.0))
+    assert with_worst(moment, told_of(ended, 15.0)) is moment
+
+
+def test_a_good_run_is_told_as_it_was() -> None:
+    moment = said(split_groups_run(), 12.0)
+    assert with_worst(moment, told_of(split_groups_run(), 20.0)) is moment
+
+
+def test_a_problem_of_the_whole_run_is_told_without_a_time() -> None:
+    rule = next(rule for rule in RULES if rule.id == "qos-mismatch")
+    found = Told(
+        Finding(rule, 0, 1), RuleWeight.PROBLEM, Explanation("scan hears nothing", "why", "cure", None)
+    )
+    told = with_worst(Diagnosis("nothing waits", Weight.FINE), [found])
+    assert (told.text, told.at_length) == ("scan hears nothing", "qos mismatch: scan hears nothing")
+
+
+def test_the_line_says_at_narrow_and_wide_what_fits() -> None:
+    waits = said(shared_group_run(), 12.9)
+    assert line(waits, 80) == (
+        " ! odom_callback waits 8.9 s: group A is held by timer_callback  7 problems · d "
+    )
+    assert line(waits, 100) == (
+        " ! odom_callback waits 8.9 s: group A is held by timer_callback; 1 more waits        7 problems · d "
+    )
+    assert line(waits, 140, note="/motor_power replied success=True").endswith(
+        "waits            /motor_power replied success=True   7 problems · d "
+    )
+
+
+def test_the_number_of_problems_is_there_however_long_the_sentence() -> None:
+    long = Diagnosis("w" * 200, Weight.TROUBLE)
+    assert line(long, 80) == f" ! {'w' * 59}…  7 problems · d "
+    assert line(long, 80, note="/motor_power replied success=True").endswith("…  7 problems · d ")
+
+
+def test_a_sentence_that_stays_leaves_room_for_the_number_of_problems() -> None:
+    sentence = "the run is over: " + "word " * 30 + "press r to run again"
+    rows = diagnosis_rows(Diagnosis(sentence, Weight.FINE, stays=True), "", "7 problems · d", 80)
+    shown = ["".join(run.text for run in row) for row in rows]
+    assert {len(each) for each in shown} == {80}
+    assert shown[0].endswith("  7 problems · d ")
+    words = " ".join([shown[0].removesuffix("  7 problems · d "), *shown[1:]]).replace("✓", " ").split()
+    assert " ".join(words) == sentence

@@ -3,13 +3,16 @@
 import errno
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
+from itertools import count
 from pathlib import Path
 
 import pytest
 from mcap.writer import Writer
+from textual.app import App
 from textual.pilot import Pilot
 
 from cbtui import live_recording
+from cbtui.app import CbtuiApp
 from cbtui.live_recording import unused_name
 from sim.engine.commands import KeepContents
 from sim.trace.recording import Recording, read
@@ -83,15 +86,31 @@ async def test_a_stretch_is_recorded_with_all_that_was_there_when_it_began(folde
 
 
 async def test_leaving_ends_the_recording_cleanly(folder: Path) -> None:
-    async with console() as (_, pilot):
+    async with console() as (app, pilot):
         await press(pilot, "R", "q")
+        while not app.saved:
+            await pilot.pause()
+        (path,) = folder.iterdir()
+        count = sum(map(len, recorded(folder).batches()))
+        assert app.saved == [f"Recorded {count:,} events in {path.name}"]
+        assert app.saved[0] in messages(app)
     assert recorded(folder).damage is None
 
 
 async def test_quitting_the_console_ends_the_recording_cleanly(folder: Path) -> None:
-    async with console() as (_, pilot):
+    async with console() as (app, pilot):
         await press(pilot, "R", "ctrl+q")
     assert recorded(folder).damage is None
+    assert app.saved[0].startswith("Recorded ")
+
+
+def test_what_was_saved_is_said_once_more_when_the_console_is_gone(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    app = CbtuiApp()
+    monkeypatch.setattr(App, "run", lambda _: app.saved.append("Recorded 41,204 events in run.mcap"))
+    app.run()
+    assert capsys.readouterr().err == "Recorded 41,204 events in run.mcap\n"
 
 
 async def test_the_end_of_the_run_ends_the_recording_and_says_so(folder: Path) -> None:
@@ -109,6 +128,7 @@ async def test_another_run_is_not_recorded(folder: Path) -> None:
     async with console() as (app, pilot):
         await press(pilot, "R", "t", "2")
         assert len(app.engines.sessions) == 2
+        assert any(text.startswith("Recorded ") for text in messages(app))
         assert "REC " not in lines_of(app)[0]
         assert recorded(folder).damage is None
 
@@ -133,8 +153,11 @@ async def test_a_disk_that_fills_up_ends_the_recording_and_not_the_run(
     async with console() as (app, pilot):
         await press(pilot, "R")
         monkeypatch.setattr(Writer, "add_message", fill_up)
-        app.engines.latest.play(ns(6.0))
-        await settle(pilot)
+        for seconds in count(6):
+            app.engines.latest.play(ns(seconds))
+            await settle(pilot)
+            if len(app.engines.latest.commands) > 1:
+                break
         assert app.engines.latest.commands == [KeepContents(wanted=True), KeepContents(wanted=False)]
         (path,) = folder.iterdir()
         assert f"The recording {path.name} is not whole: No space left on device" in messages(app)

@@ -1,8 +1,8 @@
 import pytest
 from textual.app import App, ComposeResult
 
-import cbtui.widgets.log as log_module
-from cbtui.widgets.log import LogView, line_of
+import cbtui.widgets.log.lines as log_module
+from cbtui.widgets.log import LogLines, line_of
 from sim.trace.events import Logged, Printed, Severity
 from sim.trace.timeline import Timeline
 from tests.app.pictures import lines_of
@@ -11,11 +11,11 @@ from tests.support.builder import Run, ns
 
 class LogOnly(App[None]):
     def compose(self) -> ComposeResult:
-        yield LogView()
+        yield LogLines()
 
     @property
-    def view(self) -> LogView:
-        return self.query_one(LogView)
+    def view(self) -> LogLines:
+        return self.query_one(LogLines)
 
 
 def long_log(lines: int) -> Timeline:

@@ -1,14 +1,18 @@
 import subprocess
 import sys
+from pathlib import Path
 
+import msgspec
 import pytest
 
 from cbtui.app import CbtuiApp
 from cbtui.screens.help import HelpScreen
 from cbtui.screens.lesson import LessonScreen
-from cbtui.screens.menu import LessonList, MenuScreen
+from cbtui.screens.menu import MenuScreen
+from cbtui.widgets.choices import Choices
 from cbtui.widgets.key_bar import KeyBar
 from lessons.catalogue import lessons
+from lessons.lesson import Lesson
 from tests.app.pictures import lines_of, text_of
 from tests.support.console import NARROW, WIDE
 from tests.support.fake_session import FakeEngines
@@ -26,25 +30,36 @@ def opened(app: CbtuiApp) -> str | None:
 
 
 @pytest.mark.parametrize("size", [NARROW, WIDE])
-async def test_the_menu_shows_every_lesson_with_what_it_is_made_of(size: tuple[int, int]) -> None:
+async def test_the_menu_shows_every_lesson_under_its_unit(size: tuple[int, int]) -> None:
     app = menu()
     async with app.run_test(size=size):
         lines = lines_of(app)
         for lesson in lessons():
-            (line,) = (line for line in lines if f" {lesson.number}  {lesson.title} " in line)
+            assert len([line for line in lines if f" {lesson.number}  {lesson.title} " in line]) == 1
+            assert all(word in text_of(app) for word in f"Unit {lesson.unit}".split())
+
+
+async def test_a_wide_menu_shows_in_its_list_what_every_lesson_is_made_of() -> None:
+    app = menu()
+    async with app.run_test(size=WIDE):
+        for lesson in lessons():
+            (line,) = (line for line in lines_of(app) if f" {lesson.number}  {lesson.title} " in line)
             assert lesson.executor in line
             assert lesson.groups in line
-            assert any(f"Unit {lesson.unit}" in line for line in lines)
 
 
 @pytest.mark.parametrize("size", [NARROW, WIDE])
-async def test_the_menu_tells_what_the_highlighted_lesson_teaches(size: tuple[int, int]) -> None:
+async def test_the_menu_tells_what_the_highlighted_lesson_teaches_and_is_made_of(
+    size: tuple[int, int],
+) -> None:
     app = menu()
     async with app.run_test(size=size) as pilot:
         for lesson in lessons():
             await pilot.pause()
             text = text_of(app)
             assert all(word in text for word in lesson.teaches.split())
+            assert lesson.executor in text
+            assert lesson.groups in text
             await pilot.press("down")
 
 
@@ -74,7 +89,9 @@ async def test_the_number_of_no_lesson_does_nothing() -> None:
 async def test_a_click_opens_a_lesson() -> None:
     app = menu()
     async with app.run_test(size=NARROW) as pilot:
-        await pilot.click(LessonList, offset=(10, 3))
+        row = next(row for row, line in enumerate(lines_of(app)) if lessons()[2].title in line)
+        top = app.screen.query_one(Choices).region.y
+        await pilot.click(Choices, offset=(10, row - top))
         assert opened(app) == lessons()[2].id
 
 
@@ -112,6 +129,62 @@ async def test_the_palette_finds_a_command_of_the_screen() -> None:
         while opened(app) is None:
             await pilot.pause(0.02)
         assert opened(app) == lessons()[4].id
+
+
+def many_lessons() -> tuple[Lesson, ...]:
+    return tuple(
+        msgspec.structs.replace(
+            lessons()[0], id=f"lesson-{number}", number=number, title=f"Title {number}", unit=f"{number // 7}"
+        )
+        for number in range(1, 28)
+    )
+
+
+@pytest.mark.parametrize("size", [NARROW, WIDE])
+async def test_a_list_that_is_too_long_goes_with_the_highlight(
+    size: tuple[int, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("cbtui.app.lessons", many_lessons)
+    app = menu()
+    async with app.run_test(size=size) as pilot:
+        assert "Title 27" not in text_of(app)
+        await pilot.press("up")
+        await pilot.pause()
+        assert "27  Title 27" in text_of(app)
+        await pilot.press("down")
+        await pilot.pause()
+        assert "1  Title 1 " in text_of(app)
+
+
+# progress
+
+
+async def test_a_lesson_that_was_opened_has_a_mark_in_the_next_console_too() -> None:
+    first, second, *_ = lessons()
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        assert f"·  1  {first.title}" in text_of(app)
+        await pilot.press("1", "q")
+        await pilot.pause()
+        assert f"✓  1  {first.title}" in text_of(app)
+    app = menu()
+    async with app.run_test(size=NARROW):
+        text = text_of(app)
+        assert f"✓  1  {first.title}" in text
+        assert f"·  2  {second.title}" in text
+        assert "opened    just now" in text
+
+
+async def test_a_home_that_cannot_be_written_is_told_of_and_nothing_else_changes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "state").write_text("")
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("1", "q", "2", "q")
+        assert [note.severity for note in app._notifications] == ["warning"]
+        assert isinstance(app.screen, MenuScreen)
 
 
 def test_nothing_heavy_is_imported_before_the_menu_is_shown() -> None:

@@ -32,23 +32,109 @@ def test_nothing_lies_before_the_beginning() -> None:
     assert Playhead().moved(-1000, end=20 * SECOND).now(20 * SECOND) == 0
 
 
-@given(st.lists(st.integers(-3, 3)))
-def test_zooming_stays_within_the_known_spans(steps: list[int]) -> None:
+@given(st.integers(0, 10**12), st.lists(st.integers(-3, 3)))
+def test_zooming_stays_within_the_known_spans(end: int, steps: list[int]) -> None:
     playhead = Playhead()
     for step in steps:
-        playhead = playhead.zoomed(step)
+        playhead = playhead.zoomed(step, end)
         assert playhead.span in SPANS
 
 
+def test_a_screen_shows_from_a_millisecond_to_ten_minutes() -> None:
+    assert SPANS[0] == SECOND // 1000
+    assert SPANS[-1] == 600 * SECOND
+    assert list(SPANS) == sorted(set(SPANS))
+
+
 @given(st.integers(0, 10**12), st.lists(st.integers(-40, 40)))
-def test_now_is_always_on_screen_and_never_after_the_end(end: int, moves: list[int]) -> None:
+def test_a_moved_cursor_is_on_screen_and_never_after_the_end(end: int, moves: list[int]) -> None:
     playhead = Playhead()
     for move in moves:
         playhead = playhead.moved(move, end)
-    now, window = playhead.now(end), playhead.window(end)
-    assert 0 <= now <= end
-    assert window.start <= now <= window.end
-    assert window.length == playhead.span
+        now, window = playhead.now(end), playhead.window(end)
+        assert 0 <= now <= end
+        assert window.start <= now <= window.end
+        assert window.length == playhead.span
+
+
+def played(playhead: Playhead, key: str, amount: int, end: int) -> Playhead:
+    """What a key does to a playhead."""
+    match key:
+        case "scrub":
+            return playhead.moved(amount, end)
+        case "pan":
+            return playhead.panned(amount, end)
+        case "zoom":
+            return playhead.zoomed(amount, end)
+        case "seek":
+            return playhead.sought(end * amount // 20, end)
+    return playhead.live()
+
+
+KEYS = st.tuples(st.sampled_from(["scrub", "pan", "zoom", "seek", "live"]), st.integers(-20, 20))
+GROWTH = st.integers(0, 3 * SECOND)
+
+
+@given(st.integers(0, 10**12), st.lists(st.tuples(KEYS, GROWTH), max_size=30))
+def test_whatever_is_pressed_cursor_and_stretch_stay_within_the_run(
+    end: int, keys: list[tuple[tuple[str, int], int]]
+) -> None:
+    playhead = Playhead()
+    for (key, amount), growth in keys:
+        playhead = played(playhead, key, amount, end)
+        window = playhead.window(end)
+        assert 0 <= playhead.now(end) <= end
+        assert 0 <= window.start <= end
+        assert window.length == playhead.span
+        assert not playhead.follows or window.end == max(end, playhead.span)
+        end += growth
+
+
+@given(st.integers(0, 10**12), st.lists(KEYS, max_size=12), st.integers(-20, 20))
+def test_panning_leaves_the_cursor_where_it_is(end: int, keys: list[tuple[str, int]], steps: int) -> None:
+    playhead = Playhead()
+    for key, amount in keys:
+        playhead = played(playhead, key, amount, end)
+    assert playhead.panned(steps, end).now(end) == playhead.now(end)
+
+
+@given(st.integers(0, 10**12), st.lists(KEYS, max_size=12), st.integers(-4, 4))
+def test_zooming_keeps_a_cursor_on_screen_that_was_there(
+    end: int, keys: list[tuple[str, int]], steps: int
+) -> None:
+    playhead = Playhead()
+    for key, amount in keys:
+        playhead = played(playhead, key, amount, end)
+    now, shown = playhead.now(end), playhead.window(end)
+    zoomed = playhead.zoomed(steps, end)
+    after = zoomed.window(end)
+    assert zoomed.now(end) == now
+    if shown.start <= now <= shown.end:
+        assert after.start <= now <= after.end
+
+
+def test_a_stretch_that_was_panned_stands_still_while_the_run_goes_on() -> None:
+    panned = Playhead().panned(-3, 20 * SECOND)
+    assert panned.window(20 * SECOND) == panned.window(30 * SECOND) == Window(7 * SECOND, 17 * SECOND)
+    assert panned.now(30 * SECOND) == 30 * SECOND
+    assert not panned.follows
+
+
+def test_panning_back_to_the_end_follows_it_again() -> None:
+    assert Playhead().panned(-3, 20 * SECOND).panned(3, 20 * SECOND) == Playhead()
+
+
+def test_a_cursor_moves_within_the_stretch_and_takes_it_along_at_its_edges() -> None:
+    end = 60 * SECOND
+    back = Playhead().moved(-5, end)
+    assert (back.now(end), back.window(end)) == (55 * SECOND, Window(50 * SECOND, 60 * SECOND))
+    further = back.moved(-6, end)
+    assert (further.now(end), further.window(end)) == (49 * SECOND, Window(48 * SECOND, 58 * SECOND))
+
+
+def test_a_far_moment_is_shown_in_the_middle() -> None:
+    sought = Playhead().sought(20 * SECOND, 60 * SECOND)
+    assert sought.window(60 * SECOND) == Window(15 * SECOND, 25 * SECOND)
 
 
 def test_a_moment_is_sought_between_the_beginning_and_the_end() -> None:

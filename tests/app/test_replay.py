@@ -90,9 +90,9 @@ async def test_it_can_be_scrubbed_both_ways(tmp_path: Path) -> None:
         assert before is not None
         await press(pilot, "comma")
         assert f"t {before / 1e9:.3f} s" in status(pilot)
-        await press(pilot, "left")
+        await press(pilot, "left_square_bracket")
         assert f"t {before / 1e9 - 1:.3f} s" in status(pilot)
-        await press(pilot, "right", "full_stop")
+        await press(pilot, "right_square_bracket", "full_stop")
         assert f"t {timeline.end / 1e9:.3f} s" in status(pilot)
 
 
@@ -154,7 +154,7 @@ async def test_a_damaged_recording_never_ends_the_console(place: int, tmp_path: 
     content[at : at + 20] = bytes(byte ^ 0xFF for byte in content[at : at + 20])
     path.write_bytes(content)
     async with replayed(read(path)) as (_, pilot):
-        await press(pilot, "left", "comma", "0")
+        await press(pilot, "left_square_bracket", "comma", "0")
         assert "REPLAY" in status(pilot)
 
 

@@ -63,7 +63,7 @@ async def test_a_line_goes_to_the_engine_and_other_keys_do_not_act_while_typing(
 
 async def test_what_lines_wrote_is_shown_with_control_characters_made_visible() -> None:
     async with console() as (app, pilot):
-        await press(pilot, "5")
+        await press(pilot, "6")
         await deliver(app, pilot, SAID)
         text = text_of(app)
         for shown in ("$ ros2 topic list", "/odom", "Unknown topic", "(ended with status 1)"):
@@ -75,7 +75,7 @@ async def test_what_lines_wrote_is_shown_with_control_characters_made_visible() 
 async def test_a_tab_that_a_line_wrote_is_shown_as_blanks() -> None:
     shown = LineSaid(ns(1.0), 1, "float64 x\n\tint32 sec", False)
     async with console() as (app, pilot):
-        await press(pilot, "5")
+        await press(pilot, "6")
         await deliver(app, pilot, [LineGiven(ns(1.0), 1, "ros2 interface show a/msg/B"), shown])
         (first,) = (line for line in lines_of(app) if "float64 x" in line)
         (second,) = (line for line in lines_of(app) if "int32 sec" in line)
@@ -84,7 +84,7 @@ async def test_a_tab_that_a_line_wrote_is_shown_as_blanks() -> None:
 
 async def test_looking_back_shows_what_had_been_written_by_then() -> None:
     async with console() as (app, pilot):
-        await press(pilot, "5")
+        await press(pilot, "6")
         output = app.screen.query_one(ShellOutput)
         output.show(app.lesson_screen.live_run.timeline, 0)
         await deliver(app, pilot, SAID)

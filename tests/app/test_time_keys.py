@@ -66,7 +66,7 @@ async def test_a_comma_looks_back_by_one_event_and_a_full_stop_forward_until_liv
 
 async def test_going_to_a_moment_that_has_passed_looks_back() -> None:
     async with console() as (app, pilot):
-        await press(pilot, "g")
+        await press(pilot, "G")
         assert isinstance(app.screen, MomentScreen)
         await press(pilot, *"3,5", "enter")
         assert "t 3.500 s" in status(app)
@@ -75,7 +75,7 @@ async def test_going_to_a_moment_that_has_passed_looks_back() -> None:
 
 async def test_going_to_a_moment_to_come_lets_the_run_go_on_until_then() -> None:
     async with console() as (app, pilot):
-        await press(pilot, "space", "left", "g", *"14.5", "enter")
+        await press(pilot, "space", "left_square_bracket", "G", *"14.5", "enter")
         assert app.engines.latest.commands == [Pause(), RunUntil(ns(14.5))]
         assert "LIVE" in status(app)
         app.lesson_screen.live_run.take([TimeHalted(ns(14.5), "run until 14.5 s")])
@@ -87,7 +87,7 @@ async def test_going_to_a_moment_to_come_lets_the_run_go_on_until_then() -> None
 
 async def test_what_is_no_moment_is_asked_for_again_and_escape_stays() -> None:
     async with console() as (app, pilot):
-        await press(pilot, "g", *"soon", "enter")
+        await press(pilot, "G", *"soon", "enter")
         assert isinstance(app.screen, MomentScreen)
         assert "Give the seconds as a number" in str(app.screen.query_one("#wrong", Static).render())
         await press(pilot, "escape")
@@ -99,7 +99,7 @@ async def test_a_moment_past_the_end_of_a_run_that_is_over_is_its_end() -> None:
     async with console() as (app, pilot):
         app.engines.latest.end("gone")
         await settle(pilot)
-        await press(pilot, "left", "g", *"99", "enter")
+        await press(pilot, "left_square_bracket", "G", *"99", "enter")
         assert app.engines.latest.commands == []
         assert "t 13.150 s" in status(app)
 

@@ -12,7 +12,7 @@ from statistics import median
 from typing import Any
 
 from sim.ros.interfaces import message
-from tests.benchmarks import exporting, memory, recording, scenes, seeking
+from tests.benchmarks import exporting, memory, recording, scenes, seeking, terminal
 from tests.benchmarks.scenes import MakeExecutor, Scene, multi, pinned, single
 
 NUMBER: Any = message("std_msgs", "Int32")(data=7)
@@ -136,6 +136,7 @@ FIGURES = (
     Figure("reading all of an hour's recording", "ms", 3000, "", lambda n: recording.reading(n) * 1e3, 3600),
     Figure("99 % of seeks in an hour's run", "ms", 5, "", lambda n: seeking.seeking(n) * 1e3, 3600),
     Figure("memory that half an hour adds", "MB", 10, "", memory.added, 1800),
+    Figure("a lesson sent to a terminal", "kB/s", 500, "", terminal.sent, 100),
     Figure("export to perfetto", "s a million", 15, "", exporting.perfetto, MANY_EVENTS),
     Figure("export to chrome", "s a million", 15, "", exporting.chrome, MANY_EVENTS),
     Figure("export to csv", "s a million", 15, "", exporting.csv, MANY_EVENTS),

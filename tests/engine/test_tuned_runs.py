@@ -97,7 +97,8 @@ def test_callbacks_that_there_are_not_are_told_of_at_the_end() -> None:
     )
     assert [notice.text for notice in run.timeline.notices] == [
         "no callback is named odom; there are odom_callback, scan_callback, timer_callback",
-        "no callback is named odom_callback in /other; there are odom_callback, scan_callback, timer_callback",
+        "no callback is named odom_callback in /other; "
+        "there are odom_callback, scan_callback, timer_callback",
         "no timer callback is named odom_callback; there is timer_callback",
     ]
     assert isinstance(run.events[-1], RunEnded)

@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from lessons.catalogue import ROOT, UnknownLesson, find, lessons
-from lessons.lesson import Lesson
+from lessons.lesson import Lesson, read_lesson
 
 every_lesson = pytest.mark.parametrize("lesson", lessons(), ids=lambda lesson: lesson.id)
 
@@ -25,7 +25,8 @@ def test_the_lessons_stand_in_teaching_order() -> None:
 
 
 def test_the_lessons_are_numbered_without_a_gap() -> None:
-    assert [lesson.number for lesson in lessons()] == list(range(1, len(lessons()) + 1))
+    written = [read_lesson(lesson.folder).number for lesson in lessons()]
+    assert written == [lesson.number for lesson in lessons()] == list(range(1, len(lessons()) + 1))
 
 
 def test_every_lesson_folder_is_in_the_catalogue() -> None:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from lessons.lesson import BadLesson, Lesson, Try, read_lesson
+from lessons.lesson import BadLesson, Lesson, Setting, Try, number_after, read_lesson
 
 WHOLE = """\
 id = "two-cooks"
@@ -33,6 +33,29 @@ text = "Call for the cook."
 Kitchen = Callable[[str], Path]
 
 
+COURSE = """
+[[prediction]]
+question = "Two cooks, one stove: who cooks?"
+answers = ["Both", "One after the other"]
+right = 1
+because = "A stove is for one."
+shown = "who_cooks"
+
+[run]
+seconds = 12
+calls = [2.5]
+lines = [[3, "ros2 topic list"]]
+
+[exercise]
+asks = "Let both cook."
+hints = ["Look at the stoves.", "There is one.", "Take two."]
+
+[diagnoses]
+starter = ["group-starvation"]
+"""
+"""What a lesson with a question and an exercise has besides."""
+
+
 @pytest.fixture
 def kitchen(tmp_path: Path) -> Kitchen:
     """Return a function that makes a complete lesson folder with the given lesson.toml."""
@@ -42,7 +65,8 @@ def kitchen(tmp_path: Path) -> Kitchen:
         folder.mkdir()
         (folder / "lesson.toml").write_text(toml, encoding="utf-8")
         (folder / "guide.md").write_text("# Two cooks, très chauds\n", encoding="utf-8")
-        (folder / "node.py").write_text("", encoding="utf-8")
+        for name in ("node.py", "starter.py", "solution.py", "checks.py"):
+            (folder / name).write_text("", encoding="utf-8")
         return folder
 
     return make
@@ -66,6 +90,19 @@ def test_a_lesson_holds_what_its_file_says(kitchen: Kitchen) -> None:
     assert lesson.folder == folder
     assert lesson.node_path == folder / "node.py"
     assert lesson.guide == "# Two cooks, très chauds\n"
+
+
+def test_a_lesson_names_the_numbers_that_can_be_changed(kitchen: Kitchen) -> None:
+    setting = '[[setting]]\nname = "wait"\nargument = "-wait"\nunit = "s"\nleast = 0\nmost = 9\n'
+    lesson = read_lesson(kitchen(WHOLE + setting))
+    assert lesson.settings == (Setting(name="wait", argument="-wait", unit="s", least=0, most=9),)
+
+
+@pytest.mark.parametrize(
+    ("name", "number"), [("-wait", 5.0), ("-threads", 2.0), ("-loud", None), ("2", None), ("-no", None)]
+)
+def test_the_number_of_an_argument_stands_after_it(name: str, number: float | None) -> None:
+    assert number_after(name, ["-wait", "5.0", "-threads", "2", "-loud"]) == number
 
 
 def test_a_lesson_cannot_be_changed(kitchen: Kitchen) -> None:
@@ -125,6 +162,21 @@ def test_changing_the_arguments_handed_out_changes_no_lesson(kitchen: Kitchen) -
         ),
         ('"node.py"', '"chef.py"', "the field 'setup.node' is wrong: there is no file 'chef.py' beside it"),
         (
+            "[[try]]",
+            '[[setting]]\nname = "wait"\nargument = "-w"\nunit = "s"\nleast = 0\nmost = 9\n[[try]]',
+            "the setting 'wait' needs -w and a number in arguments",
+        ),
+        (
+            "[[try]]",
+            '[[setting]]\nname = "wait"\nargument = "-wait"\nunit = "s"\nleast = 9\nmost = 9\n[[try]]',
+            "the field 'setting[0]' is wrong: the least 9 is not below the most 9",
+        ),
+        (
+            "[[try]]",
+            '[[setting]]\nname = "wait"\nargument = "-wait"\nleast = 0\nmost = 9\n[[try]]',
+            "the field 'setting[0].unit' is missing",
+        ),
+        (
             ', "2", "-loud"]',
             "]",
             "the field 'setup' is wrong: -threads stands last in arguments and has no number after it",
@@ -172,3 +224,108 @@ def test_a_lesson_without_a_guide_is_refused(kitchen: Kitchen) -> None:
     folder = kitchen(WHOLE)
     (folder / "guide.md").unlink()
     assert sentence_about(folder) == "there is no file 'guide.md' beside it"
+
+
+def test_a_lesson_holds_its_question_its_run_and_its_exercise(kitchen: Kitchen) -> None:
+    folder = kitchen(WHOLE.replace("[setup]", 'task = "Call twice."\n[setup]') + COURSE)
+    lesson = read_lesson(folder)
+    assert lesson.task == "Call twice."
+    (prediction,) = lesson.predictions
+    assert (prediction.answers[prediction.right], prediction.shown) == ("One after the other", "who_cooks")
+    assert (lesson.run.seconds, lesson.run.calls, lesson.run.lines) == (12, (2.5,), ((3, "ros2 topic list"),))
+    assert lesson.exercise is not None
+    assert lesson.exercise.hints[2] == "Take two."
+    assert (lesson.starter_path, lesson.solution_path) == (folder / "starter.py", folder / "solution.py")
+    assert lesson.file_name == "two_cooks.py"
+    assert lesson.diagnoses.starter == ("group-starvation",)
+
+
+def test_a_lesson_without_all_that_has_a_run_and_nothing_to_mend(kitchen: Kitchen) -> None:
+    lesson = read_lesson(kitchen(WHOLE))
+    assert (lesson.predictions, lesson.exercise, lesson.starter_path, lesson.explanation) == (
+        (),
+        None,
+        None,
+        "",
+    )
+    assert lesson.run.seconds == 30
+
+
+def test_what_is_for_after_the_run_lies_beside_the_guide(kitchen: Kitchen) -> None:
+    folder = kitchen(WHOLE)
+    (folder / "explain.md").write_text("# Why\n\nÇa chauffe.\n", encoding="utf-8")
+    assert read_lesson(folder).explanation == "# Why\n\nÇa chauffe.\n"
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "sentence"),
+    [
+        (
+            "right = 1",
+            "right = 2",
+            "the field 'prediction[0]' is wrong: right is 2, and the last answer has the number 1",
+        ),
+        ("right = 1", "right = -1", "the field 'prediction[0].right' is wrong: expected `int` >= 0"),
+        (
+            '"One after the other"',
+            '"Both"',
+            "the field 'prediction[0]' is wrong: two answers are the same",
+        ),
+        (
+            ', "One after the other"',
+            "",
+            "the field 'prediction[0].answers' is wrong: expected `array` of length >= 2",
+        ),
+        ('shown = "who_cooks"', "", "the field 'prediction[0].shown' is missing"),
+        (
+            "calls = [2.5]",
+            "calls = [12.5]",
+            "the field 'run' is wrong: a call at 12.5 s comes when the run of 12 s is over",
+        ),
+        (
+            "lines = [[3,",
+            "lines = [[12,",
+            "the field 'run' is wrong: a line at 12 s comes when the run of 12 s is over",
+        ),
+        (
+            "lines = [[3,",
+            'lines = [["3",',
+            "the field 'run.lines[0][0]' is wrong: expected `float`, got `str`",
+        ),
+        ("seconds = 12", "seconds = 0", "the field 'run.seconds' is wrong: expected `float` > 0.0"),
+        ("seconds = 12", "seconds = 12\nspeed = 2", "the field 'run.speed' is not known"),
+        (
+            ', "Take two."',
+            "",
+            "the field 'exercise.hints' is wrong: expected `array` of length 3, got 2",
+        ),
+        (
+            "[exercise]",
+            '[exercise]\nstarter = "begin.py"',
+            "the field 'exercise.starter' is wrong: there is no file 'begin.py' beside it",
+        ),
+        ("starter = [", "learner = [", "the field 'diagnoses.learner' is not known"),
+    ],
+)
+def test_a_bad_field_of_a_question_or_an_exercise_is_named_with_its_fault(
+    kitchen: Kitchen, right: str, wrong: str, sentence: str
+) -> None:
+    assert right in COURSE
+    assert sentence_about(kitchen(WHOLE + COURSE.replace(right, wrong, 1))) == sentence
+
+
+def test_a_third_question_is_one_too_many(kitchen: Kitchen) -> None:
+    question = COURSE[: COURSE.index("[run]")]
+    sentence = sentence_about(kitchen(WHOLE + question * 3))
+    assert sentence == "the field 'prediction' is wrong: expected `array` of length <= 2"
+
+
+def test_diagnoses_of_a_starter_need_an_exercise(kitchen: Kitchen) -> None:
+    sentence = sentence_about(kitchen(WHOLE + '[diagnoses]\nstarter = ["group-starvation"]\n'))
+    assert sentence == "diagnoses of a starter or a solution need an exercise"
+
+
+def test_a_question_needs_the_checks_that_answer_it(kitchen: Kitchen) -> None:
+    folder = kitchen(WHOLE + COURSE)
+    (folder / "checks.py").unlink()
+    assert sentence_about(folder) == "there is no file 'checks.py' beside it"

@@ -11,6 +11,8 @@ from collections.abc import Sequence
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
+from cbtui.colour_themes import STANDARD
+from cbtui.keymap import Keymap
 from cbtui.screens.lesson import LessonScreen
 from sim.trace.events import AnyEvent
 from tests.support.builder import ns
@@ -24,10 +26,18 @@ class RecordedConsole(CbtuiApp):
     """The console with a lesson open whose engine has played ``events`` up to ``seconds``."""
 
     def __init__(
-        self, lesson: str, events: Sequence[AnyEvent], seconds: float, charset: str = "braille"
+        self,
+        lesson: str,
+        events: Sequence[AnyEvent],
+        seconds: float,
+        charset: str = "braille",
+        keys: Keymap | None = None,
+        theme: str = STANDARD,
     ) -> None:
         self.engines = FakeEngines(events, ns(seconds))
-        super().__init__(charset=charset, start_lesson=lesson, open_session=self.engines)
+        super().__init__(
+            charset=charset, start_lesson=lesson, keys=keys, theme=theme, open_session=self.engines
+        )
         self.animation_level = "none"
 
     @property
@@ -41,5 +51,6 @@ async def settle(pilot: Pilot[None]) -> None:
     """Let everything that was delivered or pressed reach the screen; to be ``run_before`` of a snapshot."""
     await pilot.pause()
     if isinstance(pilot.app.screen, LessonScreen):
+        pilot.app.screen.look_for_findings()
         pilot.app.screen.draw()
     await pilot.pause()

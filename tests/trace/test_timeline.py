@@ -79,6 +79,8 @@ def test_every_kind_of_event_is_understood() -> None:
     assert robot.front == inf
     assert timeline.robot(ns(2.35) - 1) is None
     assert timeline.command(ns(2.4)) == ev.VelocityCommanded(ns(2.4), 0.08, -0.2)
+    assert [each.t for each in timeline.commands(Window(ns(2.4), timeline.end))][:1] == [ns(2.4)]
+    assert list(timeline.commands(Window(0, ns(2.4)))) == []
     assert timeline.published_at(7) == ns(1.5)
 
 

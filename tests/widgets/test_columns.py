@@ -5,9 +5,11 @@ from dataclasses import dataclass
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cbtui.widgets.lanes.columns import MOST_A_COLUMN, Columns, stretches
+from cbtui.widgets.lanes.columns import MOST_A_COLUMN, Columns, Instants, stretches
 from cbtui.widgets.lanes.scale import Scale
 from sim.trace.model import Window
+from sim.trace.timeline import Timeline
+from tests.support.runs import Run, ns
 
 S = 1_000_000_000
 
@@ -121,3 +123,51 @@ def test_neighbouring_columns_of_one_interval_are_one_stretch() -> None:
     store = Store(Stay(S, 4 * S), Stay(4 * S, 6 * S, 2), Stay(8 * S, 8 * S))
     found = stretches(Columns(store.query).over(Scale(0, S, 10), 20 * S))
     assert [(one.first, one.after) for one in found] == [(1, 4), (4, 6), (8, 9)]
+
+
+def test_instants_are_found_in_their_columns_and_the_settled_past_is_asked_for_once() -> None:
+    asked: list[Window] = []
+    at = [ns(0.05), ns(3.0), ns(3.05), ns(7.2)]
+
+    def query(window: Window) -> list[int]:
+        asked.append(window)
+        return [each for each in at if window.start <= each < window.end]
+
+    instants = Instants(query)
+    assert instants.over(Scale(0, ns(0.1), 50), ns(4.0)) == [0, 30]
+    assert instants.over(Scale(30, ns(0.1), 50), ns(8.0)) == [0, 42]
+    assert asked[-1].start == ns(3.9)
+
+
+@given(
+    st.lists(st.integers(0, 400), max_size=30), st.lists(st.tuples(st.integers(0, 300), st.integers(1, 9)))
+)
+def test_instants_are_the_same_whatever_was_asked_before(
+    at: list[int], scales: list[tuple[int, int]]
+) -> None:
+    times = sorted(ns(each / 10) for each in at)
+
+    def query(window: Window) -> list[int]:
+        return [each for each in times if window.start <= each < window.end]
+
+    used, edge = Instants(query), ns(41)
+    for first, tenths in scales:
+        scale = Scale(first, ns(tenths / 10), 40)
+        assert used.over(scale, edge) == Instants(query).over(scale, edge)
+
+
+def test_a_column_of_what_lasted_is_summed_up_anew_when_it_has_ended() -> None:
+    timeline, scale = Timeline(), Scale(0, ns(0.1), 50)
+    run = Run()
+    thread = run.thread("MainThread")
+    timer = run.timer(run.exclusive(run.node("/n")), "tick_callback", 1.0)
+    run.callback(timer, thread, 0.5, 2.5)
+    timeline.extend(event for event in run.events if event.t < ns(3))
+    columns = Columns(lambda window: timeline.spans_on(thread, window))
+    before = columns.over(scale, ns(2.9))[10]
+    assert before is not None
+    assert before.top.end is None
+    timeline.extend(event for event in run.events if event.t >= ns(3))
+    after = columns.over(scale, ns(3.4))[10]
+    assert after is not None
+    assert after.top.end == ns(3.0)

@@ -6,9 +6,9 @@ from hypothesis import strategies as st
 from rich.cells import cell_len
 
 from cbtui.theme import Charset, Role
-from cbtui.widgets.lanes import Painter, wanted_rows
-from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLane, ThreadLane
-from sim.trace.events import Reason
+from cbtui.widgets.lanes import Painter, Selection, wanted_rows
+from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLane, ThreadLane, all_lanes
+from sim.trace.events import MessageDropped, Reason
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.runs import (
@@ -38,8 +38,8 @@ def test_one_shared_group_shows_everybody_waiting_for_the_timer() -> None:
         """
         |MainThread  │▎▎▎▎▎A timer_callback ███████████████████████████▌│  90% busy      |
         |A exclusive │·····── held by timer_callback on MainThread ─────│ held, 3 wait   |
-        |  odom      │▎▎▎▎▎╱╱ waits 8.9 s: A held by timer_callback ╱╱╱╱│ 10/10! lost 168|
-        |  scan      │▎▎▎▎▎╱╱ waits 8.9 s: A held by timer_callback ╱╱╱╱│ 10/10! lost 168|
+        |  odom      │▎▎▎▎▎╱╱ waits 8.9 s: A held by timer_callback ××××│ 10/10! lost 168|
+        |  scan      │▎▎▎▎▎╱╱ waits 8.9 s: A held by timer_callback ××××│ 10/10! lost 168|
         |  timer     │▎ ▎  ── runs 8.9 s on MainThread ─────────────────│ late 8.4 s     |
         |seconds     │     4         6         8         10         now▲│ 200 ms/col     |
         """
@@ -63,8 +63,8 @@ def test_the_same_in_ascii_has_no_other_glyph() -> None:
         """
         |MainThread  ||||||A timer_callback ###########################||  90% busy      |
         |A exclusive |.....-- held by timer_callback on MainThread -----| held, 3 wait   |
-        |  odom      ||||||// waits 8.9 s: A held by timer_callback ////| 10/10! lost 168|
-        |  scan      ||||||// waits 8.9 s: A held by timer_callback ////| 10/10! lost 168|
+        |  odom      ||||||// waits 8.9 s: A held by timer_callback ****| 10/10! lost 168|
+        |  scan      ||||||// waits 8.9 s: A held by timer_callback ****| 10/10! lost 168|
         |  timer     || |  -- runs 8.9 s on MainThread -----------------| late 8.4 s     |
         |seconds     |     4         6         8         10         now^| 200 ms/col     |
         """
@@ -210,6 +210,18 @@ def test_what_lies_after_the_cursor_is_drawn_later_in_ink() -> None:
     assert {run.ink.later for run in bars} == {False, True}
 
 
+def test_a_call_after_the_cursor_that_has_not_ended_lasts_to_the_end_of_what_is_known() -> None:
+    run = Run()
+    node = run.node("/node")
+    group = run.exclusive(node)
+    timer = run.timer(group, "tick", 1.0)
+    run.timer(group, "other", 1.0)
+    run.start(timer, run.thread("MainThread"), 4.0)
+    run.printed("still at it", 9.0)
+    picture = Painter().text(told(run), Window(0, ns(10)), ns(2), 140, 7)
+    assert "runs 5.0 s on MainThread" in picture
+
+
 def test_a_short_window_still_shows_the_last_call_that_reaches_into_it() -> None:
     picture = Painter().text(told(shared_group_run()), Window(ns(9), ns(9.001)), ns(9.001), 80, 7)
     assert "A timer_callback ███" in picture
@@ -251,3 +263,92 @@ def test_the_rows_wanted_are_the_rows_painted() -> None:
     for timeline in RUNS:
         wanted = wanted_rows(timeline, "/motor_power")
         assert len(Painter(service="/motor_power").paint(timeline, *last(10, 10), 80, 50).rows) == wanted
+
+
+def blocked_run() -> Run:
+    """A callback that stands still in a call of /x from 2 to 8 s of the 9 s that it runs."""
+    run, thread, a, _ = small_run()
+    call = run.call("/x", 2.0, 8.0, entity=a)
+    run.blocked(call, "/x", thread, a, 2.0, 8.0)
+    run.callback(a, thread, 0.2, 9.0)
+    run.stop(10.0)
+    return run
+
+
+def test_a_thread_that_stands_still_in_a_call_is_hatched_and_says_in_which() -> None:
+    assert Painter().text(told(blocked_run()), *last(10, 10.0), 80, 8).splitlines()[0] == drawn(
+        "|MainThread  │ A a_callback ░░ blocked in call /x ░░░░██████    │  90% busy      |"
+    )
+
+
+def test_a_bars_name_is_kept_where_its_thread_stands_still_at_once() -> None:
+    run, thread, a, _ = small_run()
+    run.callback(a, thread, 0.2)
+    run.blocked(run.call("/x", 0.2, entity=a), "/x", thread, a, 0.2)
+    text = Painter(Charset.ASCII).text(told(run, 10.0), Window(0, ns(10)), ns(10), 80, 8)
+    assert "A a" in text.splitlines()[0]
+    assert "%% blocked in call /x %%" in text.splitlines()[0]
+
+
+def test_lost_messages_are_crosses_on_the_lane_of_their_queue() -> None:
+    run, _, a, _ = small_run()
+    for at in (1.0, 1.5, 5.0, 5.1):
+        run.add(MessageDropped(ns(at), a, 10, 1))
+    run.stop(10.0)
+    assert Painter().text(told(run), *last(10, 10.0), 80, 8).splitlines()[2] == drawn(
+        "|  a         │     × ×                 ×                        │ 10/10! lost 4  |"
+    )
+
+
+def test_keys_of_the_person_are_marked_on_the_axis_in_words_where_there_is_room() -> None:
+    run, _, _, _ = small_run()
+    run.command("reset the world", 3.0)
+    run.command("speed x2", 3.2)
+    run.stop(10.0)
+    axis = Painter().text(told(run), *last(10, 10.0), 80, 8).splitlines()[-1]
+    assert "▲▲speed x2" in axis
+
+
+@pytest.mark.parametrize(("start", "sign"), [(6.0, "◂now"), (1.0, "now▸")])
+def test_an_axis_tells_on_which_side_the_cursor_is(start: float, sign: str) -> None:
+    timeline = told(shared_group_run())
+    window = Window(ns(start), ns(start + 2))
+    axis = Painter().text(timeline, window, ns(4.5), 80, 7).splitlines()[-1]
+    assert sign in axis
+
+
+def test_the_selected_lane_is_pointed_at_and_its_bar_stands_out() -> None:
+    timeline = told(shared_group_run(), until=12.9)
+    lane = ThreadLane(timeline.threads[1])
+    bar = timeline.spans_on(1, Window(ns(5), ns(6)))[0]
+    picture = Painter().paint(timeline, *last(10, 12.9), 80, 8, Selection(lane, bar))
+    assert picture.text.splitlines()[0].startswith("MainThread  ▸▎▎▎▎▎A timer_callback")
+    selected = "".join(run.text for run in picture.rows[0] if run.ink.selected)
+    assert selected.startswith("A timer_callback ███")
+    assert not any(run.ink.selected for row in picture.rows[1:] for run in row)
+
+
+def test_the_selected_lane_and_its_neighbours_are_shown_however_few_there_is_room_for() -> None:
+    timeline = told(shared_group_run(), until=12.9)
+    every = all_lanes(timeline, "/motor_power")
+    for place, lane in enumerate(every):
+        shown = Painter(service="/motor_power").paint(timeline, *last(10, 12.9), 80, 5, Selection(lane)).lanes
+        assert set(every[max(0, place - 1) : place + 2]) <= set(shown)
+        assert list(shown) == [each for each in every if each in shown]
+
+
+def test_a_millisecond_and_ten_minutes_fill_a_screen() -> None:
+    timeline = told(shared_group_run())
+    near = Painter().text(timeline, Window(ns(4.0025), ns(4.0035)), ns(4.0035), 80, 7)
+    assert near == drawn(
+        """
+        |MainThread  │A timer_callback █████████████████████████████████│ 100% busy      |
+        |A exclusive │── held by timer_callback on MainThread ──────────│ held, 1 wait   |
+        |  odom      │                         ╱╱ A held by timer ╱╱╱╱╱╱│ queue 1/10     |
+        |  scan      │                                                 ┊│ queue 0/10     |
+        |  timer     │── runs 3.5 ms on MainThread ─────────────────────│ on time        |
+        |seconds     │     4.0026    4.0028    4.0030    4.0032     now▲│ 20 us/col      |
+        """
+    )
+    far = Painter().text(timeline, Window(0, ns(600)), ns(30), 80, 7)
+    assert "12.0 s/col" in far

@@ -1,13 +1,14 @@
-"""What each callback in a source file is doing at a moment: it runs, waits and why, or ran just now."""
+"""What each callback in the source files is doing at a moment: it runs, waits and why, or ran just now."""
 
+from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
-from pathlib import Path
 
 from cbtui.theme import GLYPHS, Charset
+from cbtui.widgets.code.files import SourceFile, SourceFiles
 from cbtui.widgets.durations import duration
-from cbtui.widgets.lanes.bars import short_thread
+from cbtui.widgets.lanes.names import short_thread
 from sim.trace.events import EntityId
 from sim.trace.model import Entity, Moment, Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
@@ -35,6 +36,7 @@ class Marked:
     ``texts`` says so, in fewer and fewer words; ``number`` and ``letter`` are those of its group.
     """
 
+    entity: EntityId
     first_line: int
     last_line: int
     doing: Doing
@@ -44,39 +46,29 @@ class Marked:
     running_long: bool = False
 
 
-class Marks:
-    """Finds the callbacks of one source file in a timeline."""
+def marks_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[SourceFile, list[Marked]]:
+    """Return the callbacks of each file at a moment, in the order of their lines.
 
-    def __init__(self, path: Path) -> None:
-        self._name = path.name
-        self._real = path.resolve()
-        self._ours: dict[str, bool] = {}
-
-    def at(self, timeline: Timeline, at: Nanoseconds) -> list[Marked]:
-        """Return the file's callbacks at a moment; one that several entities share is marked once."""
-        moment = timeline.moment(at)
-        found: dict[int, Marked] = {}
-        for entity in timeline.entities.values():
-            if not self._is_ours(entity.file):
-                continue
-            marked = _marked(entity, timeline, moment)
-            known = found.get(entity.first_line)
-            if known is None or known.doing.value < marked.doing.value:
-                found[entity.first_line] = marked
-        return [found[line] for line in sorted(found)]
-
-    def _is_ours(self, file: str) -> bool:
-        """Tell whether a file is the one; a name without a folder is taken for it."""
-        if file not in self._ours:
-            path = Path(file.replace("\0", ""))
-            self._ours[file] = file == self._name or (path.is_absolute() and path.resolve() == self._real)
-        return self._ours[file]
+    A callback that several entities share is marked once, with what the most telling of them is doing.
+    """
+    moment = timeline.moment(at)
+    found: defaultdict[SourceFile, dict[int, Marked]] = defaultdict(dict)
+    for entity in timeline.entities.values():
+        file = files.of(entity.file)
+        if file is None:
+            continue
+        marked = _marked(entity, timeline, moment)
+        known = found[file].get(entity.first_line)
+        if known is None or known.doing.value < marked.doing.value:
+            found[file][entity.first_line] = marked
+    return {file: [marks[line] for line in sorted(marks)] for file, marks in found.items()}
 
 
 def _marked(entity: Entity, timeline: Timeline, moment: Moment) -> Marked:
     group = timeline.groups[entity.group]
     doing, texts, since = _doing(entity, timeline, moment)
     return Marked(
+        entity.id,
         entity.first_line,
         entity.last_line,
         doing,
@@ -92,7 +84,8 @@ def _doing(entity: Entity, timeline: Timeline, moment: Moment) -> tuple[Doing, t
     if running:
         threads = _threads(running, timeline)
         lasted = duration(moment.at - running[0].start)
-        return Doing.RUNS, (f"▶ {threads} {lasted}", f"▶ {threads}", f"▶ {lasted}"), running[0].start
+        texts = (f"▶ {threads} {lasted}", f"▶ {threads}", f"▶ {lasted}")
+        return Doing.RUNS, (*_standing_still(running, moment, lasted), *texts), running[0].start
     wait = moment.waiting.get(entity.id)
     if wait is not None:
         waited = f"{GLYPHS[Charset.BRAILLE].hatch[wait.reason]} waits {duration(moment.at - wait.since)}"
@@ -105,6 +98,15 @@ def _doing(entity: Entity, timeline: Timeline, moment: Moment) -> tuple[Doing, t
 
 def _running(entity: EntityId, moment: Moment) -> Iterator[Span]:
     return (span for span in moment.running.values() if span.entity == entity)
+
+
+def _standing_still(running: Sequence[Span], moment: Moment, lasted: str) -> Iterator[str]:
+    """Yield what a callback says that runs and stands still in ``Client.call``."""
+    for span in running:
+        blocked = moment.blocked.get(span.thread)
+        if blocked is not None and blocked.entity == span.entity:
+            yield f"▶ {lasted}: stands in the call of {blocked.service}"
+            return
 
 
 def _threads(spans: Sequence[Span], timeline: Timeline) -> str:

@@ -1,24 +1,34 @@
 """The source on screen: scrolls, follows what runs, and draws only the lines in view."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import ClassVar
+from types import MappingProxyType
+from typing import ClassVar, NamedTuple
 
 from rich.segment import Segment
+from rich.style import Style
+from textual.binding import BindingType
+from textual.events import Click
 from textual.geometry import Size
+from textual.message import Message
+from textual.reactive import var
 from textual.strip import Strip
 
+from cbtui.actions import Scope, bindings_of
 from cbtui.theme import GLYPHS, Charset, Ink, Role
 from cbtui.widgets.cells import fit, visible
-from cbtui.widgets.code.highlight import Kind, Word, highlight
-from cbtui.widgets.code.marks import Doing, Marked, Marks
+from cbtui.widgets.code.files import SourceFile, SourceFiles
+from cbtui.widgets.code.highlight import Kind, Word
+from cbtui.widgets.code.marks import Doing, Marked, marks_at
 from cbtui.widgets.inked import Inked
-from sim.trace.events import Reason
-from sim.trace.model import Nanoseconds
+from sim.trace.events import EntityId, Reason
+from sim.trace.model import Entity, Nanoseconds
 from sim.trace.timeline import Timeline
 
 _GUTTER = 7
 _LEAST_CODE = 20
+
+_CURSOR = "code--cursor"
 
 _INKS = {Doing.IDLE: Role.FAINT, Doing.RAN: Role.FAINT, Doing.WAITS: Role.WARN, Doing.RUNS: Role.LABEL}
 _EDGES = {
@@ -27,62 +37,239 @@ _EDGES = {
 }
 
 
-class CodeView(Inked):
-    """A node's source; beside each callback stands which thread runs it, or that it waits and why."""
+class Place(NamedTuple):
+    """A line of a file, counted from 1."""
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = {kind.value for kind in Kind}
+    path: Path
+    line: int
+
+
+class CodeView(Inked):
+    """The learner's source; beside each callback stands which thread runs it, or that it waits and why.
+
+    Of several files it shows the one whose callback was asked for, or has begun to run for a while. ``note``
+    names it, and says when it is another on disk by now; ``over`` is whether the run is, which could then be
+    run again. A line may be picked with the arrow keys or the pointer: enter, or a click, tells which
+    callback it belongs to.
+    """
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = {*(kind.value for kind in Kind), _CURSOR}
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.CODE)]
+
+    note: var[str] = var("")
+    over: var[bool] = var(False)
+    picked: var[int | None] = var(None)
+    """The picked line, counted from 1."""
+
+    class EditorWanted(Message):
+        """The person wants to open the file in an editor."""
+
+    class CallbackPicked(Message):
+        """The person picked a line of ``entity``'s callback, and goes on at its lane if ``leaves`` is set."""
+
+        def __init__(self, entity: EntityId, leaves: bool) -> None:
+            super().__init__()
+            self.entity = entity
+            self.leaves = leaves
 
     def __init__(
         self,
         path: Path,
         source: str | None = None,
+        recorded: Mapping[str, str] = MappingProxyType({}),
         *,
         id: str | None = None,  # noqa: A002 Textual's name for it
     ) -> None:
         super().__init__(id=id)
-        text = path.read_text(encoding="utf-8", errors="replace") if source is None else source
-        self._lines = highlight(text)
-        self._marks = Marks(path)
-        self._marked: list[Marked] = []
-        self._long: tuple[int, ...] = ()
+        self._files = SourceFiles(path, source, recorded)
+        self._file = self._files.main
+        self._marks: dict[SourceFile, list[Marked]] = {}
+        self._long: set[tuple[Path, int]] = set()
         self._placed = False
-        widest = max((_length(line) for line in self._lines), default=0)
-        self.virtual_size = Size(_GUTTER + widest, len(self._lines))
+        self._changed = False
+        self._open(self._file)
 
     def show(self, timeline: Timeline, now: Nanoseconds) -> None:
         """Mark what the callbacks do at a moment; go to one that has begun to run for a while."""
-        marked = self._marks.at(timeline, now)
-        if marked == self._marked:
+        marks = marks_at(timeline, now, self._files)
+        if marks == self._marks:
             return
-        before, self._marked = self._marked, marked
-        for line, count in changed_lines(before, marked):
+        before, self._marks = self._marked, marks
+        for line, count in changed_lines(before, self._marked):
             self.refresh_lines(line - 1, count)
         self._follow()
+
+    def show_callback(self, entity: Entity) -> None:
+        """Pick a callback's first line and bring it into view, if its source can be had."""
+        self.show_line(entity.file, entity.first_line)
+
+    def show_line(self, path: str, line: int) -> None:
+        """Pick a line, counted from 1, and bring it into view, if the file can be had."""
+        file = self._files.of(path)
+        if file is not None:
+            self._open(file)
+            self._placed = True
+            self.picked = line
+            self.call_after_refresh(self._bring_into_view, line - 1)
+            self.refresh()
+
+    @property
+    def place(self) -> Place:
+        """The picked line, or else the first one in view."""
+        return Place(self._file.path, self.picked or self.scroll_offset.y + 1)
+
+    # files
+
+    def read_anew(self) -> None:
+        """Show the files as they are now: what is to run next is what lies on disk."""
+        self._files.read_anew()
+        self._marks, self._long = {}, set()
+        self._open(self._files.of(str(self._file.path.absolute())) or self._files.main)
+
+    def look_at_disk(self) -> None:
+        """Note whether the file is another on disk by now."""
+        self._changed = self._file.has_changed()
+        self._name_it()
+
+    def watch_over(self) -> None:
+        """Say something else of a file that has changed."""
+        self._name_it()
+
+    def _open(self, file: SourceFile) -> None:
+        if file.path != self._file.path:
+            self.scroll_to(y=0, animate=False, immediate=True, force=True)
+        if file is not self._file:
+            self._file = file
+            self._changed = False
+            self.picked = None
+        self.virtual_size = Size(_GUTTER + file.widest, len(file.lines))
+        self._name_it()
+        self.refresh()
+
+    def _name_it(self) -> None:
+        changed = " · changed; r runs it again" if self.over else " · changed on disk"
+        self.note = visible(self._file.path.name, Charset.BRAILLE) + (changed if self._changed else "")
+
+    @property
+    def _marked(self) -> list[Marked]:
+        """The callbacks of the file that is shown."""
+        return self._marks.get(self._file, [])
+
+    # the picked line
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Offer what has a meaning at the picked line."""
+        match action:
+            case "pick_callback" | "copy":
+                return self.picked is not None and self._marked_at(self.picked) is not None
+            case "let_go":
+                return self.picked is not None
+        return super().check_action(action, parameters)
+
+    def action_line_above(self) -> None:
+        """Go to the line above."""
+        self._pick_beside(-1)
+
+    def action_line_below(self) -> None:
+        """Go to the line below."""
+        self._pick_beside(1)
+
+    def action_pick_callback(self) -> None:
+        """Tell which callback the line belongs to, to go on at its lane."""
+        self._tell_callback(leaves=True)
+
+    def action_open_here(self) -> None:
+        """Ask for an editor."""
+        self.post_message(self.EditorWanted())
+
+    def action_copy(self) -> None:
+        """Copy the callback at the line."""
+        marked = None if self.picked is None else self._marked_at(self.picked)
+        if marked is not None:
+            self.copy(self._file.text.splitlines()[marked.first_line - 1 : marked.last_line])
+
+    def action_let_go(self) -> None:
+        """Have no line picked, and go again to what runs."""
+        self.picked = None
+        self.refresh()
+
+    def on_click(self, event: Click) -> None:
+        """Pick the line under the pointer, and tell which callback it belongs to."""
+        offset = event.get_content_offset(self)
+        line = 0 if offset is None else self.scroll_offset.y + offset.y + 1
+        if 0 < line <= len(self._file.lines):
+            self._pick(line)
+            self._tell_callback(leaves=False)
+
+    def _tell_callback(self, leaves: bool) -> None:
+        marked = None if self.picked is None else self._marked_at(self.picked)
+        if marked is not None:
+            self.post_message(self.CallbackPicked(marked.entity, leaves))
+
+    def _pick_beside(self, step: int) -> None:
+        line = self.scroll_offset.y + 1 if self.picked is None else self.picked + step
+        self._pick(max(1, min(line, len(self._file.lines))))
+
+    def _pick(self, line: int) -> None:
+        self.picked = line
+        top = self.scroll_offset.y
+        self.scroll_to(y=min(line - 1, max(top, line - self.size.height)), animate=False, force=True)
+        self.refresh()
+
+    # drawing
 
     def render_line(self, y: int) -> Strip:
         """Return one line of the view."""
         number = self.scroll_offset.y + y
         width = self.scrollable_content_region.width
-        if number >= len(self._lines):
+        if number >= len(self._file.lines):
             return Strip.blank(width, self.in_class(""))
         marked = self._marked_at(number + 1)
-        code = Strip([self._segment(word) for word in self._lines[number]])
+        code = Strip([self._segment(word) for word in self._file.lines[number]])
         left = self.scroll_offset.x
         line = Strip([*self._gutter(number + 1, marked), *code.crop(left, left + width - _GUTTER)])
         if marked is None or marked.first_line != number + 1 or marked.doing is Doing.IDLE:
-            return line.adjust_cell_length(width, self.in_class(""))
-        return self._with_mark(line, marked, width)
+            line = line.adjust_cell_length(width, self.in_class(""))
+        else:
+            line = self._with_mark(line, marked, width)
+        return line if self.picked != number + 1 else self._set_off(line)
+
+    def _set_off(self, line: Strip) -> Strip:
+        """Give a line another background; what has one of its own keeps it."""
+        usual, ground = self.in_class("").bgcolor, Style(bgcolor=self.in_class(_CURSOR).bgcolor, bold=True)
+        parts = [
+            Segment(text, style + ground) if style and style.bgcolor == usual else Segment(text, style)
+            for text, style, _ in line
+        ]
+        return Strip(parts, line.cell_length)
 
     def _follow(self) -> None:
-        """Bring a callback into view that runs for a while now and did not before; at first, any."""
-        long = tuple(marked.first_line for marked in self._marked if marked.running_long)
-        begun = [line for line in long if line not in self._long]
-        self._long = long
-        if not self._placed and self._marked:
+        """Go to a callback that runs for a while now and did not before; at first, to any.
+
+        A person who has picked a line is left there. Another file is opened if nothing in this one runs as
+        long.
+        """
+        long = {
+            (file.path, marked.first_line): file
+            for file, marks in self._marks.items()
+            for marked in marks
+            if marked.running_long
+        }
+        begun = {place: file for place, file in long.items() if place not in self._long}
+        self._long = set(long)
+        if not self._placed and self._marks:
             self._placed = True
-            begun = begun or [self._marked[0].first_line]
-        if begun:
-            self.call_after_refresh(self._bring_into_view, begun[0] - 1)
+            file = self._file if self._marked else next(iter(self._marks))
+            begun = begun or {(file.path, self._marks[file][0].first_line): file}
+        if self.picked is not None:
+            return
+        here = [line for (_, line), file in begun.items() if file is self._file]
+        if not here and begun and self._file not in long.values():
+            (_, line), file = next(iter(begun.items()))
+            self._open(file)
+            here = [line]
+        if here:
+            self.call_after_refresh(self._bring_into_view, here[0] - 1)
 
     def _bring_into_view(self, line: int) -> None:
         top, height = self.scroll_offset.y, self.size.height
@@ -129,7 +316,3 @@ def changed_lines(before: Sequence[Marked], after: Sequence[Marked]) -> Iterator
         yield marked.first_line, 1 if alike else marked.last_line - marked.first_line + 1
     for gone in known.values():
         yield gone.first_line, gone.last_line - gone.first_line + 1
-
-
-def _length(line: list[Word]) -> int:
-    return sum(len(word.text) for word in line)

@@ -7,9 +7,12 @@ from cbtui.theme import Glyphs, Ink, Role
 from cbtui.widgets.cells import Row
 from cbtui.widgets.durations import duration
 from cbtui.widgets.lanes.columns import Column, Interval, Stretch, stretches
+from cbtui.widgets.lanes.names import short_thread
+from cbtui.widgets.lanes.scale import Scale
+from cbtui.widgets.lanes.selection import Bar, end_of, start_of
 from cbtui.widgets.lanes.status import is_late, short
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
-from sim.trace.model import Entity, Group, Nanoseconds, Span, Wait
+from sim.trace.model import Blocked, Entity, Group, Nanoseconds, Span, Wait
 from sim.trace.timeline import Timeline
 from sim.trace.words import why_waiting
 
@@ -38,6 +41,33 @@ class Bars:
                 self._seam(row, stretch)
                 self._label(row, stretch, Ink(Role.LABEL, number))
             self._failure(row, stretch)
+
+    def blocked(self, row: Row, columns: Sequence[Column[Blocked] | None]) -> None:
+        """Draw where a thread stands still in a call of a service, beside the name that its bar bears."""
+        for stretch in stretches(columns):
+            if stretch.is_short:
+                continue
+            ink = Ink(Role.HATCH, self._number(stretch.top.entity) if stretch.top.entity else -1)
+            free = [place for place, _ in stretch.places() if row.inks[place].role is not Role.LABEL]
+            for place in free:
+                row.put(place, self.glyphs.blocked, ink)
+            where = f"in call {stretch.top.service}"
+            self._words(row, *_longest_part(free), (f"blocked {where}", where, "blocked"))
+
+    def lost(self, row: Row, places: Sequence[int]) -> None:
+        """Mark the columns in which a queue lost messages, but for words that stand there."""
+        for place in places:
+            if row.inks[place] not in (_WORDS, _WARN):
+                row.put(place, self.glyphs.lost, _WARN)
+
+    def select(self, row: Row, bar: Bar, scale: Scale) -> None:
+        """Make the selected bar stand out."""
+        end = end_of(bar)
+        first = max(0, scale.column_of(start_of(bar)))
+        last = scale.column_of(self.now if end is None else max(start_of(bar), end - 1))
+        row.inks[first : last + 1] = [
+            ink._replace(selected=True) for ink in row.inks[first : max(first, last + 1)]
+        ]
 
     def group(self, row: Row, columns: Sequence[Column[Span] | None], group: Group) -> None:
         """Draw who holds a group: a line for as long as it is held, a point for an instant."""
@@ -113,7 +143,7 @@ class Bars:
 
     def _took(self, interval: Interval) -> str:
         """Return how long something lasts up to the cursor; in all if it begins later."""
-        end = self.now if interval.end is None else interval.end
+        end = self.timeline.end if interval.end is None else interval.end
         if interval.start <= self.now:
             end = min(end, self.now)
         return duration(max(0, end - interval.start))
@@ -128,13 +158,18 @@ class Bars:
         return (full, brief, short(brief))
 
     def _columns(self, row: Row, stretch: Stretch[Span], ink: Ink) -> None:
-        for place, column in stretch.places():
-            side = self.glyphs.right if column.runs_on else self.glyphs.left
-            row.put(place, side[column.eighths], ink)
+        """Draw a stretch as a bar; nothing is drawn there yet."""
+        left, right = self.glyphs.left, self.glyphs.right
+        self._cells(row, stretch, [(right if c.runs_on else left)[c.eighths] for c in stretch.columns], ink)
 
     def _line(self, row: Row, stretch: Stretch[Span], ink: Ink) -> None:
-        for place, column in stretch.places():
-            row.put(place, self.glyphs.double_line if column.at_once > 1 else self.glyphs.line, ink)
+        """Draw a stretch as a line, double where there are several; nothing is drawn there yet."""
+        one, several = self.glyphs.line, self.glyphs.double_line
+        self._cells(row, stretch, [several if c.at_once > 1 else one for c in stretch.columns], ink)
+
+    def _cells(self, row: Row, stretch: Stretch[Span], cells: list[str], ink: Ink) -> None:
+        row.cells[stretch.first : stretch.after] = cells
+        row.inks[stretch.first : stretch.after] = [ink] * len(cells)
 
     def _seam(self, row: Row, stretch: Stretch[Span]) -> None:
         """Part a bar from the one that it follows at once."""
@@ -174,11 +209,6 @@ class Bars:
 
     def _number(self, entity: EntityId) -> int:
         return self.numbers[self.timeline.entities[entity].group]
-
-
-def short_thread(name: str) -> str:
-    """Return a thread's name with the pool's long class name cut to ``Pool``."""
-    return name.replace("ThreadPoolExecutor", "Pool", 1)
 
 
 def _wins(wait: Column[Wait], call: Column[Span] | None) -> bool:

@@ -3,14 +3,16 @@
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Sequence
 from operator import attrgetter
-from typing import Generic, NamedTuple, Protocol, TypeVar
+from typing import Generic, NamedTuple, Protocol, TypeAlias, TypeVar
 
 from cbtui.widgets.lanes.scale import Scale
 from sim.trace.events import EntityId
 from sim.trace.model import Nanoseconds, Window
 
-MOST_A_COLUMN = 16
+MOST_A_COLUMN = 8
 """How many of the intervals that begin in one column are looked at; of more, an even sample."""
+
+_START = attrgetter("start")
 
 _SETTLED_AFTER: Nanoseconds = 100_000_000
 """Threads of a real-clock run report a little out of order: younger columns are summed up anew."""
@@ -31,6 +33,8 @@ class Interval(Protocol):
     def entity(self) -> EntityId:
         """Whose it is."""
 
+
+_Key: TypeAlias = tuple[Nanoseconds, EntityId]
 
 I = TypeVar("I", bound=Interval)  # noqa: E741 the one type variable here, for an interval
 
@@ -78,43 +82,54 @@ class Columns(Generic[I]):
     def __init__(self, query: Callable[[Window], Sequence[I]]) -> None:
         self._query = query
         self._per_column = 0
+        self._edge = 0
         self._settled = 0
         self._kept: dict[int, Column[I] | None] = {}
-        self._told: set[tuple[Nanoseconds, EntityId]] = set()
+        self._lasting: dict[_Key, int] = {}
+        self._told: set[_Key] = set()
 
     def over(self, scale: Scale, edge: Nanoseconds) -> list[Column[I] | None]:
         """Sum up a scale's columns; an interval that still lasts reaches to ``edge``."""
-        if scale.per_column != self._per_column or len(self._kept) > 4 * scale.columns:
+        too_many = len(self._kept) > 4 * scale.columns
+        if scale.per_column != self._per_column or too_many or edge < self._edge:
             self._per_column = scale.per_column
             self._kept.clear()
+            self._lasting.clear()
+        self._edge = edge
         self._forget_what_changed()
+        kept = self._kept
         first = max(scale.first, 0)
         after = min(scale.first + scale.columns, edge // scale.per_column + 1)
-        missing = [number for number in range(first, after) if number not in self._kept]
+        missing = [number for number in range(first, after) if number not in kept]
         fresh = self._summed(missing, edge) if missing else {}
         self._settled = max(0, (edge - _SETTLED_AFTER) // scale.per_column)
-        self._told = self._running_at(self._settled)
-        self._kept.update(
-            (number, column)
-            for number, column in fresh.items()
-            if number < self._settled and (column is None or column.top.end is not None)
-        )
-        return [
-            self._kept[number] if number in self._kept else fresh.get(number)
-            for number in range(scale.first, scale.first + scale.columns)
-        ]
+        for number, column in fresh.items():
+            if number < self._settled:
+                kept[number] = column
+                if column is not None and column.top.end is None:
+                    key = _key(column.top)
+                    self._lasting[key] = min(number, self._lasting.get(key, number))
+        self._told = set(self._running_at(self._settled))
+        columns = list(map(kept.get, range(scale.first, scale.first + scale.columns)))
+        for number, column in fresh.items():
+            columns[number - scale.first] = column
+        return columns
 
     def _forget_what_changed(self) -> None:
-        """Drop kept columns in which something began that was not told when they were summed up.
+        """Drop kept columns in which something began that was not told when they were summed up, or ended.
 
         A wait is often told late: once it is clear that the callback has to wait.
         """
         if not self._kept:
             return
-        new = self._running_at(self._settled) - self._told
-        if new:
-            since = min(new)[0] // self._per_column
+        running = self._running_at(self._settled)
+        ended = [key for key in self._lasting if key not in running or running[key].end is not None]
+        changed = [key[0] // self._per_column for key in running.keys() - self._told]
+        changed += [self._lasting.pop(key) for key in ended]
+        if changed:
+            since = min(changed)
             self._kept = {number: column for number, column in self._kept.items() if number < since}
+            self._lasting = {key: number for key, number in self._lasting.items() if number < since}
 
     def _summed(self, numbers: Sequence[int], edge: Nanoseconds) -> dict[int, Column[I] | None]:
         """Sum up all columns from the first of ascending numbers to the last."""
@@ -122,13 +137,12 @@ class Columns(Generic[I]):
         found = self._query(Window(numbers[0] * length, (numbers[-1] + 1) * length))
         if not found:
             return dict.fromkeys(numbers)
-        by_start = attrgetter("start")
         summed: dict[int, Column[I] | None] = {}
-        high = bisect_left(found, numbers[0] * length, key=by_start)
+        low = high = bisect_left(found, numbers[0] * length, key=_START)
         running = self._running(numbers[0] * length)
         for number in range(numbers[0], numbers[-1] + 1):
             window = Window(number * length, (number + 1) * length)
-            low, high = high, bisect_left(found, window.end, lo=high, key=by_start)
+            low, high = high, _first_from(found, window.end, high, high - low)
             step = max(1, -(-(high - low) // MOST_A_COLUMN))
             begun = [found[place] for place in range(low, high, step)]
             summed[number] = _column(running, begun, step, window, edge) if running or begun else None
@@ -141,8 +155,48 @@ class Columns(Generic[I]):
     def _running(self, at: Nanoseconds) -> list[I]:
         return [one for one in self._query(Window(at, at + 1)) if one.start < at]
 
-    def _running_at(self, number: int) -> set[tuple[Nanoseconds, EntityId]]:
-        return {(one.start, one.entity) for one in self._running(number * self._per_column)}
+    def _running_at(self, number: int) -> "dict[_Key, I]":
+        return {_key(one): one for one in self._running(number * self._per_column)}
+
+
+def _key(interval: Interval) -> "_Key":
+    return interval.start, interval.entity
+
+
+class Instants:
+    """In which columns of one lane something happened that takes no time; the settled past is kept."""
+
+    def __init__(self, query: Callable[[Window], Sequence[Nanoseconds]]) -> None:
+        self._query = query
+        self._per_column = 0
+        self._known_to = 0
+        self._known_from = 0
+        self._marked: set[int] = set()
+
+    def over(self, scale: Scale, edge: Nanoseconds) -> list[int]:
+        """Return the places of the columns in which something happened up to ``edge``, in order."""
+        first, after = scale.first, min(scale.first + scale.columns, edge // scale.per_column + 1)
+        apart = first < self._known_from or first > self._known_to
+        if scale.per_column != self._per_column or apart or len(self._marked) > 4 * scale.columns:
+            self._per_column = scale.per_column
+            self._known_from = self._known_to = first
+            self._marked = set()
+        length = scale.per_column
+        fresh = self._query(Window(max(0, self._known_to * length), max(0, after * length)))
+        self._marked.update(at // length for at in fresh)
+        self._known_to = max(self._known_to, min(after, (edge - _SETTLED_AFTER) // length))
+        return [place for place in range(after - first) if first + place in self._marked]
+
+
+def _first_from(found: Sequence[I], at: Nanoseconds, low: int, likely: int) -> int:
+    """Return the place of the first interval that begins at ``at`` or later; none before ``low`` does.
+
+    ``likely`` is how far off it may be: neighbouring columns have much alike, and every look at an interval
+    has to make it first.
+    """
+    near = min(len(found), low + 2 * likely + 2)
+    place = bisect_left(found, at, lo=low, hi=near, key=_START)
+    return place if place < near else bisect_left(found, at, lo=near, key=_START)
 
 
 def _column(
@@ -177,15 +231,13 @@ def _runs_on(interval: Interval, window: Window) -> bool:
 def stretches(columns: Sequence[Column[I] | None]) -> list[Stretch[I]]:
     """Join neighbouring columns that the same interval took most of."""
     found: list[Stretch[I]] = []
+    before: I | None = None
     for place, column in enumerate(columns):
-        if column is None:
-            continue
-        if found and found[-1].after == place and _same(found[-1].top, column.top):
-            found[-1].columns.append(column)
-        else:
-            found.append(Stretch(place, [column], column.top))
+        top = None if column is None else column.top
+        if column is not None and top is not None:
+            if before is not None and (top is before or _key(top) == _key(before)):
+                found[-1].columns.append(column)
+            else:
+                found.append(Stretch(place, [column], top))
+        before = top
     return found
-
-
-def _same(one: Interval, other: Interval) -> bool:
-    return one.start == other.start and one.entity == other.entity

@@ -7,9 +7,11 @@ from functools import partial
 from cbtui.theme import GLYPHS, Charset, Ink, Role, Run
 from cbtui.widgets.cells import Row, fit
 from cbtui.widgets.durations import duration
-from cbtui.widgets.lanes.bars import Bars, short_thread
+from cbtui.widgets.lanes.axis import draw_axis
+from cbtui.widgets.lanes.bars import Bars
 from cbtui.widgets.lanes.calls import Calls, draw_calls
-from cbtui.widgets.lanes.columns import Column, Columns
+from cbtui.widgets.lanes.columns import Column, Columns, Instants
+from cbtui.widgets.lanes.names import entity_name, sole_name, thread_name
 from cbtui.widgets.lanes.rows import (
     GroupLane,
     Lane,
@@ -20,10 +22,11 @@ from cbtui.widgets.lanes.rows import (
     all_lanes,
     choose,
 )
-from cbtui.widgets.lanes.scale import Scale, labels, scale_for
-from cbtui.widgets.lanes.status import Status, short
-from sim.trace.events import EntityKind
-from sim.trace.model import Entity, Group, Moment, Nanoseconds, Span, Wait, Window
+from cbtui.widgets.lanes.scale import Scale, scale_for
+from cbtui.widgets.lanes.selection import Selection
+from cbtui.widgets.lanes.status import Status
+from sim.trace.events import EntityId, EntityKind, ThreadId
+from sim.trace.model import Blocked, Entity, Group, Mark, Moment, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
 FAINT = Ink(Role.FAINT)
@@ -89,26 +92,41 @@ class Painter:
         self.service = service
         self._timeline: Timeline | None = None
         self._spans: dict[tuple[str, int], Columns[Span]] = {}
-        self._waits: dict[int, Columns[Wait]] = {}
+        self._waits: dict[EntityId, Columns[Wait]] = {}
+        self._blocks: dict[ThreadId, Columns[Blocked]] = {}
+        self._losses: dict[EntityId, Instants] = {}
+        self.painted: dict[Lane, tuple[_Sums, list[Run]]] = {}
 
     def text(self, timeline: Timeline, window: Window, now: Nanoseconds, width: int, height: int) -> str:
         """Return the picture of ``paint`` as plain text."""
         return self.paint(timeline, window, now, width, height).text
 
-    def paint(self, timeline: Timeline, window: Window, now: Nanoseconds, width: int, height: int) -> Picture:
+    def paint(
+        self,
+        timeline: Timeline,
+        window: Window,
+        now: Nanoseconds,
+        width: int,
+        height: int,
+        selection: Selection | None = None,
+    ) -> Picture:
         """Paint the lanes of a window, with the cursor at ``now``, in ``width`` x ``height`` cells."""
         if timeline is not self._timeline:
             self._timeline = timeline
             self._spans.clear()
             self._waits.clear()
+            self._blocks.clear()
+            self._losses.clear()
+            self.painted.clear()
         layout = layout_for(max(width, LEAST_WIDTH))
         scale = scale_for(window, layout.columns)
-        moment = timeline.moment(now)
         every = all_lanes(timeline, self.service)
         if width < LEAST_WIDTH:
             return Picture(((Run(" " * width, PLAIN),),) * height, (), layout, scale)
-        lanes = choose(every, height - 1, timeline, scale.window, moment)
-        frame = _Frame(self, timeline, scale, layout, now, moment)
+        lanes = choose(
+            every, height - 1, timeline, scale.window, None if selection is None else selection.lane
+        )
+        frame = _Frame(self, timeline, scale, layout, now, timeline.moment(now), selection)
         rows = [frame.lane(lane) for lane in lanes] if height > 0 else []
         if height > 0:
             rows.append(frame.axis(hidden=len(every) - len(lanes)))
@@ -138,6 +156,30 @@ class Painter:
             self._waits[entity.id] = Columns(partial(timeline.waits_of, entity.id))
         return self._waits[entity.id]
 
+    def blocks(self, thread: ThreadId, timeline: Timeline) -> Columns[Blocked]:
+        """Return the summed-up stretches in which a thread stood still."""
+        if thread not in self._blocks:
+            self._blocks[thread] = Columns(partial(timeline.blocks_on, thread))
+        return self._blocks[thread]
+
+    def losses(self, entity: Entity, timeline: Timeline) -> Instants:
+        """Return when the queue of a callback lost messages."""
+        if entity.id not in self._losses:
+            self._losses[entity.id] = Instants(partial(timeline.losses_of, entity.id))
+        return self._losses[entity.id]
+
+
+@dataclass(frozen=True, slots=True)
+class _Sums:
+    """What a lane shows, column by column. ``lasting`` is how long what still lasts has lasted, in words."""
+
+    scale: Scale
+    calls: list[Column[Span] | None]
+    waits: list[Column[Wait] | None]
+    blocks: list[Column[Blocked] | None]
+    losses: list[int]
+    lasting: tuple[str, ...]
+
 
 class _Frame:
     """One picture while it is painted."""
@@ -150,8 +192,10 @@ class _Frame:
         layout: Layout,
         now: Nanoseconds,
         moment: Moment,
+        selection: Selection | None,
     ) -> None:
         self._painter = painter
+        self._selection = selection
         self._timeline = timeline
         self._scale = scale
         self._layout = layout
@@ -166,38 +210,86 @@ class _Frame:
 
     def lane(self, lane: Lane) -> list[Run]:
         """Paint a lane with its name and status."""
+        sums = self._sums(lane)
+        chosen = self._selection is not None and self._selection.lane == lane
+        runs = self._painted(lane, sums) if chosen or not self._repeats(lane) else self._kept(lane, sums)
+        return self._framed(self._name(lane), runs, self._status.of(lane, self._latest(sums.calls)), chosen)
+
+    def _repeats(self, lane: Lane) -> bool:
+        """Tell whether a lane looks as it did as long as its sums are the same."""
+        if self._now < self._edge:
+            return False
+        match lane:
+            case ServiceLane():
+                return False
+            case MemberLane(entity) | SoleLane(entity):
+                return entity.kind is not EntityKind.SERVICE
+        return True
+
+    def _kept(self, lane: Lane, sums: _Sums) -> list[Run]:
+        """Return a lane as it was painted last, painted anew if it has changed."""
+        before = self._painter.painted.get(lane)
+        if before is not None and before[0] == sums:
+            return before[1]
+        runs = self._painted(lane, sums)
+        self._painter.painted[lane] = (sums, runs)
+        return runs
+
+    def _painted(self, lane: Lane, sums: _Sums) -> list[Run]:
         row = Row(self._layout.columns, self._charset)
-        columns = self._painter.spans(lane, self._timeline).over(self._scale, self._edge)
-        self._draw(row, lane, columns)
-        return self._framed(self._name(lane), row, self._status.of(lane, self._latest(columns)))
+        self._draw(row, lane, sums)
+        selection = self._selection
+        if selection is not None and selection.lane == lane and selection.bar is not None:
+            self._bars.select(row, selection.bar, self._scale)
+        self._show_cursor(row)
+        return row.runs()
 
     def axis(self, hidden: int) -> list[Run]:
         """Paint the time axis; ``hidden`` lanes that had no room are told of at its left."""
         row = Row(self._layout.columns, self._charset)
-        self._mark_now(row)
-        for column, text in labels(self._scale):
-            if row.blank(max(column - 1, 0), column + len(text) + 1):
-                row.write(column, text, FAINT)
-        self._mark_commands(row)
+        draw_axis(row, self._scale, self._now_column, self._commands())
         name = f"+{hidden} lanes" if hidden else "seconds"
         unit = f"{duration(self._scale.per_column)}/col" if self._layout.statuses >= 15 else ""
-        return self._framed([Run(name, FAINT)], row, Run(unit, FAINT))
+        self._show_cursor(row)
+        return self._framed([Run(name, FAINT)], row.runs(), Run(unit, FAINT), chosen=False)
 
     @property
     def _now_column(self) -> int:
         """The cursor's column; the last one when the picture ends exactly there."""
         return self._scale.column_of(self._now - (self._now == self._scale.window.end))
 
-    def _draw(self, row: Row, lane: Lane, columns: list[Column[Span] | None]) -> None:
+    def _sums(self, lane: Lane) -> _Sums:
+        painter, timeline, scale, edge = self._painter, self._timeline, self._scale, self._edge
+        calls = painter.spans(lane, timeline).over(scale, edge)
+        waits: list[Column[Wait] | None] = []
+        blocks: list[Column[Blocked] | None] = []
+        losses: list[int] = []
+        match lane:
+            case ThreadLane(thread):
+                blocks = painter.blocks(thread.id, timeline).over(scale, edge)
+            case MemberLane(entity) | SoleLane(entity):
+                waits = painter.waits(entity, timeline).over(scale, edge)
+                losses = painter.losses(entity, timeline).over(scale, edge)
+        lasting = dict.fromkeys(
+            column.top.start
+            for columns in (calls, waits)
+            for column in columns
+            if column is not None and column.top.end is None
+        )
+        lengths = tuple(duration(self._now - start) for start in lasting)
+        return _Sums(scale, calls, waits, blocks, losses, lengths)
+
+    def _draw(self, row: Row, lane: Lane, sums: _Sums) -> None:
         match lane:
             case ThreadLane():
-                self._bars.thread(row, columns)
+                self._bars.thread(row, sums.calls)
+                self._bars.blocked(row, sums.blocks)
             case GroupLane(group):
-                self._bars.group(row, columns, group)
+                self._bars.group(row, sums.calls, group)
             case MemberLane(entity) | SoleLane(entity):
-                waits = self._painter.waits(entity, self._timeline).over(self._scale, self._edge)
-                self._bars.calls(row, columns, entity)
-                self._bars.waits(row, waits, columns)
+                self._bars.calls(row, sums.calls, entity)
+                self._bars.waits(row, sums.waits, sums.calls)
+                self._bars.lost(row, sums.losses)
                 if entity.kind is EntityKind.SERVICE:
                     draw_calls(row, self._calls.of(entity.name), self._scale, self._edge)
             case ServiceLane(service):
@@ -207,25 +299,13 @@ class _Frame:
         shown = columns[: max(0, self._now_column + 1)]
         return next((column.top for column in reversed(shown) if column is not None), None)
 
-    def _mark_commands(self, row: Row) -> None:
-        """Mark what the person did, but for the calls that a service's lane shows."""
+    def _commands(self) -> list[Mark]:
+        """What the person did, but for the calls that a service's lane shows."""
         shown = {self._scale.column_of(call.sent) for call in self._calls.latest}
-        for mark in self._timeline.marks(self._scale.window):
-            column = self._scale.column_of(mark.at)
-            if mark.kind == "command" and column not in shown and row.inks[column] is not NOW:
-                row.put(column, self._glyphs.up, MARK)
+        marks = self._timeline.marks(self._scale.window)
+        return [m for m in marks if m.kind == "command" and self._scale.column_of(m.at) not in shown]
 
-    def _mark_now(self, row: Row) -> None:
-        column = self._now_column
-        if not 0 <= column < len(row.cells):
-            return
-        if column >= 3:
-            row.write(column - 3, f"now{self._glyphs.now}", NOW)
-        else:
-            row.write(column, f"{self._glyphs.now}now ", NOW)
-
-    def _framed(self, name: list[Run], row: Row, status: Run) -> list[Run]:
-        self._show_cursor(row)
+    def _framed(self, name: list[Run], runs: list[Run], status: Run, chosen: bool) -> list[Run]:
         *before, last = name
         room = self._layout.names - sum(len(run.text) for run in before)
         frame = Run(self._glyphs.frame, FAINT)
@@ -233,8 +313,8 @@ class _Frame:
         return [
             *before,
             Run(fit(last.text, room, self._charset), last.ink),
-            frame,
-            *row.runs(),
+            Run(self._glyphs.forth, MARK) if chosen else frame,
+            *runs,
             frame,
             Run(fit(text, self._layout.statuses, self._charset), status.ink),
         ]
@@ -252,28 +332,19 @@ class _Frame:
     def _name(self, lane: Lane) -> list[Run]:
         match lane:
             case ThreadLane(thread):
-                wide = len(thread.name) < self._layout.names
-                return [Run(thread.name if wide else short_thread(thread.name), PLAIN)]
+                name = thread_name(thread, self._layout.names - 1, self._glyphs.ellipsis)
+                return [Run(name, PLAIN)]
             case GroupLane(group):
                 return [self._letter(group), Run(group.kind.value, PLAIN)]
             case MemberLane(entity):
-                return [Run(f"  {self._entity_name(entity, self._layout.names - 3)}", PLAIN)]
+                return [Run(f"  {entity_name(entity, self._layout.names - 3)}", PLAIN)]
             case SoleLane(entity, group):
-                return [self._letter(group), Run(self._sole_name(entity, group), PLAIN)]
+                return [
+                    self._letter(group),
+                    Run(sole_name(entity, group, self._layout.names - len(group.letter) - 1), PLAIN),
+                ]
             case ServiceLane(service):
                 return [Run(service, PLAIN)]
 
     def _letter(self, group: Group) -> Run:
         return Run(f"{group.letter} ", Ink(Role.LETTER, self._numbers[group.id]))
-
-    def _sole_name(self, entity: Entity, group: Group) -> str:
-        room = self._layout.names - len(group.letter) - 1
-        whole, brief = group.kind.value, group.kind.value[:4]
-        names = (entity.label, short(entity.label))
-        for text in (f"{kind} {name}" for kind in (whole, brief) for name in names):
-            if len(text) <= room:
-                return text
-        return short(entity.label)
-
-    def _entity_name(self, entity: Entity, room: int) -> str:
-        return entity.label if len(entity.label) <= room else short(entity.label)

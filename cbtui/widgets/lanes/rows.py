@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from sim.trace.events import EntityId, EntityKind, GroupId, ThreadId
-from sim.trace.model import Entity, Group, Moment, Nanoseconds, Thread, Window
+from sim.trace.model import Entity, Group, Nanoseconds, Thread, Window
 from sim.trace.timeline import Timeline
 
 HOUSEKEEPING = frozenset(
@@ -77,7 +77,7 @@ def all_lanes(timeline: Timeline, service: str) -> list[Lane]:
         elif members:
             lanes.append(GroupLane(group))
             lanes.extend(MemberLane(member, group) for member in members)
-    called = dict.fromkeys([service, *(call.service for call in timeline.calls)])
+    called = dict.fromkeys([service, *timeline.services_called])
     lanes.extend(ServiceLane(name) for name in called if name and name not in own)
     return lanes
 
@@ -101,46 +101,66 @@ def ever_ran(timeline: Timeline, thread: ThreadId, at: Nanoseconds) -> bool:
     return bool(timeline.spans_on(thread, Window(0, at + 1)))
 
 
-def choose(lanes: list[Lane], room: int, timeline: Timeline, window: Window, moment: Moment) -> list[Lane]:
+def choose(
+    lanes: list[Lane], room: int, timeline: Timeline, window: Window, selected: Lane | None = None
+) -> list[Lane]:
     """Return the lanes that matter most in ``window``, as many as there is room for, in their order.
 
-    Whoever runs or waits at the moment stays longest; what never did anything goes first.
+    The selected one stays with its neighbours, so that going through the lanes moves the view; then whoever
+    works or waits long. What never did anything goes first. The moment does not count: the choice would
+    flicker.
     """
     if len(lanes) <= room:
         return lanes
-    worth = _Worth(timeline, window, moment)
-    places = sorted(range(len(lanes)), key=lambda place: (-worth.of(lanes[place]), place))
+    worth = _Worth(timeline, window)
+    middle = lanes.index(selected) if selected in lanes else -_FAR
+    places = sorted(
+        range(len(lanes)),
+        key=lambda place: (min(abs(place - middle), _FAR), -worth.of(lanes[place]), place),
+    )
     return [lanes[place] for place in sorted(places[: max(room, 0)])]
+
+
+_FAR = 2
+"""From the selected lane: as little as to be chosen by worth alone."""
+_LONG_WAIT: Nanoseconds = 10_000_000
+_LATEST = 200
+"""How many waits of a window are looked at for a long one."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Worth:
-    """How much a lane tells in a window and at a moment."""
+    """How much a lane tells in a window."""
 
     timeline: Timeline
     window: Window
-    moment: Moment
 
     def of(self, lane: Lane) -> int:
         """Return a number that is higher the more the lane tells."""
         match lane:
             case ThreadLane(thread):
-                return 9 if thread.id in self.moment.running else self._thread(thread)
+                return self._thread(thread)
             case GroupLane(group):
                 return 8 if self._group_waits(group.id) else 6
             case MemberLane(entity) | SoleLane(entity):
                 return self._entity(entity.id)
             case ServiceLane(service):
-                return 5 if any(call.service == service for call in self.moment.pending_calls) else 3
+                return 5 if service in self.timeline.services_called else 3
 
     def _thread(self, thread: Thread) -> int:
-        return 7 if self.timeline.busy(thread.id, self.window) > 0 else 2
+        busy = self.timeline.busy(thread.id, self.window)
+        return 9 if busy >= 0.5 else 7 if busy > 0 else 2
 
     def _group_waits(self, group: GroupId) -> bool:
-        return any(self.timeline.entities[waiting].group == group for waiting in self.moment.waiting)
+        return any(self._waits_long(member.id) for member in self.timeline.group_members(group))
+
+    def _waits_long(self, entity: EntityId) -> bool:
+        latest = self.timeline.waits_of(entity, self.window)[-_LATEST:]
+        end = self.timeline.end
+        return any((end if wait.end is None else wait.end) - wait.start >= _LONG_WAIT for wait in latest)
 
     def _entity(self, entity: EntityId) -> int:
-        if entity in self.moment.waiting:
+        if self._waits_long(entity):
             return 8
         if self.timeline.waits_of(entity, self.window):
             return 7

@@ -1,51 +1,170 @@
-"""The lanes on screen: a widget that draws what its painter paints."""
+"""The lanes on screen: a widget that draws what its painter paints, and tells what the pointer picks."""
 
 from collections.abc import Sequence
 
+from rich.text import Text
+from textual.events import Click, MouseScrollDown, MouseScrollUp
 from textual.geometry import Size
+from textual.message import Message
 from textual.reactive import reactive
 
 from cbtui.theme import GLYPHS, Charset, Run
+from cbtui.widgets.lanes.details import details_of_selection
+from cbtui.widgets.lanes.details_rows import ROWS, details_rows
 from cbtui.widgets.lanes.painter import Painter, Picture, wanted_rows
+from cbtui.widgets.lanes.rows import Lane, all_lanes
+from cbtui.widgets.lanes.selection import Selection, bar_at, bar_up_to, beside, start_of
 from cbtui.widgets.painted import Painted
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
+_LEAST_LANES = 3
+"""Rows below which what is selected is not told of: the lanes would have no room left."""
 
-class Lanes(Painted):
+
+class Lanes(Painted, can_focus=True):
     """Threads as lanes, callbacks as bars, waits as hatching; the time axis runs along the bottom.
 
     Set ``timeline`` again (it may be the same one) when it has grown. ``now`` is the cursor that every pane
-    obeys; ``service`` one that is not the learner's and is to have a lane before its first call.
+    obeys; ``service`` one that is not the learner's and is to have a lane before its first call. What is
+    selected stands out and is told of below the axis; it is for the screen to set ``selection``, ``hint`` to
+    what its frame is to say of keys, and ``changes`` to what a person changed about the run.
     """
 
     DEFAULT_CSS = "Lanes { height: auto; }"
 
-    timeline: reactive[Timeline] = reactive(Timeline, always_update=True)
-    window: reactive[Window] = reactive(Window(0, 10_000_000_000))
-    now: reactive[Nanoseconds] = reactive(0)
+    timeline: reactive[Timeline] = reactive(Timeline, always_update=True, repaint=False)
+    window: reactive[Window] = reactive(Window(0, 10_000_000_000), repaint=False)
+    now: reactive[Nanoseconds] = reactive(0, repaint=False)
     service: reactive[str] = reactive("", layout=True)
-    charset: reactive[Charset] = reactive(Charset.BRAILLE)
+    charset: reactive[Charset] = reactive(Charset.BRAILLE, repaint=False)
+    selection: reactive[Selection | None] = reactive(None, repaint=False)
+    hint: reactive[str] = reactive("", repaint=False)
+    changes: reactive[str] = reactive("", repaint=False)
 
     _painter = Painter()
     _picture: Picture | None = None
     _wanted = 0
+    _titled = ""
+
+    class Picked(Message):
+        """The person pointed at a moment ``at``, and at something on a lane if ``selection`` says so."""
+
+        def __init__(self, at: Nanoseconds, selection: Selection | None) -> None:
+            super().__init__()
+            self.at = at
+            self.selection = selection
+
+    class Turned(Message):
+        """The person turned the wheel: ``steps`` > 0 asks for a longer stretch of time, < 0 for a shorter."""
+
+        def __init__(self, steps: int) -> None:
+            super().__init__()
+            self.steps = steps
 
     @property
     def picture(self) -> Picture | None:
         """What was painted last: its lanes, scale and layout tell what lies under a cell."""
         return self._picture
 
+    # what can be selected
+
+    def here(self) -> Selection | None:
+        """Return what is worth looking at first: a bar at the cursor, else one before it, else a lane."""
+        lanes = [] if self._picture is None else self._picture.lanes
+        found = [Selection(lane, bar_at(self.timeline, lane, self._cursor_column)) for lane in lanes]
+        found += [self._last_on(lane) for lane in lanes]
+        return next((each for each in found if each.bar is not None), found[0] if found else None)
+
+    def lane_beside(self, step: int) -> Selection | None:
+        """Return the lane above (``step`` < 0) or below the selected one, and the last bar on it."""
+        lanes = all_lanes(self.timeline, self.service)
+        if self.selection is None or self.selection.lane not in lanes:
+            return self.here()
+        place = lanes.index(self.selection.lane) + step
+        return self._last_on(lanes[max(0, min(place, len(lanes) - 1))])
+
+    def bar_beside(self, step: int) -> Selection | None:
+        """Return the selected lane's next bar after the cursor (``step`` > 0) or the last before it."""
+        lane = self._lane_to_go_along()
+        bar = None if lane is None else beside(self.timeline, lane, self.now, step)
+        return None if lane is None or bar is None else Selection(lane, bar)
+
+    def _lane_to_go_along(self) -> Lane | None:
+        selection = self.selection or self.here()
+        return None if selection is None else selection.lane
+
+    def _last_on(self, lane: Lane) -> Selection:
+        if self._picture is None:
+            return Selection(lane)
+        shown = self._picture.scale.window
+        return Selection(lane, bar_up_to(self.timeline, lane, self._cursor_column, shown))
+
+    @property
+    def _cursor_column(self) -> Window:
+        """The column of the screen in which the cursor stands; for one at the very end, the last one."""
+        assert self._picture is not None
+        length = self._picture.scale.per_column
+        start = max(0, self.now - (self.now == self.timeline.end)) // length * length
+        return Window(start, start + length)
+
+    # the pointer
+
+    def on_click(self, event: Click) -> None:
+        """Tell which moment and which bar lies under the pointer."""
+        offset, picture = event.get_content_offset(self), self._picture
+        if offset is None or picture is None or offset.y >= len(picture.lanes) + 1:
+            return
+        scale = picture.scale
+        place = offset.x - picture.layout.names - 1
+        lane = picture.lanes[offset.y] if offset.y < len(picture.lanes) else None
+        if not 0 <= place < scale.columns:
+            if lane is not None:
+                self.post_message(self.Picked(self.now, self._last_on(lane)))
+            return
+        column = Window(max(0, scale.time_at(place)), max(0, scale.time_at(place + 1)))
+        bar = None if lane is None else bar_at(self.timeline, lane, column)
+        at = column.start if bar is None else max(column.start, start_of(bar))
+        self.post_message(self.Picked(at, None if lane is None else Selection(lane, bar)))
+
+    def on_mouse_scroll_up(self, event: MouseScrollUp) -> None:
+        """Ask for a shorter stretch of time."""
+        event.stop()
+        self.post_message(self.Turned(-1))
+
+    def on_mouse_scroll_down(self, event: MouseScrollDown) -> None:
+        """Ask for a longer stretch of time."""
+        event.stop()
+        self.post_message(self.Turned(1))
+
+    # drawing
+
     def rows(self, size: Size) -> Sequence[Sequence[Run]]:
-        """Paint the lanes."""
-        picture = self._painter.paint(self.timeline, self.window, self.now, size.width, size.height)
+        """Paint the lanes, and what there is to know of the selected bar."""
+        selection = None if self.selection is None else self.selection.renewed(self.timeline)
+        told = self._rows_told(size) if selection is not None else 0
+        height = size.height - told
+        picture = self._painter.paint(self.timeline, self.window, self.now, size.width, height, selection)
         self._picture = picture
-        self.border_title = f"Lanes {GLYPHS[self.charset].between} {picture.time_per_column}"
-        return picture.rows
+        title = ["Lanes", picture.time_per_column, *([f"changed: {self.changes}"] if self.changes else [])]
+        self._entitle(f" {GLYPHS[self.charset].between} ".join(title))
+        if selection is None or not told:
+            return picture.rows
+        details = details_of_selection(self.timeline, selection, self.now)
+        return [*picture.rows, *details_rows(details, size.width, self.charset)]
+
+    def _entitle(self, title: str) -> None:
+        """Set another title: Textual draws the whole widget anew even for the same one."""
+        if title != self._titled:
+            self._titled = title
+            self.border_title = Text(title)
+
+    def _rows_told(self, size: Size) -> int:
+        return ROWS if size.height >= ROWS + _LEAST_LANES and size.width > ROWS else 0
 
     def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
-        """Return how many rows show every lane."""
-        return wanted_rows(self.timeline, self.service)
+        """Return how many rows show every lane, and tell of the selected bar."""
+        return wanted_rows(self.timeline, self.service) + (0 if self.selection is None else ROWS)
 
     def watch_timeline(self) -> None:
         """Paint anew, in another height if lanes have come."""
@@ -61,6 +180,20 @@ class Lanes(Painted):
 
     def watch_now(self) -> None:
         """Paint with the cursor elsewhere."""
+        self.changed()
+
+    def watch_selection(self, before: Selection | None, after: Selection | None) -> None:
+        """Let another bar stand out, and make room to tell of it."""
+        if (before is None) != (after is None):
+            self.refresh(layout=True)
+        self.changed()
+
+    def watch_hint(self) -> None:
+        """Say something else of keys; their signs are no markup."""
+        self.border_subtitle = Text(self.hint)
+
+    def watch_changes(self) -> None:
+        """Say what else is changed."""
         self.changed()
 
     def watch_service(self) -> None:

@@ -1,0 +1,132 @@
+"""What a person changed about a program without touching its file, and the set-up of a run with it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import TypeAlias, TypeVar
+
+import msgspec
+
+from lessons.lesson import with_argument
+from sim.engine.setup import GroupChange, PeriodChange, ProgramSetup, RunSetup
+
+Place: TypeAlias = tuple[str, str]
+"""A node's full name ("" for any node), and a callback's name on the trace."""
+
+WISHES = ("own", "shared", "reentrant", "default")
+"""The groups that a callback can be put into, as ``GroupChange`` names them."""
+
+_SECOND = 1_000_000_000
+
+Key = TypeVar("Key")
+Value = TypeVar("Value")
+
+
+@dataclass(frozen=True)
+class Changes:
+    """Other values than the program's; None, and what is not named, leave the program's.
+
+    ``groups`` are some of ``WISHES``, ``periods`` nanoseconds, ``settings`` numbers by the argument of the
+    program that carries them, ``sensor_rate`` is in Hz.
+    """
+
+    threads: int | None = None
+    groups: Mapping[Place, str] = field(default_factory=dict)
+    periods: Mapping[Place, int] = field(default_factory=dict)
+    settings: Mapping[str, float] = field(default_factory=dict)
+    sensor_rate: float | None = None
+
+    def with_group(self, place: Place, wish: str | None) -> Changes:
+        """The same with another group for a callback."""
+        return replace(self, groups=_changed(self.groups, place, wish))
+
+    def with_period(self, place: Place, period: int | None) -> Changes:
+        """The same with another period for a timer, in nanoseconds."""
+        return replace(self, periods=_changed(self.periods, place, period))
+
+    def with_setting(self, argument: str, number: float | None) -> Changes:
+        """The same with another number for an argument of the program."""
+        left = {name: value for name, value in self.settings.items() if name != argument}
+        return replace(self, settings=left if number is None else left | {argument: number})
+
+    def group_of(self, place: Place) -> str | None:
+        """The group that was chosen for a callback of a node."""
+        return self.groups.get(place, self.groups.get(("", place[1])))
+
+    def period_of(self, place: Place) -> int | None:
+        """The period that was chosen for a timer of a node, in nanoseconds."""
+        return self.periods.get(place, self.periods.get(("", place[1])))
+
+    def beyond(self, others: Changes) -> Changes:
+        """Those that are not among others."""
+        return Changes(
+            None if self.threads == others.threads else self.threads,
+            _beyond(self.groups, others.groups),
+            _beyond(self.periods, others.periods),
+            _beyond(self.settings, others.settings),
+            None if self.sensor_rate == others.sensor_rate else self.sensor_rate,
+        )
+
+    def applied(self, setup: RunSetup) -> RunSetup:
+        """The set-up of a run with the changes made; those that it has stay where these say nothing."""
+        return msgspec.structs.replace(
+            setup,
+            threads=setup.threads if self.threads is None else self.threads,
+            programs=tuple(self._with_settings(program) for program in setup.programs),
+            sensor_rate=setup.sensor_rate if self.sensor_rate is None else self.sensor_rate,
+            groups=(
+                *setup.groups,
+                *(GroupChange(*place, wish) for place, wish in self.groups.items()),
+            ),
+            periods=(
+                *setup.periods,
+                *(PeriodChange(*place, period) for place, period in self.periods.items()),
+            ),
+        )
+
+    def _with_settings(self, program: ProgramSetup) -> ProgramSetup:
+        arguments = program.arguments
+        for name, number in self.settings.items():
+            arguments = tuple(with_argument(arguments, name, f"{number:g}"))
+        return ProgramSetup(program.path, arguments)
+
+    @property
+    def words(self) -> str:
+        """What is changed, as short as it can be said: ``odom own group, 4 threads``; "" for nothing."""
+        said = [f"{short(callback)} {wish} group" for (_, callback), wish in self.groups.items()]
+        said += [
+            f"{short(callback)} every {period / _SECOND:g} s"
+            for (_, callback), period in self.periods.items()
+        ]
+        said += [f"{argument} {number:g}" for argument, number in self.settings.items()]
+        if self.sensor_rate is not None:
+            said.append(f"sensors {self.sensor_rate:g} Hz")
+        if self.threads is not None:
+            said.append(f"{self.threads} thread{'s'[: self.threads - 1]}")
+        return ", ".join(said)
+
+
+def changes_in(setup: RunSetup) -> Changes:
+    """The changes that a set-up tells of: all but the numbers that the program's arguments carry."""
+    return Changes(
+        setup.threads,
+        {(each.node, each.callback): each.wish for each in setup.groups},
+        {(each.node, each.callback): each.period for each in setup.periods},
+        sensor_rate=setup.sensor_rate,
+    )
+
+
+def _beyond(ours: Mapping[Key, Value], theirs: Mapping[Key, Value]) -> dict[Key, Value]:
+    return {key: value for key, value in ours.items() if theirs.get(key) != value}
+
+
+def _changed(all_places: Mapping[Place, Value], place: Place, value: Value | None) -> dict[Place, Value]:
+    """The same with another value at a place; what was said of any node's callback of that name goes."""
+    left = {key: kept for key, kept in all_places.items() if key not in (place, ("", place[1]))}
+    return left if value is None else left | {place: value}
+
+
+def short(callback: str) -> str:
+    """A callback's name as people say it: ``odom`` for ``odom_callback``."""
+    return callback.removesuffix("_callback") or callback

@@ -1,0 +1,79 @@
+"""``cbtui check``: a learner's file against the checks of an exercise."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from cbtui.commands import more_lessons, values
+from cbtui.commands.output import complain, say
+from cbtui.commands.targets import file_of, lesson_of, refuse
+
+if TYPE_CHECKING:
+    from lessons.lesson import Lesson
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Give the command its arguments."""
+    parser.add_argument("lesson", metavar="LESSON", help="a lesson with an exercise")
+    parser.add_argument(
+        "file", metavar="FILE.py", nargs="?", help="the file to check (what cbtui start has put here)"
+    )
+    add_limit(parser, 60)
+    more_lessons.add_option(parser)
+
+
+def add_limit(parser: argparse.ArgumentParser, usual: float) -> None:
+    """Give a command the option on how long a file may run."""
+    parser.add_argument(
+        "--limit",
+        metavar="SECONDS",
+        type=values.duration,
+        default=usual,
+        help="real time that a run may take (%(default)g)",
+    )
+
+
+def check(options: argparse.Namespace) -> int:
+    """Check a file; returns the exit code: 0 it passes every check, 1 it does not."""
+    lesson = exercise_of(options.lesson)
+    file = _file(lesson, options.file)
+    from cbtui.check_text import checked_text
+    from cbtui.checking import check as run_and_judge
+    from lessons.judge import Judge
+
+    checked = run_and_judge(lesson, Judge(lesson), file, options.limit)
+    say(checked_text(checked))
+    if checked.run.trouble is not None:
+        complain(checked.run.trouble)
+    if checked.good:
+        _note(lesson)
+    return 0 if checked.good else 1
+
+
+def exercise_of(name: str) -> "Lesson":
+    """The lesson of that id; one without an exercise ends the program with one line and 2."""
+    lesson = lesson_of(name)
+    if lesson.exercise is None:
+        from lessons.catalogue import lessons
+
+        others = ", ".join(each.id for each in lessons() if each.exercise is not None)
+        refuse(f"the lesson {name} has no exercise; these have one: {others}")
+    return lesson
+
+
+def _file(lesson: "Lesson", name: str | None) -> Path:
+    if name is not None:
+        return file_of(name)
+    path = Path(lesson.file_name)
+    if not path.is_file():
+        refuse(f"there is no {path} here; name your file, or begin one with cbtui start {lesson.id}")
+    return path
+
+
+def _note(lesson: "Lesson") -> None:
+    from lessons.progress import Progress
+
+    progress = Progress()
+    progress.passes(lesson.id)
+    for trouble in progress.troubles():
+        complain(trouble)

@@ -1,0 +1,98 @@
+"""``cbtui eject``: writes the lessons' nodes as packages that ``colcon build`` takes."""
+
+import argparse
+import sys
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from cbtui.ament_package import AmentPackage
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Give the command its arguments."""
+    parser.add_argument(
+        "folder", metavar="DIR", type=Path, help="where the packages go, such as the src of a workspace"
+    )
+    parser.add_argument(
+        "--unit",
+        dest="units",
+        metavar="N",
+        action="append",
+        default=[],
+        help="only this unit; may be given again",
+    )
+    parser.add_argument(
+        "--force", action="store_true", help="replace files that were changed; without it they stay"
+    )
+
+
+def eject(options: argparse.Namespace) -> int:
+    """Carry the command out; returns the exit code: 0 well, 2 it was wrong or a file is in the way."""
+    from cbtui.eject import EjectError
+    from lessons.lesson import BadLesson
+
+    folder: Path = options.folder
+    try:
+        packages = _packages(folder, options.units)
+        files = {package.name: _files(folder, package) for package in packages}
+        if not options.force:
+            _refuse_changed(files.values())
+        for package in packages:
+            _write(package, folder, files[package.name])
+    except (EjectError, BadLesson) as error:
+        sys.stderr.write(f"cbtui: {error}\n")
+        return 2
+    except OSError as error:
+        place = error.filename2 or error.filename or folder
+        sys.stderr.write(f"cbtui: cannot write {place}: {error.strerror}\n")
+        return 2
+    selected = " ".join(package.name for package in packages)
+    sys.stdout.write(f"In the workspace, on a ROS 2 machine: colcon build --packages-select {selected}\n")
+    return 0
+
+
+def _packages(folder: Path, names: Sequence[str]) -> "list[AmentPackage]":
+    """The packages of the units of these names, all of them for none, if the folder can hold any."""
+    from cbtui.eject import EjectError, chosen, package_of, units_of
+    from lessons.catalogue import lessons
+
+    if folder.exists() and not folder.is_dir():
+        raise EjectError(f"{folder} is a file; name a folder for the packages")
+    return [package_of(unit) for unit in chosen(units_of(lessons()), names)]
+
+
+def _files(folder: Path, package: "AmentPackage") -> dict[Path, bytes]:
+    return {folder / package.name / place: content for place, content in package.files().items()}
+
+
+def _refuse_changed(packages: Iterable[Mapping[Path, bytes]]) -> None:
+    from cbtui.eject import EjectError, changed_files
+
+    changed = [path for files in packages for path in changed_files(files)]
+    match changed:
+        case []:
+            return
+        case [only]:
+            raise EjectError(f"{only} is there with other content; --force replaces it")
+        case [first, _]:
+            raise EjectError(f"{first} and 1 other file are there with other content; --force replaces them")
+        case [first, *others]:
+            raise EjectError(
+                f"{first} and {len(others)} other files are there with other content; --force replaces them"
+            )
+
+
+def _write(package: "AmentPackage", folder: Path, files: Mapping[Path, bytes]) -> None:
+    """Write a package, and tell what that came to."""
+    from cbtui.eject import write_files
+
+    written = write_files(files)
+    kept = f", {len(files) - written} were there" if written < len(files) else ""
+    told = f"{_counted(len(package.programs), 'lesson')}, {_counted(written, 'file')} written{kept}"
+    sys.stdout.write(f"{folder / package.name}: {told}\n")
+
+
+def _counted(number: int, what: str) -> str:
+    return f"1 {what}" if number == 1 else f"{number} {what}s"

@@ -1,0 +1,49 @@
+"""``cbtui lint-lesson``: proves lessons, or tells what is wrong with them."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from cbtui.commands.check import add_limit
+from cbtui.commands.output import say
+from cbtui.commands.targets import refuse
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Give the command its arguments."""
+    parser.add_argument(
+        "folder", metavar="DIR", help="a lesson's folder, or one in which there are lessons' folders"
+    )
+    add_limit(parser, 60)
+
+
+def lint_lesson(options: argparse.Namespace) -> int:
+    """Prove lessons; returns the exit code: 0 all is as they say, 1 something is not."""
+    from cbtui.lesson_lint import faults_of
+
+    folder = Path(options.folder)
+    if not folder.is_dir():
+        refuse(f"there is no folder {folder}")
+    count = 0
+    for each in _lessons_in(folder):
+        faults = 0
+        for fault in faults_of(each, options.limit):
+            say(f"{fault}\n")
+            faults += 1
+        if not faults:
+            say(f"{each}: all is as it says\n")
+        count += faults
+    return 1 if count else 0
+
+
+def _lessons_in(folder: Path) -> "Iterator[Path]":
+    """The folder itself, or those in it that have a lesson's description."""
+    from lessons.lesson import DESCRIPTION_FILE
+
+    inside = sorted(path.parent for path in folder.glob(f"*/{DESCRIPTION_FILE}"))
+    if (folder / DESCRIPTION_FILE).is_file() or not inside:
+        return iter([folder])
+    return iter(inside)

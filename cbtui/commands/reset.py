@@ -1,0 +1,32 @@
+"""``cbtui reset``: forgets how far the learner has come in a lesson."""
+
+import argparse
+
+from cbtui.commands import more_lessons
+from cbtui.commands.output import complain, say
+from cbtui.commands.targets import lesson_of
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Give the command its arguments."""
+    parser.add_argument("lesson", metavar="LESSON", help="a lesson's id, see cbtui list")
+    more_lessons.add_option(parser)
+
+
+def reset(options: argparse.Namespace) -> int:
+    """Forget the progress in a lesson; returns the exit code: 0 it is forgotten, 1 that could not be kept.
+
+    The learner's files stay as they are.
+    """
+    lesson = lesson_of(options.lesson)
+    from lessons.progress import Progress
+
+    progress = Progress()
+    was = progress.reset(lesson.id)
+    troubles = progress.troubles()
+    for trouble in troubles:
+        complain(trouble)
+    if troubles:
+        return 1
+    say(f"{lesson.id} begins anew.\n" if was else f"{lesson.id} had not been begun.\n")
+    return 0

@@ -1,0 +1,105 @@
+"""``cbtui serve``: the console in a browser."""
+
+import argparse
+import asyncio
+import errno
+import sys
+from importlib.util import find_spec
+from urllib.parse import urlsplit
+
+from cbtui.commands import appearance, console
+from cbtui.commands.targets import file_of, is_file_name, lesson_of, refuse
+
+_VISITORS = 8
+_HIGHEST_PORT = 65535
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Give the command its arguments."""
+    parser.add_argument("--host", default="127.0.0.1", help="address to be reached at (%(default)s)")
+    parser.add_argument(
+        "--port", type=_port, default=8000, help="port to be reached at, 0 for any that is free (%(default)s)"
+    )
+    parser.add_argument(
+        "--visitors",
+        metavar="N",
+        type=_visitors,
+        default=_VISITORS,
+        help="how many can be there at a time (%(default)s)",
+    )
+    parser.add_argument(
+        "--public-url",
+        metavar="URL",
+        type=_url,
+        help="where visitors find it, when something stands in front of it (http://HOST:PORT)",
+    )
+    appearance.add_options(parser)
+
+
+def serve(options: argparse.Namespace) -> int:
+    """Serve until ctrl+c; returns the exit code."""
+    if find_spec("textual_serve") is None:
+        refuse("the browser needs textual-serve; install it with: pip install 'cbtui[serve]'")
+    appearance.appearance(options)
+    command = [sys.executable, "-m", "cbtui", *appearance.given(options), *_opened(options.arguments)]
+    from cbtui.web.guard import is_loopback
+    from cbtui.web.server import ConsoleServer
+
+    if not is_loopback(options.host):
+        sys.stderr.write(
+            f"cbtui: whoever reaches {options.host} can run programs on this machine as you; "
+            "let only people there whom you trust\n"
+        )
+    server = ConsoleServer(command, options.host, options.port, options.visitors, options.public_url)
+    try:
+        asyncio.run(server.serve_until_told(_tell))
+    except OSError as error:
+        refuse(_why_not(error, options.host, options.port))
+    return 0
+
+
+def _tell(address: str) -> None:
+    sys.stdout.write(f"The console is at {address} (ctrl+c ends it)\n")
+    sys.stdout.flush()
+
+
+def _opened(words: list[str]) -> list[str]:
+    """The rest of the visitors' command line; what cannot be opened ends the program with one line and 2."""
+    if not words:
+        return []
+    split = words.index("--") if "--" in words else len(words)
+    parser = argparse.ArgumentParser(prog="cbtui serve --", add_help=False)
+    console.add_open_options(parser)
+    target = parser.parse_args(words[:split]).target
+    if is_file_name(target):
+        file_of(target)
+    else:
+        lesson_of(target)
+    return ["open", *words]
+
+
+def _why_not(error: OSError, host: str, port: int) -> str:
+    if error.errno == errno.EADDRINUSE:
+        return f"port {port} of {host} is in use; choose another with --port, or 0 for any that is free"
+    if error.errno == errno.EACCES:
+        return f"port {port} needs more rights than yours; choose one from 1024 on with --port"
+    return f"cannot be reached at {host}: {error.strerror or error}; choose another address with --host"
+
+
+def _port(text: str) -> int:
+    if not text.isdecimal() or int(text) > _HIGHEST_PORT:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a port; give 0 to {_HIGHEST_PORT}")
+    return int(text)
+
+
+def _visitors(text: str) -> int:
+    if not text.isdecimal() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a number of visitors; give 1 or more")
+    return int(text)
+
+
+def _url(text: str) -> str:
+    parts = urlsplit(text)
+    if parts.scheme not in {"http", "https"} or not parts.hostname:
+        raise argparse.ArgumentTypeError(f"{text!r} is not an address; give one such as https://example.org")
+    return text

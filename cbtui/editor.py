@@ -1,0 +1,66 @@
+"""Lends the terminal to the person's own editor, to open a file at a line."""
+
+import asyncio
+import os
+import shlex
+import subprocess
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from textual.app import App, SuspendNotSupported
+
+_COLON = {"code", "codium", "cursor", "hx", "helix", "subl", "zed", "windsurf"}
+"""Editors that take ``file:line``; the others take ``+line file``, as vi does."""
+_GO_TO = {"code", "codium", "cursor", "windsurf"}
+"""Those of them that take it only after ``--goto``."""
+
+
+class EditorError(Exception):
+    """A file that cannot be opened in an editor; the text is one sentence that says why and what to do."""
+
+
+async def edit(app: App[Any], path: Path, line: int) -> None:
+    """Open a file at a line in ``$VISUAL`` or ``$EDITOR``, and wait until that ends; the app goes on, unseen.
+
+    Raises:
+        EditorError: no editor is named, it or the file is not there, or the terminal cannot be lent.
+    """
+    command = command_for(os.environ, path, line)
+    try:
+        with app.batch_update(), app.suspend():
+            status = await asyncio.to_thread(_run, command)
+    except SuspendNotSupported:
+        raise EditorError("this terminal cannot be lent to an editor; open the file in another one") from None
+    except OSError as error:
+        raise EditorError(
+            f"{command[0]} cannot be started: {error.strerror}; set EDITOR to another"
+        ) from None
+    if status:
+        raise EditorError(f"{command[0]} ended with status {status}")
+
+
+def command_for(environment: Mapping[str, str], path: Path, line: int) -> list[str]:
+    """Return the command that opens a file at a line.
+
+    Raises:
+        EditorError: the file is not there, or no editor is named in a way that can be understood.
+    """
+    if not path.is_file():
+        raise EditorError(f"{path} is not on this machine, so no editor can open it")
+    named = environment.get("VISUAL", "").strip() or environment.get("EDITOR", "").strip()
+    if not named:
+        raise EditorError("no editor is named; leave, type export EDITOR=nano or another, and start anew")
+    try:
+        command = shlex.split(named)
+    except ValueError:
+        raise EditorError(f"EDITOR is {named}, whose quotes do not match; set it anew") from None
+    name = Path(command[0]).name
+    file = str(path)
+    if name in _COLON:
+        return [*command, *(["--goto"] if name in _GO_TO else []), f"{file}:{line}"]
+    return [*command, f"+{line}", file]
+
+
+def _run(command: list[str]) -> int:
+    return subprocess.run(command, check=False).returncode  # the person's own editor

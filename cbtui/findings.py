@@ -1,0 +1,90 @@
+"""What the rules find in a run that grows before one's eyes, in words, looked for again at little cost."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from time import monotonic
+
+from sim.diagnosis import Diagnoses, Explanation, Finding, Weight
+from sim.trace.model import Nanoseconds
+from sim.trace.timeline import Timeline
+
+_EVERY = 1.0
+"""Seconds between two looks, at least."""
+_SHARE = 0.01
+"""The part of all time that looking may take: after a dear look the next one comes later."""
+
+
+@dataclass(frozen=True, slots=True)
+class Told:
+    """A finding, how much it matters, and its explanation."""
+
+    finding: Finding
+    weight: Weight
+    explanation: Explanation
+
+    @property
+    def is_problem(self) -> bool:
+        """Whether something goes wrong; else it is only worth knowing."""
+        return self.weight is Weight.PROBLEM
+
+    @property
+    def name(self) -> str:
+        """The rule's name, as one would say it: ``group starvation``."""
+        return self.finding.rule.id.replace("-", " ")
+
+    @property
+    def at(self) -> Nanoseconds | None:
+        """The moment when it was so; None for what is true of the run as a whole."""
+        return self.finding.at or None
+
+    @property
+    def leads_somewhere(self) -> bool:
+        """Whether there is a moment or a line of code to go to."""
+        return self.at is not None or self.explanation.place is not None
+
+
+class Watch:
+    """Keeps what the rules find in a timeline. Not thread-safe, as the timeline.
+
+    ``clock`` tells real time in seconds.
+    """
+
+    def __init__(
+        self,
+        timeline: Timeline,
+        diagnoses: Diagnoses | None = None,
+        clock: Callable[[], float] = monotonic,
+    ) -> None:
+        self.told: tuple[Told, ...] = ()
+        """What was found by the last look, problems first, the worst of them at the front."""
+        self._timeline = timeline
+        self._diagnoses = diagnoses or Diagnoses()
+        self._clock = clock
+        self._due = 0.0
+
+    def look_when_due(self) -> bool:
+        """Look if enough time has passed since the last look; tell whether that found something else."""
+        if self._clock() < self._due:
+            return False
+        before = self.told
+        self.look()
+        return self.told != before
+
+    def look(self) -> None:
+        """Look now, whenever the last look was."""
+        began = self._clock()
+        timeline = self._timeline
+        self.told = tuple(_told(found, timeline) for found in self._diagnoses.update(timeline))
+        ended = self._clock()
+        self._due = max(began + _EVERY, ended + (ended - began) / _SHARE)
+
+
+def _told(found: Finding, timeline: Timeline) -> Told:
+    weight = found.rule.weigh(found, timeline) or found.rule.weight
+    return Told(found, weight, found.rule.explain(found, timeline))
+
+
+def counted(told: Sequence[Told]) -> str:
+    """How many problems there are: ``2 problems``; "" for none."""
+    count = sum(each.is_problem for each in told)
+    return f"{count} problem{'s'[: count - 1]}" if count else ""

@@ -1,0 +1,47 @@
+"""A new lesson to begin with: small, whole, and right as it is."""
+
+import re
+import shutil
+from pathlib import Path
+
+from lessons.catalogue import ROOT
+from lessons.lesson import DESCRIPTION_FILE, GUIDE_FILE
+
+TEMPLATE = ROOT / "scaffold"
+"""A lesson like any other, which is copied; it is in no catalogue."""
+_ID = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
+_TITLE = "Scaffold"
+
+
+class CannotScaffoldError(Exception):
+    """A lesson that cannot be made; the text is a sentence."""
+
+
+def make_lesson(folder: Path) -> list[Path]:
+    """Make a folder with a lesson that is called as the folder is; returns its files.
+
+    Raises:
+        CannotScaffoldError: the name is no lesson's, or the folder is there already or cannot be made.
+    """
+    folder = folder.absolute()
+    if not _ID.fullmatch(folder.name):
+        raise CannotScaffoldError(
+            f"{folder.name!r} cannot be a lesson's id; take small letters and digits, joined by '-'"
+        )
+    try:
+        folder.mkdir(parents=True)
+        for file in sorted(path for path in TEMPLATE.iterdir() if path.is_file()):
+            shutil.copyfile(file, folder / file.name)
+        title = folder.name.replace("-", " ").capitalize()
+        for name, old, new in (
+            (DESCRIPTION_FILE, f'id = "{TEMPLATE.name}"', f'id = "{folder.name}"'),
+            (DESCRIPTION_FILE, f'title = "{_TITLE}"', f'title = "{title}"'),
+            (GUIDE_FILE, f"# {_TITLE}\n", f"# {title}\n"),
+        ):
+            path = folder / name
+            path.write_text(path.read_text(encoding="utf-8").replace(old, new, 1), encoding="utf-8")
+    except FileExistsError:
+        raise CannotScaffoldError(f"{folder} is there already; nothing was written") from None
+    except OSError as error:
+        raise CannotScaffoldError(f"{folder} cannot be made: {error.strerror}") from None
+    return sorted(folder.iterdir())

@@ -1,0 +1,288 @@
+"""Two runs on screen, one above the other on a common time axis, and a table of what differs."""
+
+from time import monotonic
+from typing import ClassVar
+
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import BindingType
+
+from cbtui.actions import Scope, bindings_of
+from cbtui.contenders import Side
+from cbtui.playhead import SPANS, Playhead
+from cbtui.screens.layout import Layout
+from cbtui.screens.lesson import FRAMES_A_SECOND
+from cbtui.screens.moment import MomentScreen
+from cbtui.screens.sized import SizedScreen
+from cbtui.theme import Charset, Ink, Role, Run
+from cbtui.widgets.comparison import ComparisonHeadings, ComparisonTable, Words
+from cbtui.widgets.diagnosis import executor_label
+from cbtui.widgets.durations import duration
+from cbtui.widgets.key_bar import KeyBar
+from cbtui.widgets.lanes import Lanes
+from sim.trace.comparison import compare
+from sim.trace.comparison_rows import RUNS, Section, extent, sections, stretch
+from sim.trace.model import Nanoseconds, Window
+
+_PLAIN = Ink(Role.TEXT)
+_STRONG = Ink(Role.STRONG)
+_FAINT = Ink(Role.FAINT)
+_REST = 9
+"""How many times as long as a comparison took the next one is put off: it may take a tenth of the time."""
+_ROWS_A_KEY = 3
+
+
+class CompareScreen(SizedScreen[None]):
+    """Compares two runs; one that is still going on is drawn and counted as it grows.
+
+    Both have the same stretch of time on screen and the same cursor, which stands at the end of a run that
+    does not reach it. While a run goes on, its end is the end that is followed; else the longer run's.
+    ``bounds`` is the part that the table is about when it is not about the stretch on screen, None for all
+    that both runs have. Timelines are read on the UI thread.
+    """
+
+    SCOPE = Scope.COMPARE
+    CSS_PATH = "compare.tcss"
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.COMPARE)]
+    AUTO_FOCUS = ""
+
+    def __init__(self, first: Side, second: Side, charset: Charset, bounds: Window | None = None) -> None:
+        super().__init__()
+        self._sides = (first, second)
+        self._charset = charset
+        self._bounds = bounds
+        self._whole = True
+        self._playhead = Playhead() if bounds is None else _at_the_end_of(bounds, self._end)
+        self._drawn: tuple[object, ...] = ()
+        self._compared: Window | None = None
+        self._rest_until = 0.0
+
+    def compose(self) -> ComposeResult:
+        """Lay out both runs and the table."""
+        yield Words(self._charset, id="status")
+        for number in range(len(self._sides)):
+            yield Words(self._charset, id=f"run{number}")
+            yield Lanes(id=f"lanes{number}")
+        yield Words(self._charset, ruled="-" if self._charset is Charset.ASCII else "─", id="window")
+        yield ComparisonHeadings(self._charset)
+        yield ComparisonTable(self._charset)
+        yield KeyBar(Scope.COMPARE, self._charset)
+
+    def on_mount(self) -> None:
+        """Begin to draw, and say what cannot be trusted."""
+        for number, side in enumerate(self._sides):
+            lanes = self._lanes(number)
+            lanes.charset, lanes.service, lanes.can_focus = self._charset, side.service, False
+            for sentence in (side.damage, side.failure):
+                if sentence is not None:
+                    self.notify(sentence, severity="warning", markup=False)
+        self.set_interval(1 / FRAMES_A_SECOND, self.draw)
+
+    # drawing
+
+    def draw(self) -> None:
+        """Show the moment that the playhead is at, if that or a run has changed."""
+        ends = tuple((side.timeline.end, side.alive()) for side in self._sides)
+        now = (self._playhead, ends, self.layout_now)
+        if self.layout_now is Layout.SMALL:
+            return
+        if now != self._drawn:
+            self._drawn = now
+            self._draw_runs()
+            self.query_one(KeyBar).changed()
+        self._draw_table()
+
+    def laid_out(self) -> None:
+        """Draw what the new layout shows."""
+        self._drawn = ()
+
+    def _draw_runs(self) -> None:
+        at, shown = self._playhead.now(self._end), self._playhead.window(self._end)
+        self.query_one("#status", Words).words = (
+            Run(" Two runs", _STRONG),
+            Run(f"   t {at / 1e9:.3f} s", _STRONG),
+            Run(f"   {duration(shown.length)} on screen", _FAINT),
+        )
+        for number, side in enumerate(self._sides):
+            self.query_one(f"#run{number}", Words).words = _about(number, side, at)
+            lanes = self._lanes(number)
+            # Nothing is known of a run after its end, even if that came while a callback ran.
+            lanes.window, lanes.now = shown, min(at, side.timeline.end)
+            lanes.timeline = side.timeline
+
+    def _draw_table(self) -> None:
+        """Compare anew if there is something new, but never so often that the keys have to wait."""
+        asked = self._common(self._asked)
+        if asked == self._compared or monotonic() < self._rest_until:
+            return
+        began = monotonic()
+        self._compared = asked
+        words, shown = self._figures(asked)
+        self.query_one("#window", Words).words = (Run(f" {words} ", _STRONG),)
+        self.query_one(ComparisonTable).show(shown)
+        self._rest_until = monotonic() + _REST * (monotonic() - began)
+
+    def _figures(self, asked: Window) -> tuple[str, tuple[Section, ...]]:
+        first, second = self._sides
+        what = "Whole runs" if self._whole else "On screen"
+        if self._whole and self._bounds is not None:
+            what = "As asked"
+        if asked.length <= 0:
+            return f"{what}: nothing that both runs have; {_shorter(first, second)}", ()
+        compared = compare(first.timeline, second.timeline, asked)
+        if self._whole:
+            return f"{what}, {extent(compared)}", sections(compared)
+        cut = asked.end < min(self._asked.end, self._end)
+        after = f"; {_shorter(first, second)}" if cut else ""
+        return f"{what}, {stretch(asked)}{after}", sections(compared)
+
+    @property
+    def _asked(self) -> Window:
+        """What the table is to be about, whether or not both runs have it."""
+        if not self._whole:
+            return self._playhead.window(self._end)
+        return self._bounds or Window(0, max(side.timeline.end for side in self._sides))
+
+    def _common(self, asked: Window) -> Window:
+        end = min(asked.end, *(side.timeline.end for side in self._sides))
+        return Window(asked.start, max(asked.start, end))
+
+    @property
+    def _end(self) -> Nanoseconds:
+        """Where the axis ends: with the run that goes on, else with the longer one."""
+        going_on = [side.timeline.end for side in self._sides if side.alive()]
+        return max(going_on or [side.timeline.end for side in self._sides])
+
+    def _lanes(self, number: int) -> Lanes:
+        return self.query_one(f"#lanes{number}", Lanes)
+
+    # actions
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Offer what has a meaning now."""
+        playhead = self._playhead
+        meaningless = {
+            "live": playhead.follows,
+            "later": playhead.at is None,
+            "step": playhead.at is None,
+            "earlier": playhead.now(self._end) == 0,
+            "pan_earlier": playhead.window(self._end).start == 0,
+            "pan_later": playhead.follows or playhead.window(self._end).end > self._end,
+            "step_back": playhead.now(self._end) == 0,
+            "zoom_in": playhead.span == SPANS[0],
+            "zoom_out": playhead.span == SPANS[-1],
+        }
+        return not meaningless.get(action, False)
+
+    def action_earlier(self) -> None:
+        """Move the cursor back."""
+        self._move(self._playhead.moved(-1, self._end))
+
+    def action_later(self) -> None:
+        """Move the cursor on."""
+        self._move(self._playhead.moved(1, self._end))
+
+    def action_pan_earlier(self) -> None:
+        """Show an earlier stretch."""
+        self._move(self._playhead.panned(-1, self._end))
+
+    def action_pan_later(self) -> None:
+        """Show a later stretch."""
+        self._move(self._playhead.panned(1, self._end))
+
+    def action_step(self) -> None:
+        """Go to the next event of either run."""
+        self._step(1)
+
+    def action_step_back(self) -> None:
+        """Go to the event before, of either run."""
+        self._step(-1)
+
+    def _step(self, step: int) -> None:
+        now = self._playhead.now(self._end)
+        beside = [side.timeline.neighbour(now, None, step) for side in self._sides]
+        found = [at for at in beside if at is not None]
+        if found:
+            self._move(self._playhead.sought(min(found) if step > 0 else max(found), self._end))
+        elif step > 0:
+            self._move(self._playhead.live())
+
+    def action_go_to_time(self) -> None:
+        """Ask for a moment."""
+        question = MomentScreen(self._playhead.now(self._end), self._end, False, self._charset)
+        self.app.push_screen(question, self._go_to_time)
+
+    def _go_to_time(self, moment: Nanoseconds | None) -> None:
+        if moment is not None:
+            self._move(self._playhead.sought(moment, self._end))
+
+    def action_live(self) -> None:
+        """Go to the end."""
+        self._move(self._playhead.live())
+
+    def action_zoom_in(self) -> None:
+        """Show a shorter stretch of time."""
+        self._move(self._playhead.zoomed(-1, self._end))
+
+    def action_zoom_out(self) -> None:
+        """Show a longer stretch of time."""
+        self._move(self._playhead.zoomed(1, self._end))
+
+    @on(Lanes.Picked)
+    def _pick_moment(self, message: Lanes.Picked) -> None:
+        self._move(self._playhead.sought(message.at, self._end))
+
+    @on(Lanes.Turned)
+    def _turn(self, message: Lanes.Turned) -> None:
+        self._move(self._playhead.zoomed(message.steps, self._end))
+
+    def _move(self, playhead: Playhead) -> None:
+        self._playhead = playhead
+        self.draw()
+
+    def action_window(self) -> None:
+        """Let the table tell of all that both runs have, or of the stretch on screen."""
+        self._whole = not self._whole
+        self._compared = None
+        self._rest_until = 0.0
+        self.draw()
+
+    def action_scroll_table_up(self) -> None:
+        """Show what lies above in the table."""
+        self.query_one(ComparisonTable).scroll_relative(y=-_ROWS_A_KEY, animate=False)
+
+    def action_scroll_table_down(self) -> None:
+        """Show what lies below in the table."""
+        self.query_one(ComparisonTable).scroll_relative(y=_ROWS_A_KEY, animate=False)
+
+    def action_maximise(self) -> None:
+        """Let the table fill the screen, or give the lanes their room back."""
+        self.toggle_class("-maximised")
+
+    def action_leave(self) -> None:
+        """Go back to where the comparison was opened."""
+        self.dismiss()
+
+
+def _about(number: int, side: Side, at: Nanoseconds) -> tuple[Run, ...]:
+    """What the line above a run's lanes tells."""
+    timeline = side.timeline
+    state = "goes on" if side.alive() else f"ends at {timeline.end / 1e9:.3f} s"
+    told = [text for text in (executor_label(timeline), f"dropped {timeline.dropped(at)}", state) if text]
+    return (
+        Run(f" {RUNS[number]}  {side.name}", _STRONG),
+        Run(f"   {'   '.join(told)}", _PLAIN),
+    )
+
+
+def _shorter(first: Side, second: Side) -> str:
+    shorter = second.timeline.end < first.timeline.end
+    side = second if shorter else first
+    until = "has come to" if side.alive() else "ends at"
+    return f"{RUNS[shorter]} {until} {side.timeline.end / 1e9:.3f} s"
+
+
+def _at_the_end_of(bounds: Window, end: Nanoseconds) -> Playhead:
+    """Where one looks at the bounds, in runs that go to ``end``."""
+    span = next((span for span in SPANS if span >= bounds.length), SPANS[-1])
+    return Playhead(span, start=bounds.start).sought(bounds.end, end)

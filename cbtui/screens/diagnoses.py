@@ -1,0 +1,134 @@
+"""What the rules found in a run: what happened, why, what to do about it, and the way there."""
+
+from collections.abc import Sequence
+from typing import ClassVar
+
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.containers import Container, VerticalScroll
+from textual.content import Content
+from textual.widgets import OptionList, Static
+from textual.widgets.option_list import Option
+
+from cbtui.actions import Scope, bindings_of
+from cbtui.findings import Told, counted
+from cbtui.keymap import Keymap
+from cbtui.screens.sized import SizedModal
+from cbtui.theme import GLYPHS, Charset
+from cbtui.widgets.cells import visible
+from cbtui.widgets.key_bar import KeyBar
+from sim.diagnosis import sentence, whereabouts
+
+_ALL_IS_WELL = "✓ Nothing has gone wrong so far: the rules have found no problem, and nothing to remark on."
+_TIME = 10
+
+
+class DiagnosesScreen(SizedModal[Told]):
+    """Lists findings, problems first; gives the one to go to, None to stay."""
+
+    SCOPE = Scope.DIAGNOSES
+    CSS_PATH = "window.tcss"
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.DIAGNOSES)]
+
+    def __init__(self, told: Sequence[Told], charset: Charset) -> None:
+        super().__init__()
+        self._told = told
+        self._charset = charset
+
+    def compose(self) -> ComposeResult:
+        """Lay out the list, and what there is to say of the highlighted one."""
+        with Container(classes="window") as window:
+            window.border_title = title_of(self._told)
+            if self._told:
+                yield FindingList(*(Option(row_of(each, self._charset)) for each in self._told))
+                with VerticalScroll(can_focus=False):
+                    yield Static(classes="told")
+            else:
+                yield Static(_ALL_IS_WELL, classes="well", markup=False)
+            yield KeyBar(Scope.DIAGNOSES, self._charset)
+
+    def on_mount(self) -> None:
+        """Highlight the worst."""
+        for listed in self.query(FindingList):
+            listed.highlighted = 0
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Offer to go where there is something to go to."""
+        match action:
+            case "previous" | "next":
+                return len(self._told) > 1
+            case "go":
+                return self._chosen is not None and self._chosen.leads_somewhere
+        return True
+
+    @on(OptionList.OptionHighlighted)
+    def _tell(self, event: OptionList.OptionHighlighted) -> None:
+        self.query_one(".told", Static).update(details_of(self._told[event.option_index], self._charset))
+        self.query_one(VerticalScroll).scroll_home(animate=False)
+        self.query_one(KeyBar).changed()
+
+    def action_previous(self) -> None:
+        """Highlight what is above."""
+        self.query_one(FindingList).action_cursor_up()
+
+    def action_next(self) -> None:
+        """Highlight what is below."""
+        self.query_one(FindingList).action_cursor_down()
+
+    def action_go(self) -> None:
+        """Go to what is highlighted."""
+        self.dismiss(self._chosen)
+
+    def action_close(self) -> None:
+        """Stay where the person is."""
+        self.dismiss(None)
+
+    @property
+    def _chosen(self) -> Told | None:
+        place = next((listed.highlighted for listed in self.query(FindingList)), None)
+        return None if place is None else self._told[place]
+
+
+class FindingList(OptionList, inherit_bindings=False):
+    """The findings, a line each; the screen's keys move the highlight, a click does."""
+
+
+def title_of(told: Sequence[Told]) -> str:
+    """Return how many there are of what: ``Diagnoses: 2 problems, 1 remark``."""
+    problems = sum(each.is_problem for each in told)
+    counts = ((problems, "problem"), (len(told) - problems, "remark"))
+    words = [f"{count} {name}{'s'[: count - 1]}" for count, name in counts if count]
+    return f"Diagnoses: {', '.join(words)}" if words else "Diagnoses"
+
+
+def row_of(told: Told, charset: Charset) -> Content:
+    """Return a finding's line: ``!`` for a problem, ``·`` for a remark; when; what."""
+    sign, style = ("!", "bold $text-warning") if told.is_problem else ("·", "$text-muted")
+    time = "" if told.at is None else f"{told.at / 1e9:.3f} s"
+    return Content.assemble(
+        (f"{sign} ", style),
+        (f"{time:>{_TIME}}  ", "$text-muted"),
+        visible(told.explanation.what, charset),
+    )
+
+
+def details_of(told: Told, charset: Charset) -> Content:
+    """Return what happened, why, what to do, and where in the code and when."""
+    explained = told.explanation
+    parts = [
+        (f"{visible(explained.what, charset)}.", "bold"),
+        (f"\n{visible(sentence(explained.why), charset)}", ""),
+        (f"\n→ {visible(explained.cure, charset)}.", "$text-success"),
+    ]
+    where = whereabouts(told.finding, explained)
+    if where:
+        parts.append((f"\n{visible(where, charset)}", "$text-muted"))
+    return Content.assemble(*parts)
+
+
+def problems_note(told: Sequence[Told], keymap: Keymap, charset: Charset) -> str:
+    """Return how many problems there are, and the key that lists them: ``2 problems · d``; "" for none."""
+    count = counted(told)
+    opens = keymap.sign(Scope.LESSON, "diagnoses", charset)
+    return f"{count} {GLYPHS[charset].between} {opens}" if count else ""

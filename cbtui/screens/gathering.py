@@ -1,0 +1,145 @@
+"""Reads and runs what is to be compared, tells how far that has come, and opens the comparison."""
+
+from threading import Event
+from time import monotonic
+from typing import ClassVar
+
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.containers import Container
+from textual.message import Message
+from textual.widgets import Static
+
+from cbtui.actions import Scope, bindings_of
+from cbtui.contenders import CannotCompareError, Contender, Gathered, GivenUp, Progress, Terms, gather
+from cbtui.screens.compare import CompareScreen
+from cbtui.screens.sized import SizedScreen
+from cbtui.theme import Charset
+from cbtui.widgets.key_bar import KeyBar
+
+_QUIET = 1.0
+"""Seconds in which nothing is said: most runs are there by then."""
+_BETWEEN = 0.1
+"""Seconds between two messages on how far it has come."""
+_WORKS = {"leave", "help", "command_palette"}
+
+
+class GatheringScreen(SizedScreen[None]):
+    """Gets two runs ready on a thread of its own.
+
+    What cannot be compared is said; the console ends with exit code 2 when that is left.
+    """
+
+    SCOPE = Scope.COMPARE
+    CSS_PATH = "gathering.tcss"
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.COMPARE)]
+
+    class Told(Message):
+        """How far it has come."""
+
+        def __init__(self, progress: Progress) -> None:
+            super().__init__()
+            self.progress = progress
+
+    class Ready(Message):
+        """Both runs are there."""
+
+        def __init__(self, found: Gathered) -> None:
+            super().__init__()
+            self.found = found
+
+    class Failed(Message):
+        """There is nothing to compare, for the reason in the sentence."""
+
+        def __init__(self, sentence: str) -> None:
+            super().__init__()
+            self.sentence = sentence
+
+    def __init__(self, first: Contender, second: Contender, terms: Terms, charset: Charset) -> None:
+        super().__init__()
+        self._contenders = (first, second)
+        self._terms = terms
+        self._charset = charset
+        self._given_up = Event()
+        self._began = monotonic()
+        self._told = 0.0
+        self._found: Gathered | None = None
+        self._failed = False
+
+    def compose(self) -> ComposeResult:
+        """Lay out the sentence."""
+        with Container():
+            yield Static(id="progress", markup=False)
+        yield KeyBar(Scope.COMPARE, self._charset)
+
+    def on_mount(self) -> None:
+        """Begin."""
+        self.run_worker(self._gather, thread=True)
+
+    def on_unmount(self) -> None:
+        """End what still runs, whatever way the screen is left."""
+        self._given_up.set()
+
+    def on_screen_resume(self) -> None:
+        """Open the comparison that came while another screen lay over this one."""
+        self._open()
+
+    # on the worker's thread
+
+    def _gather(self) -> None:
+        try:
+            found = gather(*self._contenders, self._terms, self._tell, self._given_up)
+        except CannotCompareError as error:
+            self.post_message(self.Failed(str(error)))
+        except GivenUp:
+            return
+        else:
+            self.post_message(self.Ready(found))
+
+    def _tell(self, progress: Progress) -> None:
+        now = monotonic()
+        if now - self._began >= _QUIET and now - self._told >= _BETWEEN:
+            self._told = now
+            self.post_message(self.Told(progress))
+
+    # on the screen's
+
+    @on(Told)
+    def _show_progress(self, message: Told) -> None:
+        self.query_one("#progress", Static).update(sentence_on(message.progress))
+
+    @on(Ready)
+    def _take(self, message: Ready) -> None:
+        self._found = message.found
+        self._open()
+
+    @on(Failed)
+    def _show_failure(self, message: Failed) -> None:
+        self._failed = True
+        self.query_one("#progress", Static).update(message.sentence)
+
+    def _open(self) -> None:
+        found = self._found
+        if found is not None and self.is_active:
+            bounds = None if self._terms.start == 0 and self._terms.end is None else found.window
+            self.app.switch_screen(CompareScreen(found.first, found.second, self._charset, bounds))
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Offer nothing but the way out until there is something to look at."""
+        return action in _WORKS
+
+    def action_leave(self) -> None:
+        """Give the comparison up."""
+        self._given_up.set()
+        if self._failed:
+            self.app.exit(return_code=2)
+        else:
+            self.dismiss()
+
+
+def sentence_on(progress: Progress) -> str:
+    """How far a run has come, in words."""
+    at = f"{progress.at / 1e9:.1f} s"
+    of = "" if progress.until is None else f" of {progress.until / 1e9:g} s"
+    return f"{progress.doing} {progress.name}: {at}{of}"

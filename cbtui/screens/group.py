@@ -1,0 +1,91 @@
+"""Asks which callback group a callback is to be in."""
+
+from typing import ClassVar
+
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.containers import Container
+from textual.content import Content
+from textual.widgets import OptionList, Static
+from textual.widgets.option_list import Option
+
+from cbtui.actions import Scope, bindings_of
+from cbtui.changeable import Callback
+from cbtui.changes import WISHES
+from cbtui.equivalent_code import code_of_group
+from cbtui.keymap import keymap_of
+from cbtui.screens.sized import SizedModal
+from cbtui.theme import Charset
+from cbtui.widgets.key_bar import KeyBar
+
+UNCHANGED = ""
+"""What the screen gives for the group that the program says."""
+
+_MEANINGS = {
+    "own": "an exclusive group that nobody else can hold",
+    "shared": "one exclusive group for all that you put there",
+    "reentrant": "one reentrant group for all that you put there",
+    "default": "the node's default group, which is exclusive",
+    UNCHANGED: "the group that the program says",
+}
+
+
+class GroupScreen(SizedModal[str]):
+    """Gives one of ``WISHES``, or ``UNCHANGED``; None if the person thinks better of it."""
+
+    SCOPE = Scope.GROUP
+    CSS_PATH = "window.tcss"
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.GROUP)]
+
+    def __init__(self, callback: Callback, chosen: str | None, charset: Charset) -> None:
+        super().__init__()
+        self._callback = callback
+        self._choices = (*WISHES, UNCHANGED)
+        self._chosen = chosen or UNCHANGED
+        self._charset = charset
+
+    def compose(self) -> ComposeResult:
+        """Lay out the question."""
+        with Container(classes="window") as window:
+            window.border_title = "Callback group"
+            now = f"In this run: group {self._callback.group}."
+            question = f"Which callback group does {self._callback.name} get?"
+            yield Static(f"{question} The run starts again.\n{now}", markup=False)
+            yield OptionList(*(self._option(choice) for choice in self._choices))
+            yield Static(classes="code")
+            yield KeyBar(Scope.GROUP, self._charset)
+
+    def on_mount(self) -> None:
+        """Highlight what is in force."""
+        self.query_one(OptionList).highlighted = self._choices.index(self._chosen)
+
+    @on(OptionList.OptionHighlighted)
+    def _show_code(self, event: OptionList.OptionHighlighted) -> None:
+        choice = self._choices[event.option_index]
+        if choice == UNCHANGED:
+            code = ["# as it is written"]
+        else:
+            code = code_of_group(self._callback.name, self._callback.kind, choice)
+        self.query_one(".code", Static).update(Content("\n".join(code)))
+
+    @on(OptionList.OptionSelected)
+    def _take(self, event: OptionList.OptionSelected) -> None:
+        self.dismiss(self._choices[event.option_index])
+
+    def action_choose(self, choice: str) -> None:
+        """Take a group."""
+        self.dismiss(choice)
+
+    def action_close(self) -> None:
+        """Leave everything as it is."""
+        self.dismiss(None)
+
+    def _option(self, choice: str) -> Option:
+        name = choice or "the program's"
+        key = (self._key(choice), "bold $text-accent")
+        return Option(Content.assemble(key, f"  {name:<13} ", (_MEANINGS[choice], "$text-muted")))
+
+    def _key(self, choice: str) -> str:
+        """The key that takes a group."""
+        return keymap_of(self.app).sign(Scope.GROUP, f"choose({choice!r})", self._charset)

@@ -1,0 +1,154 @@
+"""The panes of a run: which of them is shown, which has the keys, and what stands in its frame."""
+
+from collections.abc import Iterator
+
+from rich.text import Text
+from textual import on
+from textual.app import ComposeResult
+from textual.containers import Container
+from textual.events import DescendantFocus
+from textual.widget import Widget
+
+from cbtui.actions import PANES, Scope
+from cbtui.editor import EditorError, edit
+from cbtui.screens.lesson.running import RunningScreen
+from cbtui.widgets.code import CodeView
+from cbtui.widgets.diagnosis_line import DiagnosisLine
+from cbtui.widgets.factory import FactoryView
+from cbtui.widgets.guide import Guide
+from cbtui.widgets.key_bar import KeyBar
+from cbtui.widgets.lanes import Lanes
+from cbtui.widgets.log import LogFilter, LogLines, LogView
+from cbtui.widgets.robot import RobotView
+from cbtui.widgets.shell import Prompt, ShellOutput, ShellView
+from cbtui.widgets.status_line import StatusLine
+from cbtui.widgets.tabs import Tabs, title_of
+
+_SCOPES: dict[type[Widget], Scope] = {
+    Prompt: Scope.PROMPT,
+    LogLines: Scope.LOG,
+    LogFilter: Scope.FILTER,
+    CodeView: Scope.CODE,
+}
+"""Whose keys are told of while it has the focus."""
+
+
+class PanedScreen(RunningScreen):
+    """Lays out lines, lanes and panes."""
+
+    def compose(self) -> ComposeResult:
+        """Lay out lines, lanes and panes."""
+        yield StatusLine()
+        yield Lanes()
+        yield Tabs()
+        with Container(id="panes"):
+            yield from self._panes()
+        yield DiagnosisLine()
+        yield KeyBar(Scope.LESSON, self._charset)
+
+    def _panes(self) -> Iterator[Widget]:
+        factory, robot = FactoryView(id="factory"), RobotView(id="robot")
+        factory.can_focus = robot.can_focus = True
+        guide = Guide(self._subject.guide, id="guide")
+        subject = self._subject
+        code = CodeView(subject.node_path, subject.source, subject.sources, id="code")
+        for pane in (guide, code, robot, factory, LogView(id="log"), ShellView(id="shell")):
+            assert pane.id is not None
+            pane.border_title = title_of(pane.id)
+            pane.add_class("pane")
+            yield pane
+
+    def _widget(self, pane: str) -> Widget:
+        return self.query_one(f"#{pane}")
+
+    def _show(self, pane: str) -> None:
+        """Make a pane the current one."""
+        self._pane = pane
+        for name in PANES:
+            self._widget(name).set_class(name == pane, "-current", update=False)
+        self._widget("log").set_class(pane == "shell", "-behind", update=False)
+        self.update_node_styles(animate=False)
+        self.query_one(Tabs).current = pane
+        self._entitle()
+        place = self._focus_of(pane)
+        if not self._widget(pane).has_focus_within:
+            place.focus()
+        self._stale = True
+
+    def _focus_of(self, pane: str) -> Widget:
+        """What of a pane takes the keys."""
+        insides: dict[str, type[Widget]] = {"log": LogLines, "shell": ShellOutput}
+        return self.query_one(insides[pane]) if pane in insides else self._widget(pane)
+
+    def _entitle(self) -> None:
+        """Say in frames and tabs what code and log say of themselves."""
+        notes = {"code": self.query_one(CodeView).note, "log": self.query_one(LogView).note}
+        for pane, note in notes.items():
+            self._widget(pane).border_title = Text(f"{title_of(pane)} {note}")
+        changed = f"changed: {self._changes.words}" if self._changes.words else ""
+        self.query_one(Tabs).note = " · ".join(filter(None, (notes.get(self._pane), changed)))
+
+    @on(Tabs.Picked)
+    def _pick(self, message: Tabs.Picked) -> None:
+        self._show(message.pane)
+
+    def on_descendant_focus(self, event: DescendantFocus) -> None:
+        """Make the pane current that the person clicked on."""
+        ids = (widget.id for widget in event.widget.ancestors_with_self)
+        pane = next((each for each in ids if each in PANES), None)
+        if pane is not None and pane != self._pane:
+            self._show(pane)
+        scopes = (scope for kind, scope in _SCOPES.items() if isinstance(self.focused, kind))
+        self.query_one(KeyBar).show(next(scopes, Scope.LESSON))
+
+    @on(Prompt.Given)
+    def _give_line(self, message: Prompt.Given) -> None:
+        self._run.give_line(message.text)
+
+    @on(Prompt.Interrupted)
+    def _interrupt_line(self) -> None:
+        self._run.interrupt_line()
+
+    @on(Prompt.CompletionWanted)
+    def _complete_line(self, message: Prompt.CompletionWanted) -> None:
+        self._run.complete_line(message.text, message.cursor)
+
+    def action_prompt(self) -> None:
+        """Let the person type a ros2 line."""
+        self._show("shell")
+        self.query_one(ShellView).focus_prompt()
+
+    def action_filter_log(self) -> None:
+        """Let the person type a filter for the log."""
+        self._show("log")
+        self.query_one(LogView).focus_filter()
+
+    @on(CodeView.EditorWanted)
+    def action_open_source(self) -> None:
+        """Open the code in the person's editor; the run goes on meanwhile."""
+        self.run_worker(self._open_source(), group="editor", exclusive=True)
+
+    async def _open_source(self) -> None:
+        path, line = self.query_one(CodeView).place
+        try:
+            await edit(self.app, path, line)
+        except EditorError as error:
+            self._tell(str(error))
+        self.query_one(CodeView).look_at_disk()
+
+    def action_show_pane(self, pane: str) -> None:
+        """Go to a pane."""
+        self._show(pane)
+
+    def action_next_pane(self) -> None:
+        """Go to the next pane."""
+        self._show(PANES[(PANES.index(self._pane) + 1) % len(PANES)])
+
+    def action_maximise(self) -> None:
+        """Let the current pane fill the screen, or give the others their room back."""
+        self.toggle_class("-maximised")
+        self._stale = True
+
+    def action_cycle_camera(self) -> None:
+        """Show the robot's map, the camera's picture, or both."""
+        self.query_one(RobotView).cycle_camera()

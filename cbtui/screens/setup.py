@@ -1,0 +1,113 @@
+"""The set-up of a run in one window: everything that can be changed, and the code that would change it."""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any, ClassVar
+
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.containers import Container, VerticalScroll
+from textual.content import Content
+from textual.widgets import OptionList, Static
+from textual.widgets.option_list import Option
+
+from cbtui.actions import Scope, bindings_of
+from cbtui.changeable import Changeable
+from cbtui.changes import Changes
+from cbtui.equivalent_code import code_of
+from cbtui.screens.setup_rows import Row, rows_of
+from cbtui.screens.sized import SizedModal
+from cbtui.theme import Charset
+from cbtui.widgets.cells import fit
+from cbtui.widgets.key_bar import KeyBar
+
+_COLUMNS = (19, 7, 30, 12)
+"""Of a row: what it is about, which aspect of it, how it is, what it was changed to."""
+
+
+class SetupScreen(SizedModal[Changes]):
+    """Gives the changes that the run is to start again with; None if it is to go on as it is.
+
+    ``first`` tells which row is highlighted first.
+    """
+
+    SCOPE = Scope.SETUP
+    CSS_PATH = "window.tcss"
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.SETUP)]
+
+    def __init__(
+        self, about: Changeable, changes: Changes, first: Callable[[Row], bool], charset: Charset
+    ) -> None:
+        super().__init__()
+        self._about = about
+        self._changes = changes
+        self._rows = rows_of(about)
+        self._first = first
+        self._charset = charset
+
+    def compose(self) -> ComposeResult:
+        """Lay out the rows, and the code of what is changed."""
+        with Container(classes="window") as window:
+            window.border_title = "Set-up"
+            yield Static(Content.styled(self._line("", "", "in this run", "changed to"), "$text-muted"))
+            yield OptionList()
+            with VerticalScroll(can_focus=False):
+                yield Static(classes="code")
+            yield KeyBar(Scope.SETUP, self._charset)
+
+    def on_mount(self) -> None:
+        """Highlight the row that was asked for."""
+        self._show()
+        wanted = (place for place, row in enumerate(self._rows) if self._first(row))
+        self.query_one(OptionList).highlighted = next(wanted, 0)
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Offer to undo what there is."""
+        return action != "undo_all" or self._changes != Changes()
+
+    @on(OptionList.OptionSelected)
+    def _ask(self, event: OptionList.OptionSelected) -> None:
+        row = self._rows[event.option_index]
+        self.app.push_screen(row.ask(self._changes, self._charset), partial(self._take, row))
+
+    def _take(self, row: Row, answer: Any) -> None:
+        if answer is not None:
+            self._changes = row.take(self._changes, answer)
+            self._show()
+
+    def action_change(self) -> None:
+        """Ask for what is highlighted."""
+        self.query_one(OptionList).action_select()
+
+    def action_undo_all(self) -> None:
+        """Have everything as the program says."""
+        self._changes = Changes()
+        self._show()
+
+    def action_run(self) -> None:
+        """Run again with what is chosen."""
+        self.dismiss(self._changes)
+
+    def action_close(self) -> None:
+        """Leave the run as it is."""
+        self.dismiss(None)
+
+    def _show(self) -> None:
+        rows = self.query_one(OptionList)
+        place = rows.highlighted
+        rows.set_options([self._option(row) for row in self._rows])
+        rows.highlighted = place
+        code = code_of(self._changes, self._about) or ["# nothing is changed"]
+        self.query_one(".code", Static).update(Content("\n".join(code)))
+        self.query_one(KeyBar).changed()
+
+    def _option(self, row: Row) -> Option:
+        changed_to = row.changed_to(self._changes)
+        line = self._line(row.what, row.aspect, row.now, changed_to)
+        kept = len(line) - _COLUMNS[-1]
+        return Option(Content.assemble(line[:kept], (line[kept:], "bold $text-accent")))
+
+    def _line(self, *texts: str) -> str:
+        parts = (fit(text, width, self._charset) for text, width in zip(texts, _COLUMNS, strict=True))
+        return " ".join(parts)

@@ -1,0 +1,189 @@
+"""The lines of the set-up window: what each can change, how it asks, and what it makes of the answer."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, Protocol
+
+from textual.screen import ModalScreen
+
+from cbtui.changeable import Argument, Callback, Changeable
+from cbtui.changes import Changes
+from cbtui.equivalent_code import code_of_argument, code_of_period, code_of_sensor_rate
+from cbtui.quantities import PERIOD, SENSOR_RATE, Quantity
+from cbtui.screens.group import UNCHANGED, GroupScreen
+from cbtui.screens.number import NumberScreen
+from cbtui.screens.threads import ThreadsScreen
+from cbtui.theme import Charset
+
+_SECOND = 1_000_000_000
+
+
+class Row(Protocol):
+    """One thing that can be changed: ``what`` of it, and how the run on screen has it ``now``."""
+
+    @property
+    def what(self) -> str:
+        """The callback, or what else it is about."""
+
+    @property
+    def aspect(self) -> str:
+        """What of it can be changed."""
+
+    @property
+    def now(self) -> str:
+        """How the run on screen has it."""
+
+    def changed_to(self, changes: Changes) -> str:
+        """What it was changed to; "" if it was not."""
+
+    def ask(self, changes: Changes, charset: Charset) -> ModalScreen[Any]:
+        """The window that asks for it."""
+
+    def take(self, changes: Changes, answer: Any) -> Changes:
+        """The changes with what that window gave."""
+
+
+@dataclass(frozen=True)
+class ThreadsRow:
+    """How many threads the executor gets."""
+
+    about: Changeable
+    what = "executor"
+    aspect = "threads"
+
+    @property
+    def now(self) -> str:
+        """The run's executor."""
+        return self.about.executor_now
+
+    def changed_to(self, changes: Changes) -> str:
+        """The number that was chosen."""
+        return "" if changes.threads is None else f"{changes.threads} thread{'s'[: changes.threads - 1]}"
+
+    def ask(self, changes: Changes, charset: Charset) -> ModalScreen[Any]:
+        """Ask for a number."""
+        return ThreadsScreen(self.about, changes.threads, charset)
+
+    def take(self, changes: Changes, answer: int) -> Changes:
+        """Take the number; 0 is the program's own."""
+        return replace(changes, threads=answer or None)
+
+
+@dataclass(frozen=True)
+class GroupRow:
+    """Which group a callback is in."""
+
+    callback: Callback
+    aspect = "group"
+
+    @property
+    def what(self) -> str:
+        """The callback."""
+        return self.callback.name
+
+    @property
+    def now(self) -> str:
+        """Its group, and who else is in it."""
+        return self.callback.group
+
+    def changed_to(self, changes: Changes) -> str:
+        """The group that was chosen."""
+        return changes.group_of(self.callback.place) or ""
+
+    def ask(self, changes: Changes, charset: Charset) -> ModalScreen[Any]:
+        """Ask for a group."""
+        return GroupScreen(self.callback, changes.group_of(self.callback.place), charset)
+
+    def take(self, changes: Changes, answer: str) -> Changes:
+        """Take the group."""
+        return changes.with_group(self.callback.place, None if answer == UNCHANGED else answer)
+
+
+@dataclass(frozen=True)
+class NumberRow:
+    """A number: ``chosen`` finds it among the changes, ``changed`` puts it there, ``code`` is its line."""
+
+    what: str
+    aspect: str
+    quantity: Quantity
+    number: float
+    chosen: Callable[[Changes], float | None]
+    changed: Callable[[Changes, float | None], Changes]
+    code: Callable[[float], str]
+
+    @property
+    def now(self) -> str:
+        """The run's number."""
+        return self.quantity.shown(self.number)
+
+    def changed_to(self, changes: Changes) -> str:
+        """The number that was chosen."""
+        number = self.chosen(changes)
+        return "" if number is None else self.quantity.shown(number)
+
+    def ask(self, changes: Changes, charset: Charset) -> ModalScreen[Any]:
+        """Ask for a number."""
+        chosen = self.chosen(changes)
+        number = self.number if chosen is None else chosen
+        return NumberScreen(f"{self.what}: {self.aspect}", self.quantity, number, self.code, charset)
+
+    def take(self, changes: Changes, answer: tuple[float | None]) -> Changes:
+        """Take the number."""
+        return self.changed(changes, answer[0])
+
+
+def rows_of(about: Changeable) -> list[Row]:
+    """Return everything that can be changed."""
+    rows: list[Row] = [ThreadsRow(about)]
+    rows += [GroupRow(callback) for callback in about.callbacks]
+    rows += [_period_row(callback) for callback in about.callbacks if callback.period]
+    rows += [_argument_row(argument) for argument in about.arguments]
+    if about.sensor_rate is not None:
+        rows.append(_sensors_row(about.sensor_rate))
+    return rows
+
+
+def _period_row(callback: Callback) -> NumberRow:
+    place = callback.place
+
+    def chosen(changes: Changes) -> float | None:
+        period = changes.period_of(place)
+        return None if period is None else period / _SECOND
+
+    def changed(changes: Changes, seconds: float | None) -> Changes:
+        return changes.with_period(place, None if seconds is None else round(seconds * _SECOND))
+
+    return NumberRow(
+        callback.name,
+        "period",
+        PERIOD,
+        callback.period / _SECOND,
+        chosen,
+        changed,
+        lambda seconds: code_of_period(callback.name, round(seconds * _SECOND)),
+    )
+
+
+def _argument_row(argument: Argument) -> NumberRow:
+    return NumberRow(
+        argument.quantity.name,
+        "number",
+        argument.quantity,
+        argument.now,
+        lambda changes: changes.settings.get(argument.name),
+        lambda changes, number: changes.with_setting(argument.name, number),
+        partial(code_of_argument, argument.name),
+    )
+
+
+def _sensors_row(rate: float) -> NumberRow:
+    return NumberRow(
+        "robot's sensors",
+        "rate",
+        SENSOR_RATE,
+        rate,
+        lambda changes: changes.sensor_rate,
+        lambda changes, chosen: replace(changes, sensor_rate=chosen),
+        code_of_sensor_rate,
+    )

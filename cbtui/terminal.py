@@ -1,0 +1,37 @@
+"""What the terminal can do, as far as its environment tells."""
+
+from collections.abc import Mapping
+
+BROWSER_DRIVER = "cbtui.web.driver:BrowserDriver"
+"""Textual's name of what the console draws to in a browser."""
+
+_COERCED = ("C.UTF-8", "C.utf8", "UTF-8")
+
+
+def charset_of(environment: Mapping[str, str], utf8_mode: bool) -> str:
+    """Return the best charset that the terminal is sure to have.
+
+    The locale counts as POSIX has it: the first of ``LC_ALL``, ``LC_CTYPE`` and ``LANG`` that is set.
+    ``utf8_mode`` is ``sys.flags.utf8_mode``: where the locale was C, Python turns it on and puts an
+    ``LC_CTYPE`` of its own into the environment (PEP 538 and 540).
+    The Linux text console has a font of 256 or 512 glyphs, without braille and without diagonals.
+    """
+    if is_browser(environment):
+        return "braille"
+    if environment.get("TERM") == "linux":
+        return "ascii"
+    names = [environment.get(name, "") for name in ("LC_ALL", "LC_CTYPE", "LANG")]
+    if utf8_mode and names[1] in _COERCED:
+        names[1] = ""
+    locale = next(filter(None, names), "C")
+    return "braille" if "utf8" in locale.lower().replace("-", "") else "ascii"
+
+
+def is_dumb(environment: Mapping[str, str]) -> bool:
+    """Tell whether the terminal cannot even place its cursor."""
+    return environment.get("TERM") in {"dumb", "unknown"}
+
+
+def is_browser(environment: Mapping[str, str]) -> bool:
+    """Tell whether the console is shown in a browser, which talks to it through pipes."""
+    return environment.get("TEXTUAL_DRIVER") == BROWSER_DRIVER

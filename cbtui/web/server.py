@@ -1,0 +1,129 @@
+"""The web server: hands out the page, and gives every visitor a console as long as there is room."""
+
+import asyncio
+import signal
+from collections.abc import Awaitable, Callable, Sequence
+from pathlib import Path
+
+import aiohttp_jinja2
+from aiohttp import web
+from textual_serve.app_service import AppService
+from textual_serve.server import Server, to_int
+
+from cbtui.web.guard import Guard
+from cbtui.web.visitor import Visitor
+
+_HEARTBEAT = 15.0
+_MOST_A_MESSAGE = 1 << 20
+_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+_ONLY_OURS = (
+    "default-src 'self'; style-src 'self' 'unsafe-inline'; script-src 'self' 'unsafe-inline'; "
+    "img-src 'self' data:; font-src 'self' data:; connect-src 'self' ws: wss:; frame-ancestors 'none'"
+)
+"""The page takes nothing from elsewhere, and no other page shows it in a frame of its own."""
+
+Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
+
+
+class ConsoleServer(Server):
+    """Serves ``command`` (the words of a command line) to at most ``most`` visitors at a time.
+
+    ``public_url`` is where visitors find the server when that is not ``host`` and ``port``.
+    """
+
+    def __init__(
+        self, command: Sequence[str], host: str, port: int, most: int, public_url: str | None
+    ) -> None:
+        super().__init__(
+            " ".join(command), host, port, title="cbtui", templates_path=Path(__file__).parent / "pages"
+        )
+        self._words = command
+        self._most = most
+        self._outside = public_url
+        self._guard = Guard(host, public_url)
+        self._visitors: set[Visitor] = set()
+
+    async def serve_until_told(self, ready: Callable[[str], None]) -> None:
+        """Serve until a signal ends it, and end every visitor's console then.
+
+        ``ready`` is told the address once there is one. Raises OSError if it cannot be had.
+        """
+        loop, over = asyncio.get_running_loop(), asyncio.Event()
+        for each in _SIGNALS:
+            loop.add_signal_handler(each, over.set)
+        runner = web.AppRunner(await self._make_app(), access_log=None)
+        await runner.setup()
+        try:
+            await web.TCPSite(runner, self.host, self.port).start()
+            name = f"[{self.host}]" if ":" in self.host else self.host
+            ready(self._outside or f"http://{name}:{runner.addresses[0][1]}")
+            await over.wait()
+        finally:
+            await runner.cleanup()
+
+    async def on_startup(self, app: web.Application) -> None:
+        """Say nothing: the command does."""
+
+    async def on_shutdown(self, app: web.Application) -> None:
+        """End the visitors' consoles."""
+        await asyncio.gather(*(visitor.stop() for visitor in self._visitors))
+
+    async def _make_app(self) -> web.Application:
+        app = await super()._make_app()
+        app.middlewares.append(self._let_in)
+        return app
+
+    @web.middleware
+    async def _let_in(self, request: web.Request, handler: Handler) -> web.StreamResponse:
+        objection = self._guard.objection(request.headers)
+        if objection is not None:
+            return web.Response(status=403, text=f"{objection}\n")
+        return await handler(request)
+
+    async def handle_index(self, request: web.Request) -> web.Response:
+        """Hand out the page."""
+        page, status = ("full.html", 503) if self._full else ("console.html", 200)
+        address = self._outside.rstrip("/") if self._outside else f"http://{request.host}"
+        context = {
+            "websocket": f"{address.replace('http', 'ws', 1)}/ws",
+            "font_size": min(max(to_int(request.query.get("fontsize", "16"), 16), 6), 48),
+            "sentence": self._no_room,
+        }
+        response = aiohttp_jinja2.render_template(page, request, context, status=status)
+        response.headers["Content-Security-Policy"] = _ONLY_OURS
+        return response
+
+    async def handle_websocket(self, request: web.Request) -> web.WebSocketResponse:
+        """Give a visitor a console until either has enough."""
+        websocket = web.WebSocketResponse(heartbeat=_HEARTBEAT, max_msg_size=_MOST_A_MESSAGE)
+        await websocket.prepare(request)
+        if self._full:
+            await websocket.send_bytes(f"\r\n {self._no_room}\r\n".encode())
+            await websocket.close()
+            return websocket
+        visitor = Visitor(self._words, websocket, self.download_manager)
+        self._visitors.add(visitor)
+        try:
+            await visitor.start(
+                to_int(request.query.get("width", ""), 80), to_int(request.query.get("height", ""), 24)
+            )
+            await self._process_messages(websocket, visitor)
+        finally:
+            await visitor.stop()
+            self._visitors.discard(visitor)
+        return websocket
+
+    async def _process_messages(self, websocket: web.WebSocketResponse, app_service: AppService) -> None:
+        try:
+            await super()._process_messages(websocket, app_service)
+        except (AssertionError, LookupError, TypeError, ValueError, AttributeError):
+            await websocket.close(message=b"that is not what the page sends")
+
+    @property
+    def _full(self) -> bool:
+        return len(self._visitors) >= self._most
+
+    @property
+    def _no_room(self) -> str:
+        places = "The only place is" if self._most == 1 else f"All {self._most} places are"
+        return f"{places} taken; come back when somebody has left."

@@ -1,0 +1,112 @@
+"""The source files of the programs that run, as they were when they were started or recorded."""
+
+import sysconfig
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from types import MappingProxyType
+
+from rich.cells import cell_len
+
+import sim
+from cbtui.widgets.code.highlight import Word, highlight
+
+_NOT_THE_LEARNERS = tuple(
+    {
+        Path(place).resolve()
+        for place in (*sim.__path__, *map(sysconfig.get_path, ("stdlib", "purelib", "platlib")))
+    }
+)
+"""Folders whose files nobody writes who learns: ours, Python's, and those of installed libraries."""
+
+
+@dataclass(frozen=True, eq=False)
+class SourceFile:
+    """A file, its text, and the text's lines in words of a kind."""
+
+    path: Path
+    text: str
+    lines: tuple[list[Word], ...]
+    recorded: bool = False
+
+    @property
+    def widest(self) -> int:
+        """Columns of the longest line."""
+        return max((sum(cell_len(word.text) for word in line) for line in self.lines), default=0)
+
+    def has_changed(self) -> bool:
+        """Whether the file holds another text now; one that was recorded, or cannot be read, does not."""
+        text = None if self.recorded else _read(self.path)
+        return text is not None and text != self.text
+
+
+class SourceFiles:
+    """Finds the file that an entity's callback is in.
+
+    ``main`` is the program's own file, ``source`` its text where that is not what lies there now, and
+    ``recorded`` the texts that a recording holds, by path. A file is read once, when it is first asked for.
+    """
+
+    def __init__(
+        self, main: Path, source: str | None = None, recorded: Mapping[str, str] = MappingProxyType({})
+    ) -> None:
+        self._recorded = recorded
+        self._found: dict[str, SourceFile | None] = {}
+        text = source if source is not None else _read(main)
+        self.main = _source_file(main, text or "", recorded=source is not None)
+        self._real_main = main.resolve()
+        self._by_path = {self._real_main: self.main}
+
+    def of(self, file: str) -> SourceFile | None:
+        """Return a callback's file; None for one that the learner has not written, or that cannot be read.
+
+        A name without a folder is taken for the program's own file.
+        """
+        if file in self._recorded and self._found.get(file) is None:
+            self._found.pop(file, None)
+        if file not in self._found:
+            self._found[file] = self._find(file)
+        return self._found[file]
+
+    def read_anew(self) -> None:
+        """Take the files as they are now; one that cannot be read stays as it was."""
+        self._found.clear()
+        for path, known in self._by_path.items():
+            text = _read(known.path) if known.has_changed() else None
+            if text is not None:
+                self._by_path[path] = _source_file(known.path, text)
+        self.main = self._by_path[self._real_main]
+
+    def _find(self, file: str) -> SourceFile | None:
+        path = Path(file.replace("\0", ""))
+        if file == self.main.path.name:
+            return self.main
+        if not path.is_absolute():
+            return None
+        real = path.resolve()
+        if real in self._by_path:
+            return self._by_path[real]
+        if self._is_a_librarys(real):
+            return None
+        recorded = self._recorded.get(file)
+        text = _read(path) if recorded is None else recorded
+        if text is None:
+            return None
+        self._by_path[real] = _source_file(path, text, recorded=recorded is not None or self.main.recorded)
+        return self._by_path[real]
+
+    def _is_a_librarys(self, path: Path) -> bool:
+        """Tell whether a file lies where no learner writes; a lesson may be installed there itself."""
+        folders = (folder for folder in _NOT_THE_LEARNERS if not self._real_main.is_relative_to(folder))
+        return any(path.is_relative_to(folder) for folder in folders)
+
+
+def _source_file(path: Path, text: str, *, recorded: bool = False) -> SourceFile:
+    return SourceFile(path, text, tuple(highlight(text)), recorded)
+
+
+def _read(path: Path) -> str | None:
+    try:
+        return path.read_text(encoding="utf-8", errors="replace") if path.is_file() else None
+    except OSError:
+        return None

@@ -1,0 +1,95 @@
+"""The table of a comparison on screen, the line above it, and the lines above the lanes of each run."""
+
+from collections.abc import Sequence
+
+from rich.segment import Segment
+from textual.geometry import Size
+from textual.reactive import reactive
+from textual.strip import Strip
+
+from cbtui.theme import Charset, Ink, Role, Run
+from cbtui.widgets.cells import fit
+from cbtui.widgets.comparison_painter import Line, headings, table
+from cbtui.widgets.inked import Inked
+from cbtui.widgets.painted import Painted
+from sim.trace.comparison_rows import Section
+
+_RULE = Ink(Role.FAINT)
+
+
+class Words(Painted):
+    """One line of words; what does not fit is cut. ``ruled`` draws a line from their end to the edge."""
+
+    words: reactive[tuple[Run, ...]] = reactive((), repaint=False)
+
+    def __init__(self, charset: Charset, *, ruled: str = "", id: str | None = None) -> None:  # noqa: A002
+        super().__init__(id=id)
+        self._charset = charset
+        self._ruled = ruled
+
+    def rows(self, size: Size) -> Sequence[Sequence[Run]]:
+        """Paint the line."""
+        room = size.width
+        line: list[Run] = []
+        for text, ink in self.words:
+            shown = fit(text, room, self._charset).rstrip() if len(text) > room else text
+            line.append(Run(shown, ink))
+            room -= len(shown)
+        return [[*line, Run((self._ruled or " ") * room, _RULE)]]
+
+    def watch_words(self) -> None:
+        """Say something else."""
+        self.changed()
+
+
+class ComparisonHeadings(Painted):
+    """Names the columns of the table, which scrolls below it."""
+
+    def __init__(self, charset: Charset) -> None:
+        super().__init__()
+        self._charset = charset
+
+    def rows(self, size: Size) -> Sequence[Sequence[Run]]:
+        """Paint the names."""
+        bar = Run(" " * ComparisonTable.BAR, _RULE)
+        return [[*headings(size.width - ComparisonTable.BAR, self._charset), bar]]
+
+
+class ComparisonTable(Inked):
+    """The figures of two runs; scrolls where they have no room. ``show`` gives it others."""
+
+    BAR = 1
+    """Columns that are kept for the scroll bar."""
+
+    can_focus = False
+
+    def __init__(self, charset: Charset) -> None:
+        super().__init__()
+        self._charset = charset
+        self._sections: tuple[Section, ...] = ()
+        self._lines: list[Line] = []
+
+    def show(self, sections: tuple[Section, ...]) -> None:
+        """Show the sections; the place that the person scrolled to stays."""
+        if sections != self._sections:
+            self._sections = sections
+            self._paint()
+
+    def on_resize(self) -> None:
+        """Share the sections out anew."""
+        self._paint()
+
+    def render_line(self, y: int) -> Strip:
+        """Return one line of the view."""
+        place = self.scroll_offset.y + y
+        width = self.scrollable_content_region.width
+        if place >= len(self._lines):
+            return Strip.blank(width, self.in_class(""))
+        line = Strip([Segment(run.text, self.in_ink(run.ink)) for run in self._lines[place]])
+        return line.adjust_cell_length(width, self.in_class(""))
+
+    def _paint(self) -> None:
+        width = max(0, self.size.width - self.BAR)
+        self._lines = table(self._sections, width, self._charset) if self._sections else []
+        self.virtual_size = Size(width, len(self._lines))
+        self.refresh()

@@ -1,0 +1,62 @@
+"""Draws areas: their walls, the sign on the upper one, and the seats inside."""
+
+from dataclasses import dataclass
+
+from cbtui.theme import Ink, Role
+from cbtui.widgets.factory.canvas import PLAIN, WARN, Canvas
+from cbtui.widgets.factory.glyphs import Walls
+from cbtui.widgets.factory.large_seats import LargeSeats
+from cbtui.widgets.factory.plan import LARGE, Columns, Density, Place
+from cbtui.widgets.factory.scene import Area, Scene
+from cbtui.widgets.factory.seats import Seats
+from cbtui.widgets.factory.words import first_fitting, seats_of
+
+
+@dataclass(frozen=True, slots=True)
+class Areas:
+    """Draws areas."""
+
+    canvas: Canvas
+    scene: Scene
+    columns: Columns
+
+    def top(self, area: Area, line: int, joined: bool) -> None:
+        """Draw the upper wall with the group's letter and its seats; ``joined`` to the area above."""
+        walls = self._walls(area)
+        left, right = (walls.left_joint, walls.right_joint) if joined else (walls.top_left, walls.top_right)
+        self._wall(area, line, left, right)
+        at, end = self.columns.belts + 2, self.columns.right_wall
+        at = self.canvas.write(at, line, f" {area.group.letter}", Ink(Role.LETTER, area.number), end - at)
+        seats = first_fitting([f" {text} " for text in seats_of(area)], end - at - 1)
+        at = self.canvas.write(at, line, seats, PLAIN, len(seats))
+        if area.waiting:
+            ways = ("waits outside", "waits") if area.waiting == 1 else ("wait outside", "wait")
+            text = first_fitting([f" {area.waiting} {words} " for words in ways], end - at - 2)
+            self.canvas.write(end - 1 - len(text), line, text, WARN, len(text))
+
+    def bottom(self, area: Area, line: int) -> None:
+        """Draw the lower wall."""
+        walls = self._walls(area)
+        self._wall(area, line, walls.bottom_left, walls.bottom_right)
+
+    def inner(self, place: Place, density: Density) -> None:
+        """Draw side walls, seats and workers, and the group's letter where no upper wall tells it."""
+        area, ink = place.area, Ink(Role.LINE, place.area.number)
+        for line in range(place.first, place.first + place.rows):
+            self.canvas.put(self.columns.belts, line, self._walls(area).side, ink)
+            self.canvas.put(self.columns.right_wall, line, self._walls(area).side, ink)
+        at = self.columns.belts + 1
+        if not density.top:
+            at = self.canvas.write(at, place.first, area.group.letter, Ink(Role.LETTER, area.number), 3)
+        seats = LargeSeats if density is LARGE else Seats
+        seats(self.canvas, self.scene, place, self.columns, at).draw()
+
+    def _walls(self, area: Area) -> Walls:
+        return self.canvas.glyphs.open if area.is_open else self.canvas.glyphs.walled
+
+    def _wall(self, area: Area, line: int, left: str, right: str) -> None:
+        ink = Ink(Role.LINE, area.number)
+        start, end = self.columns.belts, self.columns.right_wall
+        self.canvas.fill(start + 1, end, line, self._walls(area).top, ink)
+        self.canvas.put(start, line, left, ink)
+        self.canvas.put(end, line, right, ink)

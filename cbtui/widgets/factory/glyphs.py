@@ -1,0 +1,117 @@
+"""The signs of the factory in each charset: workers, seats, boxes, belts, walls."""
+
+from dataclasses import dataclass
+
+from cbtui.theme import Charset
+
+
+@dataclass(frozen=True, slots=True)
+class Walls:
+    """What an area is enclosed by; the joints are where an area stands on the wall of the one above."""
+
+    top: str
+    side: str
+    top_left: str
+    top_right: str
+    left_joint: str
+    right_joint: str
+    bottom_left: str
+    bottom_right: str
+
+
+@dataclass(frozen=True, slots=True)
+class Figure:
+    """A worker in three rows and three columns, and what it sits on: rows of seven columns, the lower two."""
+
+    body: str
+    legs: str
+    comes: str
+    leaves: str
+    armchair: tuple[str, str]
+    stool: tuple[str, str]
+
+
+_DRAWN = Figure("/█\\", "/ \\", "< \\", "/ >", ("▐     ▌", "▐▄▄▄▄▄▌"), ("       ", " (___) "))
+
+
+@dataclass(frozen=True, slots=True)
+class FactoryGlyphs:
+    """One charset's signs. Seats are pairs: what stands left and right of the worker."""
+
+    busy: str
+    idle: str
+    away: str
+    seat: tuple[str, str]
+    open_seat: tuple[str, str]
+    comes: str
+    leaves: str
+    box: str
+    slot: str
+    belt: str
+    door: str
+    clock: str
+    tick: str
+    walled: Walls
+    open: Walls
+    figure: Figure
+
+
+_WALLED = Walls("━", "┃", "┏", "┓", "┣", "┫", "┗", "┛")
+_OPEN = Walls("╌", "╎", "┌", "┐", "├", "┤", "└", "┘")
+
+FACTORY_GLYPHS = {
+    Charset.BRAILLE: FactoryGlyphs(
+        busy="☻",
+        idle="☺",
+        away="·",
+        seat=("▐", "▌"),
+        open_seat=("(", ")"),
+        comes="◂",
+        leaves="▸",
+        box="■",
+        slot="□",
+        belt="─",
+        door="▸",
+        clock="◷",
+        tick="◆",
+        walled=_WALLED,
+        open=_OPEN,
+        figure=_DRAWN,
+    ),
+    Charset.BLOCK: FactoryGlyphs(
+        busy="☻",
+        idle="☺",
+        away="·",
+        seat=("▐", "▌"),
+        open_seat=("(", ")"),
+        comes="◄",
+        leaves="►",
+        box="■",
+        slot="·",
+        belt="─",
+        door="►",
+        clock="○",
+        tick="♦",
+        walled=Walls("═", "║", "╔", "╗", "╠", "╣", "╚", "╝"),
+        open=Walls("·", ":", "·", "·", "·", "·", "·", "·"),
+        figure=_DRAWN,
+    ),
+    Charset.ASCII: FactoryGlyphs(
+        busy="@",
+        idle="o",
+        away=".",
+        seat=("[", "]"),
+        open_seat=("(", ")"),
+        comes="<",
+        leaves=">",
+        box="#",
+        slot=".",
+        belt="-",
+        door=">",
+        clock="every",
+        tick="*",
+        walled=Walls("=", "|", "+", "+", "+", "+", "+", "+"),
+        open=Walls(".", ":", ".", ".", ":", ":", ".", "."),
+        figure=Figure("/|\\", "/ \\", "< \\", "/ >", ("[     ]", "[_____]"), ("       ", " (___) ")),
+    ),
+}

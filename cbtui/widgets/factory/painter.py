@@ -1,0 +1,105 @@
+"""Paints the factory as rows of text in inks; needs no terminal, so that a picture can be tested as text."""
+
+from collections.abc import Sequence
+
+from cbtui.theme import Charset, Run
+from cbtui.widgets.factory.areas import Areas
+from cbtui.widgets.factory.belts import Belts
+from cbtui.widgets.factory.canvas import FAINT, STRONG, WARN, Canvas
+from cbtui.widgets.factory.plan import LARGE, LEAST_HEIGHT, LEAST_WIDTH, Place, Plan, plan_for
+from cbtui.widgets.factory.scene import Scene, scene_of
+from cbtui.widgets.factory.words import first_fitting, headline
+from cbtui.widgets.factory.yard import draw_bench, draw_large_yard, draw_yard
+from sim.trace.model import Nanoseconds
+from sim.trace.timeline import Timeline
+
+GLANCE: Nanoseconds = 150_000_000
+"""How long a worker is seen walking, where nothing else is said."""
+
+
+class FactoryPainter:
+    """Paints a run as a factory: areas with seats, belts that bring work, workers that do it."""
+
+    def __init__(self, charset: Charset = Charset.BRAILLE) -> None:
+        self.charset = charset
+
+    def text(
+        self, timeline: Timeline, now: Nanoseconds, width: int, height: int, glance: Nanoseconds = GLANCE
+    ) -> str:
+        """Return the picture of ``paint`` as plain text."""
+        rows = self.paint(timeline, now, width, height, glance)
+        return "\n".join("".join(run.text for run in row) for row in rows)
+
+    def paint(
+        self, timeline: Timeline, now: Nanoseconds, width: int, height: int, glance: Nanoseconds = GLANCE
+    ) -> Sequence[Sequence[Run]]:
+        """Paint the factory at ``now`` in ``width`` x ``height`` cells.
+
+        A worker whose callback began or ended less than ``glance`` nanoseconds ago is seen walking.
+        """
+        if width <= 0 or height <= 0:
+            return ()
+        canvas = Canvas(width, height, self.charset)
+        scene = scene_of(timeline, now, glance)
+        words = headline(scene)
+        if width < LEAST_WIDTH or height < LEAST_HEIGHT:
+            canvas.write(0, 0, first_fitting(words, width) or words[-1], STRONG, width)
+            return canvas.runs()
+        _draw(canvas, scene, plan_for(scene, width, height), words)
+        return canvas.runs()
+
+
+def _draw(canvas: Canvas, scene: Scene, plan: Plan, words: Sequence[str]) -> None:
+    columns = plan.columns
+    areas = Areas(canvas, scene, columns)
+    belts = Belts(canvas, scene, door=columns.belts - 1)
+    above: Place | None = None
+    for place in plan.places:
+        if plan.density.top:
+            areas.top(place.area, place.first - 1, joined=above is not None and not plan.density.bottom)
+        areas.inner(place, plan.density)
+        if plan.density.bottom:
+            areas.bottom(place.area, place.first + place.rows)
+        _draw_belts(belts, place, plan)
+        above = place
+    if above is not None and plan.density.last:
+        areas.bottom(above.area, above.first + above.rows)
+    _draw_words(canvas, scene, plan, words)
+
+
+def _draw_belts(belts: Belts, place: Place, plan: Plan) -> None:
+    rows = plan.density.belt
+    hidden = len(place.area.belts) - len(place.belts)
+    line = place.first
+    for number in place.belts:
+        belts.draw(place.area.belts[number], place.area, line, min(rows, 2))
+        line += rows
+    if hidden and line < place.first + place.rows:
+        belts.more(hidden, line)
+
+
+def _draw_words(canvas: Canvas, scene: Scene, plan: Plan, words: Sequence[str]) -> None:
+    columns = plan.columns
+    more = f" +{plan.hidden} more group{'' if plan.hidden == 1 else 's'} " if plan.hidden else ""
+    canvas.write(canvas.width - len(more), 0, more, FAINT, len(more))
+    if plan.headline is not None:
+        own = not plan.places or plan.places[0].first - plan.density.top > plan.headline
+        room = canvas.width - len(more) - 2 if own else columns.belts - 2
+        text = first_fitting(words, room)
+        who, colon, trouble = text.partition(": ")
+        at = canvas.write(1, plan.headline, who + colon, STRONG, room)
+        canvas.write(at, plan.headline, trouble, WARN, len(trouble))
+    if plan.captions is not None:
+        for column, caption in ((1, "belts"), (columns.belts + 2, "areas")):
+            canvas.write(column, plan.captions, caption, FAINT, columns.area)
+    if columns.yard:
+        column = columns.aisle_at + columns.aisle
+        first = plan.places[0].first if plan.places else 1
+        canvas.write(column, max(0, first - 2), "workers", FAINT, columns.yard)
+        large = plan.density is LARGE and first + 4 * len(scene.workers) <= canvas.height + 1
+        if large:
+            draw_large_yard(canvas, scene, column, first)
+        else:
+            draw_yard(canvas, scene, column, first, canvas.height)
+    elif plan.bench is not None:
+        draw_bench(canvas, scene, plan.bench)

@@ -1,0 +1,214 @@
+"""What stands where in the factory at one moment: who sits, who walks, what lies on which belt."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from enum import Enum, auto
+from functools import cached_property
+
+from cbtui.widgets.lanes.names import short_thread
+from cbtui.widgets.lanes.rows import GroupLane, MemberLane, SoleLane, ThreadLane, all_lanes, ever_ran
+from sim.trace.events import EntityKind, GroupKind, ThreadId
+from sim.trace.model import Blocked, Entity, Group, Moment, Nanoseconds, Queue, Span, Wait, Window
+from sim.trace.timeline import Timeline
+
+STEPS = 3
+"""Steps of a worker's way between the yard and an area."""
+
+_LOOKS_BACK = (64, 8, 1)
+
+
+class Stay(Enum):
+    """What a worker is doing."""
+
+    NEVER = auto()
+    IDLE = auto()
+    COMES = auto()
+    WORKS = auto()
+    LEAVES = auto()
+
+
+@dataclass(frozen=True, slots=True)
+class Worker:
+    """A thread. ``span`` is the call it runs or has just run, ``step`` (0 to 2) how far it has walked."""
+
+    name: str
+    stay: Stay
+    span: Span | None = None
+    step: int = 0
+    blocked: Blocked | None = None
+
+    @property
+    def inside(self) -> bool:
+        """Whether it has a seat: its callback runs, though it may still be on its way."""
+        return self.stay in (Stay.COMES, Stay.WORKS)
+
+
+@dataclass(frozen=True, slots=True)
+class Tick:
+    """A timer's time: when it falls due next (None where nothing tells), and how late its last call came."""
+
+    due: Nanoseconds | None
+    late: Nanoseconds
+
+
+@dataclass(frozen=True, slots=True)
+class Belt:
+    """What brings work for one callback."""
+
+    entity: Entity
+    queue: Queue
+    wait: Wait | None
+    tick: Tick | None
+
+    @property
+    def waits_for_others(self) -> bool:
+        """Whether something other than its own last call keeps the callback waiting."""
+        return self.wait is not None and self.wait.holder != self.entity.id
+
+    @property
+    def full(self) -> bool:
+        """Whether the next message will push one off."""
+        return self.entity.depth > 0 and self.queue.depth >= self.entity.depth
+
+
+@dataclass(frozen=True, slots=True)
+class Area:
+    """A callback group. ``number`` is its place in the order of letters.
+
+    ``visitors`` sit in it, come or have just left; ``kept`` are callbacks that hold the group and sit
+    nowhere, such as a suspended coroutine.
+    """
+
+    group: Group
+    number: int
+    belts: tuple[Belt, ...]
+    visitors: tuple[Worker, ...]
+    kept: tuple[Entity, ...]
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it lets everyone in."""
+        return self.group.kind is GroupKind.REENTRANT
+
+    @property
+    def waiting(self) -> int:
+        """How many callbacks stand at its door because of others."""
+        return sum(belt.waits_for_others for belt in self.belts)
+
+    @property
+    def inside(self) -> int:
+        """How many workers it has now."""
+        return sum(worker.inside for worker in self.visitors)
+
+
+@dataclass(frozen=True)
+class Scene:
+    """The factory at the moment ``now``."""
+
+    timeline: Timeline
+    now: Nanoseconds
+    workers: tuple[Worker, ...]
+    areas: tuple[Area, ...]
+
+    @cached_property
+    def idle(self) -> int:
+        """How many workers have nothing to do."""
+        return sum(not worker.inside for worker in self.workers)
+
+    def waits(self) -> Iterator[Wait]:
+        """Every wait for others."""
+        for area in self.areas:
+            yield from (belt.wait for belt in area.belts if belt.wait and belt.waits_for_others)
+
+
+def scene_of(timeline: Timeline, now: Nanoseconds, glance: Nanoseconds) -> Scene:
+    """Return the factory at ``now``; whoever began or ended less than ``glance`` ago is seen walking."""
+    return _Staging(timeline, now, max(glance, 1)).scene()
+
+
+class _Staging:
+    """One scene while it is put together."""
+
+    def __init__(self, timeline: Timeline, now: Nanoseconds, glance: Nanoseconds) -> None:
+        self._timeline = timeline
+        self._now = now
+        self._glance = glance
+        self._moment: Moment = timeline.moment(now)
+        self._numbers = {group: place for place, group in enumerate(timeline.groups)}
+
+    def scene(self) -> Scene:
+        members: dict[int, list[Entity]] = {}
+        groups: dict[int, Group] = {}
+        workers = []
+        for lane in all_lanes(self._timeline, ""):
+            match lane:
+                case ThreadLane(thread):
+                    workers.append(self._worker(thread.id, short_thread(thread.name)))
+                case GroupLane(group):
+                    groups[group.id], members[group.id] = group, []
+                case SoleLane(entity, group):
+                    groups[group.id], members[group.id] = group, [entity]
+                case MemberLane(entity, group):
+                    members[group.id].append(entity)
+        hired = sum(executor.threads for executor in self._timeline.executors.values())
+        workers += [Worker(f"worker {number + 1}", Stay.NEVER) for number in range(len(workers), hired)]
+        areas = tuple(self._area(group, members[group.id], workers) for group in groups.values())
+        return Scene(self._timeline, self._now, tuple(workers), areas)
+
+    def _worker(self, thread: ThreadId, name: str) -> Worker:
+        span = self._moment.running.get(thread)
+        if span is not None:
+            since = self._now - span.start
+            blocked = self._moment.blocked.get(thread)
+            if since < self._glance and blocked is None:
+                return Worker(name, Stay.COMES, span, self._step(since))
+            return Worker(name, Stay.WORKS, span, blocked=blocked)
+        span = self._just_ran(thread)
+        if span is not None:
+            return Worker(name, Stay.LEAVES, span, self._step(self._now - span.end_at(self._now)))
+        return Worker(name, Stay.IDLE if ever_ran(self._timeline, thread, self._now) else Stay.NEVER)
+
+    def _step(self, since: Nanoseconds) -> int:
+        return min(STEPS - 1, STEPS * since // self._glance)
+
+    def _just_ran(self, thread: ThreadId) -> Span | None:
+        """Return the call that ended last, less than a glance ago; looks no further back than it must."""
+        for part in _LOOKS_BACK:
+            window = Window(self._now - self._glance // part, self._now + 1)
+            ended = [
+                span
+                for span in self._timeline.spans_on(thread, window)
+                if span.end is not None and self._now - self._glance < span.end <= self._now
+            ]
+            if ended:
+                return max(ended, key=lambda span: span.end_at(self._now))
+        return None
+
+    def _area(self, group: Group, members: list[Entity], workers: list[Worker]) -> Area:
+        ids = {member.id for member in members}
+        visitors = tuple(worker for worker in workers if worker.span and worker.span.entity in ids)
+        seated = {worker.span.entity for worker in visitors if worker.inside and worker.span}
+        holders = self._moment.holders.get(group.id, ())
+        kept = tuple(self._timeline.entities[holder] for holder in holders if holder not in seated)
+        belts = tuple(self._belt(member) for member in members)
+        return Area(group, self._numbers[group.id], belts, visitors, kept)
+
+    def _belt(self, entity: Entity) -> Belt:
+        wait = self._moment.waiting.get(entity.id)
+        tick = self._tick(entity) if entity.kind is EntityKind.TIMER else None
+        return Belt(entity, self._moment.queues.get(entity.id, _NO_QUEUE), wait, tick)
+
+    def _tick(self, timer: Entity) -> Tick:
+        """Work out a timer's next due time from its last call, as rcl does: what was missed is left out."""
+        period = timer.period
+        spans = self._timeline.spans_of(timer.id, Window(self._now - 2 * period, self._now + 1))
+        if not spans or period <= 0:
+            return Tick(None, 0)
+        last = spans[-1]
+        due = last.start - last.age + period
+        if due < last.start:
+            due += (1 + (last.start - due) // period) * period
+        return Tick(due if due > self._now else None, last.age)
+
+
+_NO_QUEUE = Queue(0, 0)

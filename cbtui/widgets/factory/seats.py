@@ -1,0 +1,174 @@
+"""Draws the seats of an area: who sits there with which callback, how long, who comes and who leaves."""
+
+from collections.abc import Callable, Sequence
+from functools import partial
+
+from cbtui.theme import Ink, Role
+from cbtui.widgets.durations import duration
+from cbtui.widgets.factory.canvas import FAINT, PLAIN, STRONG, WARN, Canvas
+from cbtui.widgets.factory.plan import Columns, Place
+from cbtui.widgets.factory.scene import STEPS, Scene, Stay, Worker
+from cbtui.widgets.factory.words import first_fitting, just_done, kept_by, stuck
+from cbtui.widgets.lanes.status import short
+from sim.trace.model import Entity
+
+_FREE_SEATS = 4
+"""How many free seats an open area shows: there is always room for more."""
+
+
+class Seats:
+    """Draws the seats of one area, from the column ``start`` on, one row each, or two where there is room."""
+
+    tall = 1
+    """Rows that a seat takes at least."""
+
+    def __init__(self, canvas: Canvas, scene: Scene, place: Place, columns: Columns, start: int) -> None:
+        self._canvas = canvas
+        self._scene = scene
+        self._place = place
+        self._columns = columns
+        self._start = start
+        self._end = columns.right_wall
+        area = place.area
+        self._line_ink = Ink(Role.LINE, area.number)
+        self._chip_ink = Ink(Role.LABEL, area.number)
+        self._bar_ink = Ink(Role.BAR, area.number)
+        self._marks = canvas.glyphs.open_seat if area.is_open else canvas.glyphs.seat
+
+    def draw(self) -> None:
+        """Draw as many as there are rows for; a walled area has its one seat in the middle."""
+        area = self._place.area
+        seats: list[Callable[[int, int], None]] = []
+        seats += [partial(self._worker, worker) for worker in area.visitors if worker.inside]
+        seats += [partial(self._kept, entity) for entity in area.kept]
+        leaving = [worker for worker in area.visitors if not worker.inside]
+        if area.is_open:
+            seats += [partial(self._left, worker) for worker in leaving]
+            self._open(seats)
+            return
+        if not seats and leaving:
+            seats = [partial(self._left, max(leaving, key=_ended_at))]
+        self._stacked(seats or [self._free])
+
+    def _stacked(self, seats: Sequence[Callable[[int, int], None]]) -> None:
+        """Draw seats below each other, in the middle of the area."""
+        room = self._place.rows
+        each = max(self.tall, min(self.tall + 1, room // len(seats), 3))
+        line = self._place.first + max(0, room - each * len(seats)) // 2
+        for seat in seats[: max(1, room // each)]:
+            seat(line, each)
+            line += each
+
+    def _open(self, seats: Sequence[Callable[[int, int], None]]) -> None:
+        """Draw seats below each other from the top, then free ones beside each other."""
+        room = self._place.rows
+        each = max(self.tall, min(self.tall + 1, (room - self.tall) // max(1, len(seats)), 3))
+        shown = seats if len(seats) * each <= room else seats[: max(0, room - 1) // each]
+        line = self._place.first
+        for seat in shown:
+            seat(line, each)
+            line += each
+        left = self._place.first + room - line
+        if len(shown) < len(seats):
+            self._canvas.write(self._start, line, f"+{len(seats) - len(shown)} more", PLAIN, self._end)
+        elif left >= self.tall:
+            self._free_seats(line)
+
+    # one seat
+
+    def _worker(self, worker: Worker, line: int, rows: int) -> None:
+        """Draw a worker in its seat, or a taken seat and the worker on its way."""
+        trouble = stuck(worker, self._scene.now)
+        took = self._took(worker)
+        if worker.stay is Stay.COMES:
+            self._walker(worker, line)
+        if rows > 1:
+            tails: Sequence[str] = (took,)
+        elif trouble:
+            tails = trouble[2:]
+        else:
+            tails = (f"{took}  {worker.name}", took)
+        at = self._chip(worker, line, tails[-1])
+        room = self._end - at - 1
+        tail = first_fitting(tails, room)
+        self._canvas.write(at + 1, line, tail, WARN if trouble and rows == 1 else STRONG, room)
+        if rows > 1:
+            self._name(worker, trouble, self._start + 3, line + 1)
+
+    def _chip(self, worker: Worker, line: int, tail: str) -> int:
+        """Draw the seat with its worker and callback, if the tail fits beside; return the column after it."""
+        left, right = self._marks
+        face = " " if worker.stay is Stay.COMES else self._canvas.glyphs.busy
+        room = self._end - self._start - 4 - len(tail) - 1
+        callback = self._callback(worker)
+        name = first_fitting((callback, short(callback)), room) or short(callback)[: max(0, room)]
+        self._canvas.put(self._start, line, left, self._bar_ink)
+        inside = f"{face} {name}" if name else face
+        at = self._canvas.write(self._start + 1, line, inside, self._chip_ink, len(inside))
+        self._canvas.put(at, line, right, self._bar_ink)
+        return at + 1
+
+    def _left(self, worker: Worker, line: int, rows: int) -> None:
+        """Draw a free seat, and who has just left it with what done."""
+        self._seat(self._start, line)
+        self._walker(worker, line)
+        room = self._end - self._start - 5
+        texts = just_done(worker, self._callback(worker))
+        self._canvas.write(self._start + 4, line, first_fitting(texts, room) or texts[-1], FAINT, room)
+
+    def _free(self, line: int, rows: int) -> None:
+        self._seat(self._start, line)
+        self._canvas.write(self._start + 4, line, "free", FAINT, self._end - self._start - 5)
+
+    def _kept(self, entity: Entity, line: int, rows: int) -> None:
+        """Draw a seat that is held by a call which runs on no thread now."""
+        self._seat(self._start, line)
+        self._canvas.put(self._start + 1, line, self._canvas.glyphs.away, self._line_ink)
+        room = self._end - self._start - 5
+        texts = kept_by(entity)
+        self._canvas.write(self._start + 4, line, first_fitting(texts, room) or texts[-1], PLAIN, room)
+
+    def _free_seats(self, line: int) -> None:
+        for place in range(min(_FREE_SEATS, (self._end - self._start) // 4)):
+            self._seat(self._start + 4 * place, line)
+
+    def _seat(self, at: int, line: int) -> None:
+        left, right = self._marks
+        self._canvas.put(at, line, left, self._line_ink)
+        self._canvas.put(at + 2, line, right, self._line_ink)
+
+    # what it consists of
+
+    def _walker(self, worker: Worker, line: int) -> None:
+        """Draw a worker between the area and the yard."""
+        glyphs = self._canvas.glyphs
+        comes = worker.stay is Stay.COMES
+        sign = glyphs.comes + glyphs.busy if comes else glyphs.idle + glyphs.leaves
+        at = self._aisle_place(worker, len(sign))
+        for place, glyph in enumerate(sign):
+            self._canvas.put(at + place, line, glyph, STRONG)
+
+    def _aisle_place(self, worker: Worker, width: int) -> int:
+        """Return the column at which a worker of some width walks now."""
+        way = max(0, self._columns.aisle - width)
+        step = STEPS - 1 - worker.step if worker.stay is Stay.COMES else worker.step
+        return self._columns.aisle_at + way * step // (STEPS - 1)
+
+    def _name(self, worker: Worker, trouble: Sequence[str], at: int, line: int) -> None:
+        room = self._end - at
+        texts = [way for text in trouble for way in (f"{worker.name}, {text}", text)] or [worker.name]
+        text = first_fitting(texts, room) or texts[-1]
+        self._canvas.write(at, line, text, WARN if trouble else FAINT, room)
+
+    def _took(self, worker: Worker) -> str:
+        if worker.stay is Stay.COMES or worker.span is None:
+            return "starts"
+        return duration(max(0, self._scene.now - worker.span.start))
+
+    def _callback(self, worker: Worker) -> str:
+        entity = self._scene.timeline.entities.get(worker.span.entity) if worker.span else None
+        return "" if entity is None else entity.spoken_name
+
+
+def _ended_at(worker: Worker) -> int:
+    return 0 if worker.span is None or worker.span.end is None else worker.span.end

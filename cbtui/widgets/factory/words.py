@@ -1,0 +1,197 @@
+"""What the factory says: why something waits, who sits where, and the whole in one sentence."""
+
+from collections.abc import Sequence
+
+from cbtui.widgets.durations import duration
+from cbtui.widgets.factory.scene import Area, Belt, Scene, Stay, Worker
+from cbtui.widgets.lanes.status import short
+from sim.trace.events import EntityKind, GroupKind, Reason
+from sim.trace.model import Entity, Nanoseconds
+from sim.trace.timeline import Timeline
+from sim.trace.words import name_of
+
+_LATE_AT_LEAST: Nanoseconds = 1_000_000
+
+
+def first_fitting(texts: Sequence[str], room: int) -> str:
+    """Return the first text of at most ``room`` columns; "" if there is none."""
+    return next((text for text in texts if len(text) <= room), "")
+
+
+def cast(scene: Scene) -> str:
+    """Say how many workers and areas there are: ``4 workers, 1 seat``."""
+    if not scene.areas:
+        return "no callback group yet"
+    return f"{_count(len(scene.workers), 'worker')}, {_places(scene.areas)}"
+
+
+def headline(scene: Scene) -> tuple[str, ...]:
+    """Return the scene in one sentence, from the fullest to the shortest; what is wrong follows a colon."""
+    start = cast(scene)
+    if not scene.areas:
+        return (start,)
+    trouble = _trouble(scene)
+    if not trouble:
+        return (f"{start}, no callback waits for another", start)
+    what = f"{start}: {trouble}"
+    whole = (f"{what}, {_count(scene.idle, 'worker')} idle", what) if scene.idle else (what,)
+    return (*whole, what.replace(" callbacks wait", " wait").replace(" callback waits", " waits"), start)
+
+
+def _places(areas: Sequence[Area]) -> str:
+    is_open = sum(area.is_open for area in areas)
+    if is_open == len(areas):
+        return _count(is_open, "open area")
+    if [area.group.kind for area in areas] == [GroupKind.EXCLUSIVE]:
+        return "1 seat"
+    return _count(len(areas), "area")
+
+
+def _trouble(scene: Scene) -> str:
+    waits = list(scene.waits())
+    held = sum(wait.reason is Reason.GROUP_HELD for wait in waits)
+    short_of_workers = sum(wait.reason is Reason.NO_FREE_WORKER for wait in waits)
+    unattended = len(waits) - held - short_of_workers
+    parts = []
+    if held:
+        parts.append(f"{_waiting(held)} for {'it' if len(scene.areas) == 1 else 'a seat'}")
+    if short_of_workers:
+        parts.append(f"{_waiting(short_of_workers)} for a worker")
+    if unattended:
+        parts.append(f"{_waiting(unattended)}, nobody spins")
+    return ", ".join(parts)
+
+
+def _waiting(number: int) -> str:
+    return f"{number} callback{'' if number == 1 else 's'} wait{'s' if number == 1 else ''}"
+
+
+def _count(number: int, thing: str) -> str:
+    return f"{number} {thing}{'' if number == 1 else 's'}"
+
+
+def reasons(belt: Belt, timeline: Timeline, now: Nanoseconds) -> tuple[str, ...]:
+    """Say how long a callback has waited and why, from the fullest to the shortest; () if it does not wait.
+
+    The last two do not say why.
+    """
+    wait = belt.wait
+    if wait is None:
+        return ()
+    took = duration(max(0, now - wait.since))
+    verb = "late" if belt.entity.kind is EntityKind.TIMER else "waits"
+    whole = [f"{verb} {took}: {why}" for why in _why(belt, timeline)]
+    brief = [f"{took}: {why}" for why in _why(belt, timeline)]
+    return (*whole[:-1], *brief[:-1], whole[-1], brief[-1], f"{verb} {took}", took)
+
+
+def _why(belt: Belt, timeline: Timeline) -> tuple[str, ...]:
+    wait = belt.wait
+    if wait is None or wait.reason is not Reason.GROUP_HELD:
+        return _WITHOUT_HOLDER[wait.reason] if wait else ()
+    if wait.holder == belt.entity.id:
+        return ("its last call still runs", "last call runs", "own call")
+    holder = name_of(wait.holder, timeline)
+    return (f"seat taken by {holder}", f"seat taken by {short(holder)}", "seat taken", "taken")
+
+
+_WITHOUT_HOLDER = {
+    Reason.GROUP_HELD: ("seat taken", "taken"),
+    Reason.NO_FREE_WORKER: ("no free worker", "no worker"),
+    Reason.NOBODY_SPINS: ("nobody spins",),
+}
+
+
+def belt_name(belt: Belt) -> str:
+    """Return what a belt is called by."""
+    return short(belt.entity.label)
+
+
+def level(belt: Belt) -> str:
+    """Say how full a belt is: ``3/10``, ``10/10 !``; the bare number where there is no limit."""
+    if belt.entity.depth <= 0:
+        return str(belt.queue.depth)
+    return f"{belt.queue.depth}/{belt.entity.depth}{' !' if belt.full else ''}"
+
+
+def details(belt: Belt, now: Nanoseconds) -> list[tuple[str, bool]]:
+    """Return what else there is to say of a belt, and whether each is a warning."""
+    found = []
+    if belt.queue.dropped:
+        found.append((f"lost {belt.queue.dropped}", True))
+    if belt.tick is not None and belt.wait is None:
+        if belt.tick.late >= max(belt.entity.period // 10, _LATE_AT_LEAST):
+            found.append((f"was {duration(belt.tick.late)} late", True))
+        if belt.tick.due is not None:
+            found.append((f"next in {duration(belt.tick.due - now)}", False))
+    return found
+
+
+def seats_of(area: Area) -> tuple[str, ...]:
+    """Say how many an area admits, from the fullest to the shortest."""
+    match area.group.kind:
+        case GroupKind.EXCLUSIVE:
+            return ("one seat", "1 seat")
+        case GroupKind.REENTRANT:
+            return ("open to all", "open")
+        case GroupKind.CUSTOM:
+            return ("rules of its own", "custom")
+
+
+def doing(worker: Worker, timeline: Timeline) -> tuple[str, ...]:
+    """Say where a worker is: in full, briefly, and no more than whether it is idle."""
+    match worker.stay:
+        case Stay.NEVER:
+            return ("never needed", "unused", "unused")
+        case Stay.IDLE:
+            return ("waits for work", "waits", "waits")
+        case _:
+            return (*(f"{word} {_letter(worker, timeline)}" for word in _WHERE[worker.stay]), "")
+
+
+_WHERE = {
+    Stay.COMES: ("goes to", "to"),
+    Stay.WORKS: ("works in", "in"),
+    Stay.LEAVES: ("back from", "from"),
+}
+
+
+def _letter(worker: Worker, timeline: Timeline) -> str:
+    entity = timeline.entities.get(worker.span.entity) if worker.span else None
+    return "?" if entity is None else timeline.groups[entity.group].letter
+
+
+def stuck(worker: Worker, now: Nanoseconds) -> tuple[str, ...]:
+    """Say that a worker waits inside a service call, from the fullest to the shortest; () if it does not."""
+    if worker.blocked is None:
+        return ()
+    took, service = duration(now - worker.blocked.start), worker.blocked.service
+    return (
+        f"stuck in call of {service}, no reply for {took}",
+        f"stuck in call of {service} {took}",
+        f"stuck in {service} {took}",
+        f"stuck in call {took}",
+        f"stuck {took}",
+        "stuck",
+    )
+
+
+def just_done(worker: Worker, callback: str) -> tuple[str, ...]:
+    """Say what a worker who has just left a seat did there, from the fullest to the shortest."""
+    span = worker.span
+    length = 0 if span is None or span.end is None else span.end - span.start
+    took = duration(length) if length else "no time"
+    return (
+        f"{callback} took {took}  {worker.name}",
+        f"{callback} took {took}",
+        f"{callback} just ran",
+        f"{short(callback)} just ran",
+        f"{short(callback)} ran",
+        short(callback),
+    )
+
+
+def kept_by(entity: Entity) -> tuple[str, ...]:
+    """Say that a call which runs on no thread holds a seat, from the fullest to the shortest."""
+    name = entity.spoken_name
+    return (f"kept by {name}, which awaits", f"kept by {name}", f"kept: {short(name)}")

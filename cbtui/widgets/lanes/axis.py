@@ -1,0 +1,47 @@
+"""The time axis below the lanes: seconds, the cursor, and what the person did."""
+
+from collections.abc import Iterable
+
+from cbtui.theme import GLYPHS, Ink, Role
+from cbtui.widgets.cells import Row
+from cbtui.widgets.lanes.scale import Scale, labels
+from sim.trace.model import Mark
+
+_FAINT = Ink(Role.FAINT)
+_NOW = Ink(Role.NOW)
+_MARK = Ink(Role.MARK)
+
+
+def draw_axis(row: Row, scale: Scale, cursor: int, commands: Iterable[Mark]) -> None:
+    """Draw an axis; ``cursor`` is the cursor's column, in the picture or beside it."""
+    _draw_cursor(row, cursor)
+    _draw_commands(row, scale, commands)
+    for column, text in labels(scale):
+        if row.blank(max(column - 1, 0), column + len(text) + 1):
+            row.write(column, text, _FAINT)
+
+
+def _draw_cursor(row: Row, column: int) -> None:
+    """Mark now, or on which side of the picture it lies."""
+    glyphs = GLYPHS[row.charset]
+    last = len(row.cells) - 1
+    if column < 0:
+        row.write(0, f"{glyphs.back}now ", _NOW)
+    elif column > last:
+        row.write(max(0, last - 4), f" now{glyphs.forth}", _NOW)
+    elif column >= 3:
+        row.write(column - 3, f"now{glyphs.now}", _NOW)
+    else:
+        row.write(column, f"{glyphs.now}now ", _NOW)
+
+
+def _draw_commands(row: Row, scale: Scale, commands: Iterable[Mark]) -> None:
+    """Mark what the person did, in words where there is room for them."""
+    up = GLYPHS[row.charset].up
+    marks = {scale.column_of(mark.at): mark for mark in commands}
+    for column in marks:
+        if row.inks[column] is not _NOW:
+            row.put(column, up, _MARK)
+    for column, mark in marks.items():
+        if row.inks[column] is _MARK and row.blank(column + 1, column + len(mark.text) + 2):
+            row.write(column + 1, mark.text, _MARK)

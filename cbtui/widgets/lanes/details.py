@@ -1,0 +1,202 @@
+"""What there is to know of a selected bar, in words: what caused it, how long it waited and for whom."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from cbtui.widgets.durations import duration
+from cbtui.widgets.lanes.names import short_thread
+from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLane, ThreadLane
+from cbtui.widgets.lanes.selection import Bar, Selection
+from sim.trace.events import EntityId, EntityKind
+from sim.trace.model import Call, Entity, Nanoseconds, Span, Wait, Window
+from sim.trace.timeline import Timeline
+from sim.trace.words import name_of, why_waiting
+
+_FIRST_REACH: Nanoseconds = 1_000_000
+_MOST_REASONS = 2
+
+
+@dataclass(frozen=True, slots=True)
+class Details:
+    """What a bar is, and what is known of it: the most telling facts first."""
+
+    title: str
+    facts: tuple[str, ...] = ()
+
+
+def details_of(timeline: Timeline, bar: Bar, now: Nanoseconds) -> Details:
+    """Return what is known of a bar at the moment ``now``; what lasts is measured up to then."""
+    match bar:
+        case Span():
+            return Details(_who_runs(timeline, bar), tuple(_of_span(timeline, bar, now)))
+        case Wait():
+            return Details(_who_waits(timeline, bar, now), tuple(_of_wait(timeline, bar, now)))
+        case Call():
+            return Details(f"call of {bar.service}", tuple(_of_call(timeline, bar, now)))
+
+
+def details_of_selection(timeline: Timeline, selection: Selection, now: Nanoseconds) -> Details:
+    """Return what is known of a selection; of a lane without a bar, how to find one."""
+    if selection.bar is not None:
+        return details_of(timeline, selection.bar, now)
+    match selection.lane:
+        case ThreadLane(thread):
+            name = thread.name
+        case GroupLane(group):
+            name = f"group {group.letter}"
+        case MemberLane(entity) | SoleLane(entity):
+            name = entity.spoken_name
+        case ServiceLane(service):
+            name = service
+    return Details(name, ("nothing up to here on screen", "{ and } go to what came before and after"))
+
+
+# a call of a callback
+
+
+def _who_runs(timeline: Timeline, span: Span) -> str:
+    thread = timeline.threads.get(span.thread)
+    where = "" if thread is None else f" on {short_thread(thread.name)}"
+    return f"{_with_letter(timeline, span.entity)}{where}"
+
+
+def _of_span(timeline: Timeline, span: Span, now: Nanoseconds) -> Iterator[str]:
+    if span.end is None or span.end > now >= span.start:
+        yield f"runs since {_seconds(span.start)}, for {duration(max(0, now - span.start))}"
+    else:
+        yield f"took {duration(span.end - span.start)} at {_seconds(span.start)}"
+    if span.error:
+        yield f"raised {span.error}"
+    yield from _blocked(timeline, span, now)
+    waits = _waits_before(timeline, span)
+    if waits:
+        yield f"waited {duration(span.start - waits[0].since)}: {_reasons(timeline, waits)}"
+    entity = timeline.entities.get(span.entity)
+    if entity is not None:
+        yield from _cause(timeline, span, entity)
+
+
+def _blocked(timeline: Timeline, span: Span, now: Nanoseconds) -> Iterator[str]:
+    until = now if span.end is None else span.end
+    for blocked in timeline.blocks_on(span.thread, Window(span.start, max(until, span.start + 1))):
+        if blocked.entity == span.entity:
+            lasted = (until if blocked.end is None else blocked.end) - blocked.start
+            yield f"stood {duration(max(0, lasted))} in call {blocked.service}"
+
+
+def _cause(timeline: Timeline, span: Span, entity: Entity) -> Iterator[str]:
+    """Say what let it run: a period, a message and its publisher, or a request and who called."""
+    match entity.kind:
+        case EntityKind.TIMER:
+            yield f"due every {duration(entity.period)}, {_lateness(span.age)}"
+        case EntityKind.SUBSCRIPTION:
+            yield f"message {duration(span.age)} old, {_publisher(timeline, span, entity)}"
+        case EntityKind.SERVICE:
+            call = _call(timeline, span)
+            if call is None:
+                yield f"request {duration(span.age)} old"
+            else:
+                yield f"request {duration(span.start - call.sent)} old, {_caller(timeline, call)}"
+
+
+def _lateness(age: Nanoseconds) -> str:
+    return f"late by {duration(age)}" if age > 0 else "on time"
+
+
+def _publisher(timeline: Timeline, span: Span, entity: Entity) -> str:
+    on = f"on {entity.name}"
+    publication = timeline.publication(span.message)
+    if publication is None:
+        return f"{on} by an unknown publisher"
+    if publication.entity:
+        return f"published by {name_of(publication.entity, timeline)} {on}"
+    node = timeline.nodes.get(publication.node)
+    return f"published by {node or 'the robot'} {on}"
+
+
+def _waits_before(timeline: Timeline, span: Span) -> list[Wait]:
+    """Return the waits that ended with a call: those of the same readiness, in order."""
+    reach = _FIRST_REACH
+    while True:
+        window = Window(max(0, span.start - reach), span.start + 1)
+        waits = [wait for wait in timeline.waits_of(span.entity, window) if wait.start < span.start]
+        before = [one.start for one in timeline.spans_of(span.entity, window) if one.start < span.start]
+        if waits or before or window.start == 0:
+            break
+        reach *= 4
+    last = waits[-1] if waits else None
+    if last is None or last.end is None or last.end > span.start or any(at >= last.end for at in before):
+        return []
+    whole = timeline.waits_of(span.entity, Window(last.since, span.start + 1))
+    return [wait for wait in whole if wait.since == last.since and wait.start < span.start]
+
+
+def _reasons(timeline: Timeline, waits: Sequence[Wait]) -> str:
+    by_length = sorted(waits, key=lambda wait: wait.start - (wait.end or wait.start))
+    longest = dict.fromkeys(_reason(timeline, wait) for wait in by_length)
+    return ", and ".join(list(longest)[:_MOST_REASONS])
+
+
+def _reason(timeline: Timeline, wait: Wait) -> str:
+    if wait.holder == wait.entity and wait.holder:
+        return "its last call still ran"
+    return why_waiting(wait, timeline)
+
+
+# a wait, and a call of a service
+
+
+def _who_waits(timeline: Timeline, wait: Wait, now: Nanoseconds) -> str:
+    verb = "waits" if wait.end is None or wait.end > now else "waited"
+    return f"{_with_letter(timeline, wait.entity)} {verb}"
+
+
+def _of_wait(timeline: Timeline, wait: Wait, now: Nanoseconds) -> Iterator[str]:
+    until = now if wait.end is None or wait.end > now >= wait.start else wait.end
+    yield f"{duration(max(0, until - wait.start))} from {_seconds(wait.start)}"
+    yield _reason(timeline, wait)
+    if wait.since < wait.start:
+        yield f"ready since {_seconds(wait.since)}"
+    if wait.workers_busy:
+        yield "no thread was free either"
+    entity = timeline.entities.get(wait.entity)
+    if entity is not None and entity.depth:
+        at = max(until - 1, wait.start)
+        queue = timeline.queue(entity.id, at)
+        lost = timeline.drops_of(entity.id, Window(wait.start, at + 1))
+        yield f"queue {queue.depth}/{entity.depth}" + (f", {lost} lost in this time" if lost else "")
+
+
+def _of_call(timeline: Timeline, call: Call, now: Nanoseconds) -> Iterator[str]:
+    yield f"{_caller(timeline, call)} at {_seconds(call.sent)}"
+    yield call.request
+    if call.replied is not None and call.replied <= now:
+        yield f"replied after {duration(call.replied - call.sent)}: {call.response}"
+    elif call.lost:
+        yield "lost: nobody offered the service"
+    else:
+        yield f"no reply for {duration(max(0, now - call.sent))}"
+
+
+def _call(timeline: Timeline, span: Span) -> Call | None:
+    """Return the call that a service's callback answers: its number stands for its request."""
+    out = timeline.calls_within(Window(max(0, span.start - 1), span.start + 1))
+    return next((call for call in out if call.id == span.message), None)
+
+
+def _caller(timeline: Timeline, call: Call) -> str:
+    return f"called by {name_of(call.caller, timeline)}" if call.caller else "called from outside"
+
+
+# words
+
+
+def _with_letter(timeline: Timeline, entity: EntityId) -> str:
+    known = timeline.entities.get(entity)
+    group = None if known is None else timeline.groups.get(known.group)
+    name = name_of(entity, timeline)
+    return name if group is None else f"{group.letter} {name}"
+
+
+def _seconds(at: Nanoseconds) -> str:
+    return f"{at / 1e9:.3f} s"

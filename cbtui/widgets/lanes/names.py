@@ -1,0 +1,50 @@
+"""What lanes are called, in as many columns as there are."""
+
+from cbtui.widgets.lanes.status import short
+from sim.trace.model import Entity, Group, Thread
+
+_LEAST_PROGRAM = 3
+"""Columns below which nothing is left of a program's name to know it by."""
+
+
+def short_thread(name: str) -> str:
+    """Return a thread's name with the pool's long class name cut to ``Pool``."""
+    return name.replace("ThreadPoolExecutor", "Pool", 1)
+
+
+def thread_name(thread: Thread, room: int, ellipsis: str) -> str:
+    """Return a thread's name in at most ``room`` columns, if any form of it is as short as that.
+
+    The program that it belongs to, of several, gives way in its middle: the end is what tells two apart.
+    """
+    for name in (thread.name, short_thread(thread.name)):
+        if len(name) <= room:
+            return name
+    program, between, rest = short_thread(thread.name).rpartition(" ")
+    for brief in (rest, rest.replace("MainThread", "Main").replace("Pool-", "P")):
+        left = room - len(brief) - 1
+        if between and left >= min(len(program), _LEAST_PROGRAM):
+            return f"{_without_middle(program, left, ellipsis)} {brief}"
+    return short_thread(thread.name)
+
+
+def _without_middle(text: str, room: int, ellipsis: str) -> str:
+    if len(text) <= room:
+        return text
+    before = (room - 1) // 3
+    return f"{text[:before]}{ellipsis}{text[len(text) - (room - 1 - before) :]}"
+
+
+def entity_name(entity: Entity, room: int) -> str:
+    """Return the name of a callback of a group of several."""
+    return entity.label if len(entity.label) <= room else short(entity.label)
+
+
+def sole_name(entity: Entity, group: Group, room: int) -> str:
+    """Return the name of a group's only callback, after the kind of the group where there is room for it."""
+    whole, brief = group.kind.value, group.kind.value[:4]
+    names = (entity.label, short(entity.label))
+    for text in (f"{kind} {name}" for kind in (whole, brief) for name in names):
+        if len(text) <= room:
+            return text
+    return short(entity.label)

@@ -1,0 +1,279 @@
+"""The lines of the log on screen; draws only those in view, however long the log is."""
+
+from typing import ClassVar
+
+from rich.segment import Segment
+from rich.style import Style
+from textual.binding import BindingType
+from textual.events import Click
+from textual.message import Message
+from textual.reactive import var
+from textual.strip import Strip
+
+from cbtui.actions import Scope, bindings_of
+from cbtui.theme import GLYPHS, Charset, Ink, Role
+from cbtui.widgets.cells import fit
+from cbtui.widgets.following import Following
+from cbtui.widgets.lanes.names import short_thread
+from cbtui.widgets.log.filter import Filter, LogEvent
+from cbtui.widgets.log.line import line_of
+from cbtui.widgets.log.search import Search
+from sim.trace.events import Printed, Severity
+from sim.trace.model import Nanoseconds
+from sim.trace.timeline import Timeline
+
+COLUMNS_FROM = 64
+"""The narrowest log that shows thread and group of each line."""
+
+_AT_ONCE = 2000
+"""Lines that are looked at before the screen and the keys have their turn again: some milliseconds."""
+
+_THREAD = 12
+_GROUP = 3
+_COLUMNS = _THREAD + _GROUP + 1
+
+_STYLES = {
+    Severity.DEBUG: "log--debug",
+    Severity.INFO: "log--info",
+    Severity.WARN: "log--warn",
+    Severity.ERROR: "log--error",
+    Severity.FATAL: "log--error",
+}
+_CURSOR, _MOMENT = "log--cursor", "log--moment"
+
+
+class LogLines(Following):
+    """The lines that a filter lets through, up to a moment.
+
+    One of them may be picked with the arrow keys or the pointer: enter, or a click, tells its time.
+    """
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = {*_STYLES.values(), _CURSOR, _MOMENT}
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.LOG)]
+
+    counts: var[tuple[int, int]] = var((0, 0))
+    """How many lines the filter lets through, and how many there are, up to the moment on screen."""
+
+    picked: var[int | None] = var(None)
+    """The place of the picked line in the whole log."""
+
+    class FilterWanted(Message):
+        """The person wants to choose which lines are shown."""
+
+    class MomentPicked(Message):
+        """The person picked a line that was written ``at`` nanoseconds into the run."""
+
+        def __init__(self, at: Nanoseconds) -> None:
+            super().__init__()
+            self.at = at
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._search = Search(Timeline(), Filter())
+        self._now = 0
+        self._searching = False
+        self._kept: int | None = None
+        self._drawn: tuple[int, ...] = ()
+
+    @property
+    def wanted(self) -> Filter:
+        """What decides which lines are shown."""
+        return self._search.wanted
+
+    @wanted.setter
+    def wanted(self, wanted: Filter) -> None:
+        if wanted == self._search.wanted:
+            return
+        timeline, picked = self._search.timeline, self.picked
+        self._kept = None if self.follows else self._place_of(self.scroll_offset.y)
+        if picked is not None and not wanted.passes(timeline.logs[picked], timeline):
+            self.picked = None
+        self._search = Search(timeline, wanted)
+        self._look_on()
+
+    def show(self, timeline: Timeline, now: Nanoseconds) -> None:
+        """Show the log of a timeline up to a moment."""
+        if timeline is not self._search.timeline:
+            self._search = Search(timeline, self._search.wanted)
+            self.picked = self._kept = None
+        self._now = now
+        self._look_on()
+
+    # what is shown
+
+    def _look_on(self) -> None:
+        """Look at some new lines, show what was found, and go on when others have had their turn."""
+        more = self._search.go_on(_AT_ONCE)
+        self._grow_to_what_was_found()
+        if not more:
+            self._kept = None
+        elif not self._searching:
+            self._searching = True
+            self.call_later(self._search_on)
+
+    def _search_on(self) -> None:
+        self._searching = False
+        self._look_on()
+
+    def _grow_to_what_was_found(self) -> None:
+        timeline = self._search.timeline
+        written = timeline.logs_until(self._now)
+        count = self._search.until(written)
+        if self.picked is not None and self.picked >= written:
+            self.picked = None
+        looks_back = self._now < timeline.end
+        drawn = (id(self._search), count, self._search.widest, looks_back, len(timeline.logs))
+        if drawn != self._drawn:
+            self._drawn = drawn
+            self.grow(count, self._search.widest)
+        if self._kept is not None:
+            self._scroll_to_row(self._search.until(self._kept))
+        self.counts = (count, written)
+
+    def _place_of(self, row: int) -> int:
+        """Return the place in the whole log of a line that is shown, or where the next one would be."""
+        places = self._search.places
+        return places[row] if row < len(places) else len(self._search.timeline.logs)
+
+    # the picked line
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Offer what has a meaning for the lines that are shown."""
+        match action:
+            case "pick_line" | "let_go":
+                return self.picked is not None
+            case "line_above" | "line_below" | "copy":
+                return self._count > 0
+            case "follow":
+                return not self.follows
+            case "stay":
+                return self.follows
+        return super().check_action(action, parameters)
+
+    def action_line_above(self) -> None:
+        """Pick the line above."""
+        self._pick_beside(-1)
+
+    def action_line_below(self) -> None:
+        """Pick the line below."""
+        self._pick_beside(1)
+
+    def action_pick_line(self) -> None:
+        """Tell the picked line's time."""
+        if self.picked is not None:
+            self.post_message(self.MomentPicked(self._search.timeline.logs[self.picked].t))
+
+    def action_filter(self) -> None:
+        """Ask for a filter."""
+        self.post_message(self.FilterWanted())
+
+    def action_copy(self) -> None:
+        """Copy the picked line, or else those in view, as they were written and not cut off."""
+        first = self.scroll_offset.y
+        rows = range(first, min(first + self._height, self._count))
+        places = [self._search.places[row] for row in rows] if self.picked is None else [self.picked]
+        self.copy([line_of(self._search.timeline.logs[place]) for place in places])
+
+    def action_follow(self) -> None:
+        """Let go of the picked line, and follow the end."""
+        self.action_let_go()
+        self.follow()
+
+    def action_stay(self) -> None:
+        """Stay here from now on."""
+        self.stay()
+
+    def action_let_go(self) -> None:
+        """Have no line picked."""
+        self.picked = None
+        self.refresh()
+
+    def on_click(self, event: Click) -> None:
+        """Pick the line under the pointer, and tell its time."""
+        offset = event.get_content_offset(self)
+        row = None if offset is None else self.scroll_offset.y + offset.y
+        if row is not None and row < self._count:
+            self._pick(row)
+            self.action_pick_line()
+
+    def _pick_beside(self, step: int) -> None:
+        """Pick the line above or below; at first the last one in view."""
+        if not self._count:
+            return
+        if self.picked is None:
+            row = min(self.scroll_offset.y + self._height, self._count) - 1
+        else:
+            row = self._search.until(self.picked) + step
+        self._pick(max(0, min(row, self._count - 1)))
+
+    def _pick(self, row: int) -> None:
+        self.picked = self._search.places[row]
+        self._scroll_to_row(min(row, max(self.scroll_offset.y, row - self._height + 1)))
+        self.stay()
+        self.refresh()
+
+    @property
+    def _height(self) -> int:
+        return self.scrollable_content_region.height
+
+    def _scroll_to_row(self, row: int) -> None:
+        self.scroll_to(y=row, animate=False, immediate=True, force=True)
+
+    # drawing
+
+    def beside(self) -> int:
+        """Columns for thread and group, where there is room."""
+        return _COLUMNS if self.scrollable_content_region.width >= COLUMNS_FROM else 0
+
+    def render_line(self, y: int) -> Strip:
+        """Return one line of the view."""
+        row = self.scroll_offset.y + y
+        width = self.scrollable_content_region.width
+        if row >= self._count:
+            return Strip.blank(width, self.in_class(""))
+        place = self._search.places[row]
+        event = self._search.timeline.logs[place]
+        text = Strip([Segment(line_of(event), self._text_style(event))])
+        parts = self._parts(text, event, width, whole=place == self.picked)
+        ground = self._ground(place, row)
+        return Strip([Segment(part, style and style + ground) for part, style, _ in parts], width)
+
+    def _parts(self, text: Strip, event: LogEvent, width: int, whole: bool) -> list[Segment]:
+        """Return text, thread and group; a ``whole`` text that is long has the room of those as well."""
+        left, beside = self.scroll_offset.x, self.beside()
+        if whole and text.cell_length - left > width - beside:
+            beside = 0
+        room = width - beside
+        shown = text.crop(left, left + room).adjust_cell_length(room, self.in_class(""))
+        if text.cell_length > left + room:
+            cut = GLYPHS[Charset.BRAILLE].ellipsis
+            shown = Strip([*shown.crop(0, room - 1), Segment(cut, self.in_ink(Ink(Role.FAINT)))])
+        return [*shown, *(self._columns(event) if beside else [])]
+
+    def _ground(self, place: int, row: int) -> Style:
+        """Return what sets a line off from the others: it is picked, or the last before the moment shown."""
+        if place == self.picked:
+            return Style(bgcolor=self.in_class(_CURSOR).bgcolor, bold=True)
+        if row == self._count - 1 and self._now < self._search.timeline.end:
+            return Style(bgcolor=self.in_class(_MOMENT).bgcolor)
+        return Style()
+
+    def _columns(self, event: LogEvent) -> list[Segment]:
+        if isinstance(event, Printed):
+            return [Segment(" " * _COLUMNS, self.in_class(""))]
+        timeline = self._search.timeline
+        thread = timeline.threads.get(event.thread)
+        entity = timeline.entities.get(event.entity)
+        name = short_thread(thread.name) if thread else ""
+        group = timeline.groups.get(entity.group) if entity else None
+        number = list(timeline.groups).index(group.id) if group else -1
+        letter = group.letter if group else ""
+        return [
+            Segment(f" {fit(name, _THREAD, Charset.BRAILLE)}", self.in_ink(Ink(Role.FAINT))),
+            Segment(fit(letter, _GROUP, Charset.BRAILLE), self.in_ink(Ink(Role.LETTER, number))),
+        ]
+
+    def _text_style(self, event: LogEvent) -> Style:
+        if isinstance(event, Printed):
+            return self.in_class("log--error" if event.error else "log--info")
+        return self.in_class(_STYLES[event.severity])

@@ -1,0 +1,116 @@
+"""The log pane: its lines, and below them the line in which a filter is typed."""
+
+from typing import ClassVar
+
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.containers import Vertical
+from textual.reactive import var
+from textual.widgets import Input, Label
+
+from cbtui.actions import Scope, bindings_of
+from cbtui.widgets.log.filter import Filter, FilterError, filter_of
+from cbtui.widgets.log.lines import LogLines
+from sim.trace.model import Nanoseconds
+from sim.trace.timeline import Timeline
+
+
+class LogFilter(Input):
+    """Where a filter is typed: enter keeps it, escape clears it."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.FILTER)]
+
+    def __init__(self) -> None:
+        super().__init__(
+            placeholder='filter: words  "more words"  level:warn  callback:odom  thread:0_1  group:A',
+            compact=True,
+            select_on_focus=False,
+        )
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Go to the lines that are let through."""
+        event.stop()
+        self.screen.query_one(LogLines).focus()
+
+    def action_drop_filter(self) -> None:
+        """Clear the filter, and go to the lines."""
+        self.value = ""
+        self.screen.query_one(LogLines).focus()
+
+
+class LogView(Vertical):
+    """The pane. ``note`` says in a few words how much of the log it shows and whether it follows."""
+
+    note: var[str] = var("")
+
+    def compose(self) -> ComposeResult:
+        """Lay out lines, what is wrong with the filter, and the filter."""
+        yield LogLines()
+        yield Label(id="fault", markup=False)
+        yield LogFilter()
+
+    def on_mount(self) -> None:
+        """Hide what is not needed yet, and note what the lines say of themselves."""
+        self._complain("")
+        self._show_filter()
+        lines = self.query_one(LogLines)
+        self.watch(lines, "counts", self._note)
+        self.watch(lines, "follows", self._note)
+
+    def show(self, timeline: Timeline, now: Nanoseconds) -> None:
+        """Show the log of a timeline up to a moment."""
+        self.query_one(LogLines).show(timeline, now)
+
+    @property
+    def filtered(self) -> bool:
+        """Whether a filter is on."""
+        return bool(self.query_one(LogFilter).value)
+
+    @on(LogLines.FilterWanted)
+    def focus_filter(self) -> None:
+        """Let the person type a filter."""
+        entry = self.query_one(LogFilter)
+        entry.display = True
+        entry.focus()
+
+    @on(Input.Changed)
+    def _filter(self, event: Input.Changed) -> None:
+        """Take what is typed at once; what means nothing keeps no line back."""
+        event.stop()
+        wanted, fault = _understood(event.value)
+        self.query_one(LogLines).wanted = wanted
+        self._complain(fault)
+        self._show_filter()
+
+    def on_descendant_focus(self) -> None:
+        """Keep the filter on screen while it is typed or holds lines back."""
+        self._show_filter()
+
+    def on_descendant_blur(self) -> None:
+        """Hide an empty one that is left."""
+        self._show_filter()
+
+    def _show_filter(self) -> None:
+        entry = self.query_one(LogFilter)
+        entry.display = entry.has_focus or self.filtered
+
+    def _complain(self, fault: str) -> None:
+        label = self.query_one("#fault", Label)
+        label.update(fault)
+        label.display = bool(fault)
+
+    def _note(self) -> None:
+        lines = self.query_one(LogLines)
+        shown, every = lines.counts
+        many = f"{every:,} line{'' if every == 1 else 's'}"
+        part = many if lines.wanted.lets_all_through else f"{shown:,} of {many}"
+        self.note = f"{part} · {'follows' if lines.follows else 'stays'}"
+
+
+def _understood(text: str) -> tuple[Filter, str]:
+    """Return the filter that was typed, and one sentence on why it is none if that is so."""
+    try:
+        return filter_of(text), ""
+    except FilterError as error:
+        return Filter(), str(error)

@@ -1,0 +1,74 @@
+"""Which lines of a log a filter lets through, found once for each line however the log grows."""
+
+from array import array
+from bisect import bisect_left
+from collections import deque
+from collections.abc import Sequence
+
+from rich.cells import cell_len
+
+from cbtui.widgets.log.filter import Filter, LogEvent
+from cbtui.widgets.log.line import line_of
+from sim.trace.timeline import Timeline
+
+_REMEMBERED = 64
+"""Lines at the end of what was looked at that are known again: a line may come late, by few."""
+
+
+class Search:
+    """The places in ``timeline.logs`` of the lines that a filter lets through.
+
+    Lines are looked at as ``go_on`` says, in order and once; one that comes late, behind a line that was
+    looked at already, has those from it on looked at again.
+    """
+
+    def __init__(self, timeline: Timeline, wanted: Filter) -> None:
+        self.timeline = timeline
+        self.wanted = wanted
+        self.widest = 0
+        """Columns of the widest line that was looked at and let through."""
+        self._found = array("q")
+        self._looked_at = 0
+        self._last: deque[LogEvent] = deque(maxlen=_REMEMBERED)
+
+    @property
+    def places(self) -> Sequence[int]:
+        """The places of the lines, in order."""
+        return range(len(self.timeline.logs)) if self.wanted.lets_all_through else self._found
+
+    def until(self, count: int) -> int:
+        """How many of the lines are among the first ``count`` of the log."""
+        return bisect_left(self.places, count)
+
+    def go_on(self, most: int) -> bool:
+        """Look at so many further lines at most; tell whether there are more."""
+        logs = self.timeline.logs
+        self._go_back_to_late_ones()
+        start = self._looked_at
+        new = logs[start : start + most]
+        self._last.extend(new[-_REMEMBERED:])
+        self._looked_at += len(new)
+        if self.wanted.lets_all_through:
+            passed = new
+        else:
+            here = [place for place, event in enumerate(new) if self.wanted.passes(event, self.timeline)]
+            self._found.extend(start + place for place in here)
+            passed = [new[place] for place in here]
+        self.widest = max([self.widest, *(_width(line_of(event)) for event in passed)])
+        return self._looked_at < len(logs)
+
+    def _go_back_to_late_ones(self) -> None:
+        """Forget what was found from the first line on that is not where it was."""
+        first = self._looked_at - len(self._last)
+        now = self.timeline.logs[first : self._looked_at]
+        pairs = zip(self._last, now, strict=True)
+        same = next((number for number, (old, new) in enumerate(pairs) if old != new), None)
+        if same is None:
+            return
+        self._looked_at = first + same if same else 0
+        self._last = deque(list(self._last)[:same], _REMEMBERED)
+        del self._found[bisect_left(self._found, self._looked_at) :]
+
+
+def _width(line: str) -> int:
+    return len(line) if line.isascii() else cell_len(line)

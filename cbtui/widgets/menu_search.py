@@ -1,0 +1,40 @@
+"""Where words are typed that lessons and files of the menu are looked for with."""
+
+from typing import ClassVar
+
+from textual.binding import BindingType
+from textual.message import Message
+from textual.widgets import Input
+
+from cbtui.actions import Scope, bindings_of
+
+
+class MenuSearch(Input):
+    """The line; the list below it can be gone through meanwhile."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.SEARCH)]
+
+    class GivenUp(Message):
+        """Everything is to be shown again."""
+
+    class Moved(Message):
+        """The highlight of the list is to go up (``step`` < 0) or down."""
+
+        def __init__(self, step: int) -> None:
+            super().__init__()
+            self.step = step
+
+    def __init__(self) -> None:
+        super().__init__(placeholder="words to look for", compact=True, select_on_focus=False)
+
+    def action_above(self) -> None:
+        """Go up the list."""
+        self.post_message(self.Moved(-1))
+
+    def action_below(self) -> None:
+        """Go down the list."""
+        self.post_message(self.Moved(1))
+
+    def action_give_up(self) -> None:
+        """Look for nothing."""
+        self.post_message(self.GivenUp())

@@ -1,0 +1,102 @@
+"""A run's lanes drawn small, with a cursor that goes through them once."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from textwrap import wrap
+from time import monotonic
+from typing import TYPE_CHECKING
+
+from textual.geometry import Size
+from textual.reactive import reactive
+from textual.timer import Timer
+
+from cbtui.theme import Charset, Ink, Role, Run
+from cbtui.widgets.cells import fit, visible
+from cbtui.widgets.painted import Painted
+
+if TYPE_CHECKING:
+    from cbtui.widgets.lanes.painter import Painter
+    from sim.trace.timeline import Timeline
+
+FRAMES_A_SECOND = 5
+SPEED = 2
+"""Seconds of the run that the cursor passes in a real one."""
+_STATUSES = (25, 16, 10, 0)
+"""The widths that the lanes' painter gives to what stands at the right of the lanes."""
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A run that is over, and the painter that draws it and knows its past."""
+
+    timeline: "Timeline"
+    painter: "Painter"
+
+
+class Miniature(Painted):
+    """Draws ``subject``, faintly what comes after ``now`` (nanoseconds), or says a sentence."""
+
+    subject: reactive[Subject | None] = reactive(None, repaint=False)
+    now: reactive[int] = reactive(0, repaint=False)
+    sentence: reactive[str] = reactive("", repaint=False)
+    """What stands there while there is nothing to draw."""
+
+    _began = 0.0
+    _sweep: Timer | None = None
+
+    def rows(self, size: Size) -> Sequence[Sequence[Run]]:
+        """Paint the lanes, or the sentence."""
+        if self.subject is None or not size.width:
+            return sentence_rows(self.sentence, size)
+        return miniature(self.subject, self.now, size)
+
+    def watch_subject(self, subject: Subject | None) -> None:
+        """Begin to go through another run; where nothing is animated, stand at its end."""
+        if self._sweep is not None:
+            self._sweep.stop()
+            self._sweep = None
+        if subject is not None and self.app.animation_level == "none":
+            self.now = subject.timeline.end
+        elif subject is not None:
+            self.now = 0
+            self._began = monotonic()
+            self._sweep = self.set_interval(1 / FRAMES_A_SECOND, self._go_on)
+        self.changed()
+
+    def watch_now(self) -> None:
+        """Paint with the cursor elsewhere."""
+        self.changed()
+
+    def watch_sentence(self) -> None:
+        """Say something else."""
+        self.changed()
+
+    def _go_on(self) -> None:
+        """Move the cursor; once through is enough, a picture that never rests keeps the eye from the text."""
+        if self.subject is None or self._sweep is None:
+            return
+        end = self.subject.timeline.end
+        self.now = min(end, round((monotonic() - self._began) * SPEED * 1e9))
+        if self.now == end:
+            self._sweep.stop()
+            self._sweep = None
+
+
+def miniature(subject: Subject, now: int, size: Size) -> list[Sequence[Run]]:
+    """Paint a whole run in a size, without what the lanes say at their right: there is no room for it."""
+    from cbtui.widgets.lanes.painter import layout_for  # here whoever has a subject has imported it
+    from sim.trace.model import Window
+
+    layouts = ((beside, layout_for(max(20, size.width + beside))) for beside in _STATUSES)
+    beside = next(beside for beside, layout in layouts if layout.statuses == beside)
+    window = Window(0, subject.timeline.end)
+    picture = subject.painter.paint(subject.timeline, window, now, size.width + beside, size.height)
+    return [row[:-1] if picture.layout.statuses else row for row in picture.rows]
+
+
+def sentence_rows(sentence: str, size: Size) -> list[Sequence[Run]]:
+    """Paint a sentence, wrapped; ``size`` may be nothing."""
+    if not size.width:
+        return []
+    lines = wrap(visible(sentence, Charset.BRAILLE), size.width)[: size.height]
+    return [[Run(fit(line, size.width, Charset.BRAILLE), Ink(Role.FAINT))] for line in lines]

@@ -1,0 +1,68 @@
+"""Which part of the robot pane shows what: maps, the camera's picture, and the lines between them."""
+
+from enum import StrEnum
+from typing import NamedTuple
+
+from textual.geometry import Region
+
+_TWO_MAPS_FROM = 40
+_MAPS_AND_CAMERA_FROM = 100
+_LEAST_WIDTH = 12
+_LEAST_HEIGHT = 3
+
+
+class Look(StrEnum):
+    """What a person wants to see of the robot."""
+
+    MAP = "map"
+    CAMERA = "camera"
+    BOTH = "both"
+
+    @property
+    def following(self) -> "Look":
+        """The look after this one, round and round."""
+        looks = list(Look)
+        return looks[(looks.index(self) + 1) % len(looks)]
+
+
+class Places(NamedTuple):
+    """Regions in cells: the robot's surroundings, the whole room, the picture; None for what is not shown.
+
+    ``lines`` are one column wide or one row high.
+    """
+
+    near: Region | None = None
+    room: Region | None = None
+    camera: Region | None = None
+    lines: tuple[Region, ...] = ()
+
+
+def arrange(body: Region, look: Look) -> Places:
+    """Share out the part of the pane between legend and figures; nothing fits into one too small."""
+    if body.width < _LEAST_WIDTH or body.height < _LEAST_HEIGHT:
+        return Places()
+    match look:
+        case Look.CAMERA:
+            return Places(camera=body)
+        case Look.MAP if body.width < _TWO_MAPS_FROM:
+            return Places(near=body)
+        case Look.MAP:
+            near, line, room = _halves(body)
+            return Places(near, room, lines=(line,))
+    maps, line, camera = _halves(body)
+    if body.width < _MAPS_AND_CAMERA_FROM:
+        return Places(maps, camera=camera, lines=(line,))
+    near, between, room = _halves(maps)
+    return Places(near, room, camera, (between, line))
+
+
+def _halves(region: Region) -> tuple[Region, Region, Region]:
+    """Cut a region in two, and a line between, across its longer side; a cell is twice as high as wide."""
+    x, y, width, height = region
+    if width >= 2 * height:
+        half = width // 2
+        rest = Region(x + half + 1, y, width - half - 1, height)
+        return Region(x, y, half, height), Region(x + half, y, 1, height), rest
+    half = height // 2
+    rest = Region(x, y + half + 1, width, height - half - 1)
+    return Region(x, y, width, half), Region(x, y + half, width, 1), rest

@@ -1,0 +1,138 @@
+"""What is to be seen on a map of the robot's world at a moment, drawn in dots."""
+
+import math
+from itertools import pairwise
+
+import numpy as np
+
+from cbtui.theme import TRAIL_STEPS, Charset, Ink, Role
+from cbtui.widgets.cells import Row
+from cbtui.widgets.dots import Dots, Floats
+from cbtui.widgets.robot.extents import View
+from sim.trace.events import ArenaShown, RobotMoved, Scanned
+from sim.trace.model import Nanoseconds, Window
+from sim.trace.timeline import Timeline
+
+_BLANK, _WALL, _TRAIL, _SEEN, _TRUE, _SPHERE, _ROBOT, _HURT, _FLASH = 0, 1, 2, 6, 7, 8, 9, 10, 11
+_INKS = (
+    Ink(Role.TEXT),
+    Ink(Role.WALL),
+    *(Ink(Role.TRAIL, age) for age in range(TRAIL_STEPS)),
+    Ink(Role.SEEN_SCAN),
+    Ink(Role.TRUE_SCAN),
+    Ink(Role.SPHERE),
+    Ink(Role.ROBOT),
+    Ink(Role.WARN),
+    Ink(Role.WARN),
+)
+_SIGNS = " #',:;x.O@!*"
+_ARROWS = {Charset.ASCII: ">/^\\</v\\"}
+_ARROWS_ROUND = "▶◥▲◤◀◣▼◢"
+
+_TRAIL_LASTS: Nanoseconds = 60_000_000_000
+_TRAIL_POINTS = 300
+
+_FLASH_LASTS: Nanoseconds = 600_000_000
+_FLASH_TURNS: Nanoseconds = 150_000_000
+_RAYS = 8
+
+
+class Scene:
+    """All that a timeline knows of the robot's world at one moment."""
+
+    def __init__(self, plan: ArenaShown, timeline: Timeline, now: Nanoseconds, robot: RobotMoved) -> None:
+        self.plan = plan
+        self.robot = robot
+        self._true = timeline.scan(now)
+        self._seen = timeline.scan_seen(now)
+        self.seen_age = None if self._seen is None else now - self._seen.t
+        self.hit_age = since_hit(timeline, now)
+        trail = timeline.trail(Window(max(0, now - _TRAIL_LASTS), now + 1))
+        step = max(1, len(trail) // _TRAIL_POINTS)
+        self._trail = [trail[place] for place in range(0, len(trail), step)]
+
+    def picture(self, view: View, charset: Charset) -> list[Row]:
+        """Draw everything as one view shows it."""
+        dots = Dots(view.columns, view.lines, charset)
+        for x0, y0, x1, y1 in self.plan.walls:
+            dots.line(view.dot(x0, y0), view.dot(x1, y1), _WALL)
+        self._draw_trail(dots, view)
+        if self._seen is not None:
+            dots.plot_sparsely(*view.dots(*self._points(self._seen)), _SEEN)
+        if self._true is not None:
+            dots.plot(*view.dots(*self._points(self._true)), _TRUE)
+        x, y, radius = self.plan.sphere
+        dots.plot(*view.dots(*_disc(x, y, radius, view.metres_per_dot / 2)), _SPHERE)
+        layer = _HURT if self.robot.touching else _ROBOT
+        self._draw_robot(dots, view, layer)
+        self._draw_flash(dots, view)
+        rows = dots.rows(_INKS, _SIGNS)
+        column, line = view.cell(self.robot.x, self.robot.y)
+        if not view.shows_size(self.plan.robot_radius) and 0 <= line < len(rows):
+            rows[line].put(column, _arrow(self.robot.yaw, charset), _INKS[layer])
+        return rows
+
+    def _draw_trail(self, dots: Dots, view: View) -> None:
+        places = np.array([(moved.x, moved.y) for moved in self._trail]).reshape(-1, 2)
+        for age, part in enumerate(np.array_split(places, TRAIL_STEPS)):
+            dots.plot(*view.dots(part[:, 0], part[:, 1]), _TRAIL + age)
+
+    def _draw_robot(self, dots: Dots, view: View, layer: int) -> None:
+        robot, radius = self.robot, self.plan.robot_radius
+        if view.shows_size(radius):
+            dots.plot(*view.dots(*_circle(robot.x, robot.y, radius, view.metres_per_dot / 2)), layer)
+        ahead = max(2.2 * radius, 3 * view.metres_per_dot)
+        tip = (robot.x + ahead * math.cos(robot.yaw), robot.y + ahead * math.sin(robot.yaw))
+        dots.line(view.dot(robot.x, robot.y), view.dot(*tip), layer)
+
+    def _draw_flash(self, dots: Dots, view: View) -> None:
+        """Rays around the robot, which turn by half a gap every now and then."""
+        if self.hit_age is None:
+            return
+        first = self.hit_age // _FLASH_TURNS % 2 * math.pi / _RAYS
+        angles = first + np.arange(_RAYS) * (2 * math.pi / _RAYS)
+        inner = max(1.5 * self.plan.robot_radius, 2.5 * view.metres_per_dot)
+        for cos, sin in zip(np.cos(angles), np.sin(angles), strict=True):
+            start = (self.robot.x + inner * cos, self.robot.y + inner * sin)
+            end = (self.robot.x + 1.8 * inner * cos, self.robot.y + 1.8 * inner * sin)
+            dots.line(view.dot(*start), view.dot(*end), _FLASH)
+
+    def _points(self, scan: Scanned) -> tuple[Floats, Floats]:
+        """Return where a scan's beams end, in metres, taken from where the robot stands."""
+        robot = self.robot
+        ranges = np.frombuffer(scan.ranges, dtype="<u2") / 1000.0
+        angles = robot.yaw - math.pi + np.arange(len(ranges)) * (2 * math.pi / max(1, len(ranges)))
+        hit = ranges > 0
+        return robot.x + ranges[hit] * np.cos(angles[hit]), robot.y + ranges[hit] * np.sin(angles[hit])
+
+
+def since_hit(timeline: Timeline, now: Nanoseconds) -> Nanoseconds | None:
+    """How long ago the robot ran into something; None when that is longer ago than a flash lasts."""
+    start = now - _FLASH_LASTS
+    before = timeline.robot(start)
+    moves = timeline.trail(Window(start + 1, now + 1))
+    hits = [
+        after.t for moved, after in pairwise((before, *moves)) if after is not None and _hits(moved, after)
+    ]
+    return now - hits[-1] if hits else None
+
+
+def _hits(before: RobotMoved | None, after: RobotMoved) -> bool:
+    return after.touching and not (before is not None and before.touching)
+
+
+def _circle(x: float, y: float, radius: float, step: float) -> tuple[Floats, Floats]:
+    angles = np.arange(0, 2 * math.pi, min(1.0, step / radius))
+    return x + radius * np.cos(angles), y + radius * np.sin(angles)
+
+
+def _disc(x: float, y: float, radius: float, step: float) -> tuple[Floats, Floats]:
+    steps = np.arange(-radius, radius + step, step)
+    across, along = np.meshgrid(steps, steps)
+    inside = across**2 + along**2 <= radius**2
+    return x + across[inside], y + along[inside]
+
+
+def _arrow(yaw: float, charset: Charset) -> str:
+    eighth = round(yaw / (math.pi / 4)) % 8
+    return _ARROWS.get(charset, _ARROWS_ROUND)[eighth]

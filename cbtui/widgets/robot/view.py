@@ -1,0 +1,209 @@
+"""The robot pane: maps of its world and a camera's picture, at the moment on screen."""
+
+import asyncio
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+from textual import on
+from textual.geometry import Region, Size
+from textual.message import Message
+from textual.reactive import reactive
+from textual.strip import Strip
+
+from cbtui.theme import Charset, Run
+from cbtui.widgets.painted import Painted
+from cbtui.widgets.robot.film import half_blocks, ramp
+from cbtui.widgets.robot.painter import Painting, RobotPainter
+from cbtui.widgets.robot.places import Look
+from sim.camera import Camera, Picture, Shot
+from sim.trace.model import Nanoseconds
+from sim.trace.timeline import Timeline
+
+PICTURES_A_SECOND = 5
+_STARTING = "The camera starts."
+
+
+class TakesPictures(Protocol):
+    """What the pane needs of a camera; ``sim.camera.Camera`` is one."""
+
+    def want(self, shot: Shot) -> None:
+        """Ask for a picture; the newest wish counts."""
+
+    def stop(self) -> None:
+        """End it."""
+
+
+OpenCamera = Callable[[Callable[[Picture], None], Callable[[str], None]], TakesPictures]
+
+
+class RobotView(Painted):
+    """Robot, trail, true scan and the scan the node last saw, from above; a camera's picture when asked for.
+
+    Set ``timeline`` again (it may be the same one) when it has grown. The camera is opened when its picture
+    is first shown, and asked for ``PICTURES_A_SECOND`` at most.
+    """
+
+    timeline: reactive[Timeline] = reactive(Timeline, always_update=True, repaint=False)
+    now: reactive[Nanoseconds] = reactive(0, repaint=False)
+    charset: reactive[Charset] = reactive(Charset.BRAILLE, repaint=False)
+    look: reactive[Look] = reactive(Look.MAP, repaint=False)
+
+    class Taken(Message):
+        """The camera took a picture."""
+
+        def __init__(self, picture: Picture) -> None:
+            super().__init__()
+            self.picture = picture
+
+    class Lost(Message):
+        """The camera takes no more pictures."""
+
+        def __init__(self, why: str) -> None:
+            super().__init__()
+            self.why = why
+
+    def __init__(self, *, id: str | None = None, open_camera: OpenCamera = Camera) -> None:  # noqa: A002
+        super().__init__(id=id)
+        self._open_camera = open_camera
+        self._camera: TakesPictures | None = None
+        self._why_none = ""
+        self._asked: Shot | None = None
+        self._resting = False
+        self._picture: Picture | None = None
+        self._film: Sequence[Strip] = ()
+        self._painting = Painting(())
+
+    def cycle_camera(self) -> None:
+        """Show the map, the camera's picture, both, and so on; a camera that was lost is tried again."""
+        self._why_none = ""
+        self.look = self.look.following
+
+    # drawing
+
+    def rows(self, size: Size) -> Sequence[Sequence[Run]]:
+        """Paint all but the picture."""
+        note = "" if self._fits() else self._why_none or _STARTING
+        painter = RobotPainter(self.charset)
+        self._painting = painter.paint(self.timeline, self.now, size.width, size.height, self.look, note)
+        return self._painting.rows
+
+    def render_line(self, y: int) -> Strip:
+        """Return one painted line, and the picture's over it."""
+        strip = super().render_line(y)
+        place = self._painting.camera
+        if place is None or not place.y <= y < place.bottom or not self._fits():
+            return strip
+        picture = self._film[y - place.y]
+        return Strip.join([strip.crop(0, place.x), picture, strip.crop(place.right, self.size.width)])
+
+    def changed(self) -> None:
+        """Paint anew, and ask for another picture, as soon as the message at hand is dealt with."""
+        super().changed()
+        if self.is_running and self.look is not Look.MAP:
+            self.call_next(self._ask)
+
+    def notify_style_update(self) -> None:
+        """Draw the picture for the new theme."""
+        super().notify_style_update()
+        self._develop()
+
+    def watch_timeline(self) -> None:
+        """Paint what is known now."""
+        self.changed()
+
+    def watch_now(self) -> None:
+        """Paint another moment."""
+        self.changed()
+
+    def watch_charset(self) -> None:
+        """Paint in other glyphs."""
+        self._develop()
+        self.changed()
+
+    def watch_look(self) -> None:
+        """Paint other things."""
+        self.changed()
+
+    def on_resize(self) -> None:
+        """Ask for a picture that fits."""
+        self.changed()
+
+    # the camera
+
+    def _ask(self) -> None:
+        """Ask for the picture of the moment on screen, unless one was asked for just now."""
+        shot = self._shot()
+        if shot is None or shot == self._asked or self._resting or self._why_none:
+            return
+        if self._camera is None:
+            self._camera = self._open_camera(self._take, self._lose)
+        self._asked = shot
+        self._camera.want(shot)
+        self._resting = True
+        self.set_timer(1 / PICTURES_A_SECOND, self._ask_again)
+
+    def _ask_again(self) -> None:
+        self._resting = False
+        self._ask()
+
+    def _shot(self) -> Shot | None:
+        """The picture that the screen has a place for; poses that nobody can tell apart are one."""
+        robot, plan, place = self.timeline.robot(self.now), self.timeline.arena, self._painting.camera
+        if robot is None or plan is None or not place:
+            return None
+        pose = (round(robot.x, 3), round(robot.y, 3), round(robot.yaw, 3))
+        return Shot(plan.walls, plan.sphere, *pose, place.width, 2 * place.height)
+
+    def _take(self, picture: Picture) -> None:
+        """Bring a picture from the camera's thread to the screen's."""
+        self.post_message(self.Taken(picture))
+
+    def _lose(self, why: str) -> None:
+        self.post_message(self.Lost(why))
+
+    @on(Taken)
+    def _show_picture(self, message: Taken) -> None:
+        message.stop()
+        before, fitted = self._film, self._fits()
+        self._picture = message.picture
+        self._develop()
+        place = self._painting.camera
+        if place is None or not self._fits():
+            return
+        lines = [y for y, strip in enumerate(self._film) if not fitted or strip != before[y]]
+        if lines:
+            self.refresh(*(Region(place.x, place.y + y, place.width, 1) for y in lines))
+
+    @on(Lost)
+    async def _show_why(self, message: Lost) -> None:
+        message.stop()
+        self._why_none = message.why
+        self._picture = None
+        self._asked = None
+        await self._close_camera()
+        self.changed()
+
+    async def on_unmount(self) -> None:
+        """End the camera, whatever way the screen is left."""
+        await self._close_camera()
+
+    async def _close_camera(self) -> None:
+        camera, self._camera = self._camera, None
+        if camera is not None:
+            await asyncio.to_thread(camera.stop)
+
+    def _fits(self) -> bool:
+        """Whether there is a picture of the size of its place."""
+        place, picture = self._painting.camera, self._picture
+        if place is None or picture is None:
+            return False
+        return (picture.width, picture.height) == (place.width, 2 * place.height)
+
+    def _develop(self) -> None:
+        """Make strips of the picture."""
+        if self._picture is None:
+            self._film = ()
+        elif self.charset is Charset.ASCII or self.app.no_color:
+            self._film = ramp(self._picture, self.app.current_theme.dark, self.rich_style)
+        else:
+            self._film = half_blocks(self._picture)

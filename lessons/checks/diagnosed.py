@@ -1,0 +1,46 @@
+"""Checks that ask the diagnosis: nothing stuck, and none of a rule's problems."""
+
+from collections.abc import Callable
+
+from lessons.checks.check import Check, Verdict
+from sim.diagnosis import RULES, Finding, Weight, diagnose
+from sim.trace.timeline import Timeline
+
+_STUCK = ("self-made-deadlock", "needs-one-more-worker")
+
+
+def problems(run: Timeline) -> tuple[Finding, ...]:
+    """What the diagnosis finds wrong in a run; what is only worth knowing is left out."""
+    return tuple(each for each in diagnose(run) if each.rule.weigh(each, run) is Weight.PROBLEM)
+
+
+def never_stuck() -> Check:
+    """No callback waits for something that can never come."""
+    return _without("nothing gets stuck", "no deadlock", lambda rule: rule in _STUCK)
+
+
+def no_problem(rule: str, asks: str = "") -> Check:
+    """A rule of the diagnosis, named by its id, finds no problem; ``asks`` says that in the lesson's words.
+
+    Raises:
+        ValueError: there is no such rule.
+    """
+    known = {each.id: each.summary for each in RULES}
+    if rule not in known:
+        raise ValueError(f"no rule is called {rule!r}; there are {', '.join(known)}")
+    return _without(asks or f"never: {known[rule]}", "no such problem", lambda found: found == rule)
+
+
+def no_problems() -> Check:
+    """The diagnosis finds no problem at all."""
+    return _without("the diagnosis finds no problem", "no problem", lambda _: True)
+
+
+def _without(asks: str, expected: str, counts: Callable[[str], bool]) -> Check:
+    def judge(run: Timeline) -> Verdict:
+        for found in problems(run):
+            if counts(found.rule.id):
+                return Verdict(False, expected, found.rule.explain(found, run).what, found.at)
+        return Verdict(True, expected, "none")
+
+    return Check(asks, judge)

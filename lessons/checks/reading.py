@@ -1,0 +1,96 @@
+"""What checks and answers read off a run: callbacks by their names, their calls, and stretches of time."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+
+from sim.trace.events import EntityId, VelocityCommanded
+from sim.trace.model import Call, Nanoseconds, Span, Window
+from sim.trace.timeline import Timeline
+
+SECOND: Nanoseconds = 1_000_000_000
+
+
+def whole(run: Timeline) -> Window:
+    """All of a run."""
+    return Window(0, run.end + 1)
+
+
+def entities_named(run: Timeline, name: str) -> list[EntityId]:
+    """The entities of a callback (``scan_callback``), or of a topic or service (``/scan``)."""
+    return [each.id for each in run.entities.values() if name in (each.callback, each.name)]
+
+
+def calls_of(run: Timeline, name: str, window: Window | None = None) -> list[Span]:
+    """The calls of a callback, topic or service that began in a window, or ever; in order of start."""
+    within = whole(run) if window is None else window
+    found = [span for each in entities_named(run, name) for span in run.calls_begun(each, within)]
+    return sorted(found, key=lambda span: span.start)
+
+
+def spans_of(run: Timeline, name: str) -> list[Span]:
+    """What a callback, topic or service had run when; a call that awaited something is several spans."""
+    found = [span for each in entities_named(run, name) for span in run.spans_of(each, whole(run))]
+    return sorted(found, key=lambda span: span.start)
+
+
+def requests_of(run: Timeline, service: str) -> list[Call]:
+    """The calls of a service, in order of sending."""
+    return [call for call in run.calls if call.service == service]
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """A time that comes once or more often in a run; ``words`` go on from "while"."""
+
+    words: str
+    windows: Callable[[Timeline], list[Window]]
+
+
+def rotations(run: Timeline) -> list[Window]:
+    """When the robot was under a command to turn: from each such command to the first one not to."""
+    return list(_rotations(run))
+
+
+def _rotations(run: Timeline) -> Iterator[Window]:
+    begun: VelocityCommanded | None = None
+    for command in run.commands(whole(run)):
+        if begun is None and command.angular:
+            begun = command
+        elif begun is not None and not command.angular:
+            yield Window(begun.t, command.t)
+            begun = None
+    if begun is not None:
+        yield Window(begun.t, run.end)
+
+
+ROTATES = Stretch("the robot rotates", rotations)
+"""While the robot is under a command to turn."""
+
+
+def runs_long(callback: str, seconds: float = 1.0) -> Stretch:
+    """While a callback is in a call that lasts at least so many seconds."""
+
+    def windows(run: Timeline) -> list[Window]:
+        every = (Window(span.start, span.end_at(run.end)) for span in spans_of(run, callback))
+        return [window for window in every if window.length >= seconds * SECOND]
+
+    return Stretch(f"{callback} runs", windows)
+
+
+def is_called(service: str) -> Stretch:
+    """While a call of a service is without its answer."""
+
+    def windows(run: Timeline) -> list[Window]:
+        ends = (
+            (call, run.end if call.replied is None else call.replied) for call in requests_of(run, service)
+        )
+        return [Window(call.sent, end) for call, end in ends]
+
+    return Stretch(f"{service} works on a request", windows)
+
+
+def seconds(length: Nanoseconds) -> str:
+    """A length of time in words, short: ``9.9 s``, ``35 ms``."""
+    if 0 < length < SECOND // 10:
+        return f"{length / 1e6:.3g} ms"
+    return f"{length / SECOND:.3g} s"

@@ -1,0 +1,53 @@
+"""Checks on what the robot does, and on how old the data is that a callback decides on."""
+
+from collections.abc import Iterator
+
+from lessons.checks.check import Check, Verdict
+from lessons.checks.reading import SECOND, calls_of, rotations, seconds, spans_of
+from sim.trace.model import Nanoseconds, Span
+from sim.trace.timeline import Timeline
+
+
+def turns(times: int) -> Check:
+    """The robot turns so many times; a turn goes from a command to turn to the first one not to."""
+    expected = _turns(times)
+
+    def judge(run: Timeline) -> Verdict:
+        found = rotations(run)
+        at = found[min(times, len(found) - 1)].start if found else None
+        return Verdict(len(found) == times, expected, _turns(len(found)), at)
+
+    return Check(f"the robot makes {expected}", judge)
+
+
+def data_never_older(subscription: str, timer: str, limit: float) -> Check:
+    """When a timer's callback begins, the message that a subscription took last is at most ``limit`` s old.
+
+    Calls before the first message do not count.
+    """
+    expected = f"at most {seconds(round(limit * SECOND))} old"
+
+    def judge(run: Timeline) -> Verdict:
+        ages = list(_ages(spans_of(run, subscription), calls_of(run, timer)))
+        if not ages:
+            return Verdict(False, expected, f"no call of {timer} after a message of {subscription}")
+        age, at = max(ages)
+        return Verdict(age <= limit * SECOND, expected, f"{seconds(age)} old", at)
+
+    return Check(f"{subscription} data is fresh when {timer} decides", judge)
+
+
+def _ages(taken: list[Span], decisions: list[Span]) -> Iterator[tuple[Nanoseconds, Nanoseconds]]:
+    """How old the newest message was at each decision that had one, and when that was."""
+    done = sorted((span.end, span.start - span.age) for span in taken if span.end is not None)
+    newest: Nanoseconds | None = None
+    for decision in decisions:
+        while done and done[0][0] <= decision.start:
+            published = done.pop(0)[1]
+            newest = published if newest is None else max(newest, published)
+        if newest is not None:
+            yield decision.start - newest, decision.start
+
+
+def _turns(times: int) -> str:
+    return "1 turn" if times == 1 else f"{times} turns"

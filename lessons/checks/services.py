@@ -1,0 +1,69 @@
+"""Checks on service calls and on what is written to the log."""
+
+from lessons.checks.check import Check, Verdict
+from lessons.checks.reading import SECOND, requests_of, seconds
+from sim.trace.timeline import Timeline
+
+
+def replies_within(service: str, limit: float) -> Check:
+    """Every call of a service gets its answer within ``limit`` seconds."""
+    expected = f"an answer within {seconds(round(limit * SECOND))}"
+
+    def judge(run: Timeline) -> Verdict:
+        calls = requests_of(run, service)
+        if not calls:
+            return Verdict(False, expected, "no call")
+        for call in calls:
+            if call.replied is None:
+                waited = (
+                    "nobody who took the request"
+                    if call.lost
+                    else f"no answer in {seconds(run.end - call.sent)}"
+                )
+                return Verdict(False, expected, waited, call.sent)
+        slowest = max(calls, key=lambda call: (call.replied or 0) - call.sent)
+        took = (slowest.replied or 0) - slowest.sent
+        return Verdict(took <= limit * SECOND, expected, f"an answer after {seconds(took)}", slowest.sent)
+
+    return Check(f"{service} answers in time", judge)
+
+
+def every_call_answered() -> Check:
+    """Every service call of the run gets its answer; there is at least one."""
+    expected = "an answer to each"
+
+    def judge(run: Timeline) -> Verdict:
+        calls = run.calls
+        if not calls:
+            return Verdict(False, expected, "no call")
+        open_ = [call for call in calls if call.replied is None]
+        if open_:
+            seen = f"{len(open_)} of {len(calls)} without one, the first of {open_[0].service}"
+            return Verdict(False, expected, seen, open_[0].sent)
+        return Verdict(True, expected, f"{len(calls)} of {len(calls)} answered")
+
+    return Check("every service call is answered", judge)
+
+
+def log_says(text: str, at_least: int = 1) -> Check:
+    """The log has lines with a text in them."""
+    expected = "such a line" if at_least == 1 else f"at least {at_least} such lines"
+
+    def judge(run: Timeline) -> Verdict:
+        lines = [line for line in run.logs if text in line.text]
+        at = lines[0].t if lines else None
+        return Verdict(len(lines) >= at_least, expected, str(len(lines)) if lines else "none", at)
+
+    return Check(f"the log says '{text}'", judge)
+
+
+def log_never_says(text: str) -> Check:
+    """No line of the log has a text in it."""
+
+    def judge(run: Timeline) -> Verdict:
+        line = next((line for line in run.logs if text in line.text), None)
+        if line is None:
+            return Verdict(True, "no such line", "none")
+        return Verdict(False, "no such line", line.text, line.t)
+
+    return Check(f"the log never says '{text}'", judge)

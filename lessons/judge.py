@@ -1,0 +1,100 @@
+"""What tells from a run which answers are true and which checks pass: the Python beside a lesson."""
+
+import importlib.util
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+from lessons.checks import Check, Verdict
+from lessons.description import Prediction
+from lessons.lesson import BadLesson, Lesson
+from sim.trace.timeline import Timeline
+
+_CHECKS = "CHECKS"
+"""What the checks are called in a `checks.py`: a tuple of them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Judged:
+    """A check and what came of it."""
+
+    check: Check
+    verdict: Verdict
+
+
+class Judge:
+    """The checks of a lesson, and the functions that read answers off a run."""
+
+    def __init__(self, lesson: Lesson) -> None:
+        """Read the lesson's `checks.py`.
+
+        Raises:
+            BadLesson: it cannot be imported, or lacks what the lesson's predictions and exercise need.
+        """
+        self._path = lesson.checks_path
+        module = _imported(self._path) if self._path.is_file() else ModuleType("nothing")
+        self.checks = self._checks_in(module)
+        self._shown = {each.shown: self._function(module, each.shown) for each in lesson.predictions}
+        if lesson.exercise is not None and not self.checks:
+            raise BadLesson(f"{self._path}: the exercise needs a tuple {_CHECKS} with at least one check")
+
+    def verdicts(self, run: Timeline) -> list[Judged]:
+        """Judge a run that is over by every check, in their order."""
+        return [Judged(check, _verdict(check, run)) for check in self.checks]
+
+    def true_answer(self, prediction: Prediction, run: Timeline) -> int:
+        """Return which answer of a prediction a run shows to be true, from 0.
+
+        Raises:
+            BadLesson: the lesson's function fails, or returns no answer's number.
+        """
+        try:
+            answer = self._shown[prediction.shown](run)
+        except Exception as error:
+            raise BadLesson(f"{self._path}: {prediction.shown} raised {_named(error)}") from error
+        if type(answer) is not int or not 0 <= answer < len(prediction.answers):
+            numbers = f"0 to {len(prediction.answers) - 1}"
+            raise BadLesson(f"{self._path}: {prediction.shown} returned {answer!r}; an answer is {numbers}")
+        return answer
+
+    def _checks_in(self, module: ModuleType) -> tuple[Check, ...]:
+        checks = getattr(module, _CHECKS, ())
+        if not isinstance(checks, tuple) or not all(isinstance(each, Check) for each in checks):
+            raise BadLesson(f"{self._path}: {_CHECKS} is not a tuple of checks")
+        return checks
+
+    def _function(self, module: ModuleType, name: str) -> Callable[[Timeline], object]:
+        function = getattr(module, name, None)
+        if not callable(function):
+            raise BadLesson(f"{self._path}: there is no function {name}, which a prediction names")
+        return function  # type: ignore[no-any-return]  # what it returns is looked at
+
+
+def _verdict(check: Check, run: Timeline) -> Verdict:
+    try:
+        return check.judge(run)
+    except Exception as error:  # noqa: BLE001 - a check that stumbles over a learner's run has not passed
+        return Verdict(False, "a run that this check can read", f"an error in the check: {_named(error)}")
+
+
+def _named(error: Exception) -> str:
+    return f"{type(error).__name__}: {' '.join(str(error).split())}"
+
+
+def _imported(path: Path) -> ModuleType:
+    """Run a `checks.py` as a module that nobody else can import: every lesson has one of that name."""
+    name = f"checks of {path.parent.name}"
+    spec = importlib.util.spec_from_file_location(name, path)
+    assert spec is not None, "a path that ends in .py has a loader"
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module  # dataclasses look their module up
+    try:
+        spec.loader.exec_module(module)
+    except Exception as error:
+        raise BadLesson(f"{path}: cannot be imported: {_named(error)}") from error
+    finally:
+        del sys.modules[name]
+    return module

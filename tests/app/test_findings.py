@@ -1,0 +1,111 @@
+"""Looking for what the rules find while a run goes on: how often, and what is kept of it."""
+
+from collections.abc import Iterator, Sequence
+
+from cbtui.findings import Watch, counted
+from sim.diagnosis import Diagnoses, Explanation, Finding, Look, Rule, Weight
+from sim.trace.timeline import Timeline
+from tests.support.builder import Run
+from tests.support.runs import shared_group_run, split_groups_run
+
+
+class Counting(Rule):
+    """Finds how often it was asked, and takes as much time as it is told to."""
+
+    id = "how-often"
+    summary = "counts"
+
+    def __init__(self, clock: "Clock", takes: float = 0.0) -> None:
+        self.asked = 0
+        self._clock = clock
+        self._takes = takes
+
+    def check(self, look: Look) -> Iterator[Finding]:
+        self.asked += 1
+        self._clock.now += self._takes
+        yield Finding(self, 1, look.end + 2, size=self.asked)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        return Explanation("it was asked", "it counts", "do not ask", None)
+
+
+class Clock:
+    now = 100.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+def watched(clock: Clock, takes: float = 0.0) -> tuple[Watch, Counting]:
+    rule = Counting(clock, takes)
+    return Watch(Timeline(), Diagnoses([rule]), clock), rule
+
+
+def watch_of(run: Run, until: float) -> Watch:
+    timeline = Timeline()
+    timeline.extend(run.until(until))
+    watch = Watch(timeline)
+    watch.look()
+    return watch
+
+
+def at_frames(watch: Watch, clock: Clock, seconds: Sequence[float]) -> list[bool]:
+    looked = []
+    for second in seconds:
+        clock.now = second
+        looked.append(watch.look_when_due())
+    return looked
+
+
+def test_the_rules_look_once_a_second_however_often_they_could() -> None:
+    clock = Clock()
+    watch, rule = watched(clock)
+    at_frames(watch, clock, [100 + frame / 30 for frame in range(300)])
+    assert rule.asked == 10
+
+
+def test_after_a_dear_look_the_rules_rest_a_hundred_times_as_long() -> None:
+    clock = Clock()
+    watch, rule = watched(clock, takes=0.05)
+    assert at_frames(watch, clock, [100.0, 101.5, 104.9]) == [True, False, False]
+    assert at_frames(watch, clock, [105.06]) == [True]
+    assert rule.asked == 2
+
+
+def test_looking_now_waits_for_nothing_and_puts_off_the_next_look() -> None:
+    clock = Clock()
+    watch, rule = watched(clock)
+    watch.look()
+    watch.look()
+    assert at_frames(watch, clock, [100.9, 101.1]) == [False, True]
+    assert rule.asked == 3
+
+
+def test_a_look_that_finds_the_same_has_nothing_new_to_tell() -> None:
+    clock = Clock()
+    watch = Watch(Timeline(), clock=clock)
+    assert at_frames(watch, clock, [100.0, 102.0, 104.0]) == [False, False, False]
+
+
+def test_what_was_found_comes_with_weight_and_words_problems_first() -> None:
+    told = watch_of(shared_group_run(), 20.0).told
+    assert [each.weight for each in told] == sorted((each.weight for each in told), key=str)
+    starved = next(each for each in told if each.name == "group starvation")
+    assert starved.is_problem
+    assert starved.leads_somewhere
+    assert starved.explanation.what.startswith("odom_callback waited 16.0 s: group A was held by")
+
+
+def test_problems_are_counted_and_remarks_are_not() -> None:
+    told = watch_of(shared_group_run(), 20.0).told
+    problems = [each for each in told if each.weight is Weight.PROBLEM]
+    assert counted(told) == f"{len(problems)} problems"
+    assert counted(problems[:1]) == "1 problem"
+    assert counted(watch_of(split_groups_run(), 20.0).told) == ""
+
+
+def test_what_is_true_of_a_whole_run_leads_nowhere() -> None:
+    told = watch_of(split_groups_run(), 20.0).told
+    unused = next(each for each in told if each.name == "threads never used")
+    assert unused.at is None
+    assert not unused.leads_somewhere

@@ -1,0 +1,88 @@
+"""Lessons by others on the command line: made, proved, and brought in."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from cbtui import cli
+
+
+def test_a_new_lesson_is_right_as_it_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "more" / "two-belts"
+    assert cli.main(["new-lesson", str(folder)]) == 0
+    assert f"Prove it: cbtui lint-lesson {folder}\n" in capsys.readouterr().out
+    assert cli.main(["lint-lesson", str(tmp_path / "more")]) == 0
+    assert capsys.readouterr().out == f"{folder}: all is as it says\n"
+
+
+def test_a_new_lesson_is_listed_begun_and_found_among_the_others(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    cli.main(["new-lesson", "two-belts"])
+    capsys.readouterr()
+    assert cli.main(["--lessons", ".", "list"]) == 0
+    assert capsys.readouterr().out.splitlines()[-1].split()[1:4] == ["two-belts", "Two", "belts:"]
+    assert cli.main(["start", "two-belts", "--lessons", "two-belts"]) == 0
+    assert (tmp_path / "two_belts.py").is_file()
+    assert "CBTUI_LESSONS" not in os.environ
+
+
+def test_lint_lesson_tells_every_fault_and_ends_with_1(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = tmp_path / "two-belts"
+    cli.main(["new-lesson", str(folder)])
+    (folder / "guide.md").unlink()
+    capsys.readouterr()
+    assert cli.main(["lint-lesson", str(folder)]) == 1
+    assert capsys.readouterr().out == f"{folder}/lesson.toml: there is no file 'guide.md' beside it\n"
+
+
+def test_a_folder_that_is_no_lesson_is_said_to_be_none(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(["lint-lesson", str(tmp_path)]) == 1
+    assert capsys.readouterr().out == f"{tmp_path}/lesson.toml: cannot be read: No such file or directory\n"
+
+
+@pytest.mark.parametrize(
+    ("name", "sentence"),
+    [
+        ("Two Belts", "'Two Belts' cannot be a lesson's id; take small letters and digits, joined by '-'"),
+        ("there", "there is there already; nothing was written"),
+        ("file/new", "cannot be made: Not a directory"),
+    ],
+)
+def test_a_lesson_that_cannot_be_made_is_said_to_be_so(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], name: str, sentence: str
+) -> None:
+    (tmp_path / "there").mkdir()
+    (tmp_path / "file").touch()
+    assert cli.main(["new-lesson", str(tmp_path / name)]) == 1
+    (line,) = capsys.readouterr().err.splitlines()
+    assert sentence in line
+    assert list((tmp_path / "there").iterdir()) == []
+
+
+@pytest.mark.parametrize("command", [["list"], ["run", "single-thread"], ["start", "split-groups"]])
+def test_a_lesson_at_fault_is_named_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: list[str]
+) -> None:
+    folder = tmp_path / "two-belts"
+    cli.main(["new-lesson", str(folder)])
+    (folder / "node.py").unlink()
+    capsys.readouterr()
+    with pytest.raises(SystemExit, match="2"):
+        cli.main([*command, "--lessons", str(tmp_path)])
+    (line,) = capsys.readouterr().err.splitlines()
+    assert line == (
+        f"cbtui: {folder}/lesson.toml: the field 'setup.node' is wrong: there is no file 'node.py' beside it"
+    )
+
+
+def test_lessons_of_nowhere_are_refused(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit, match="2"):
+        cli.main(["lint-lesson", "/no/such/folder"])
+    assert capsys.readouterr().err == "cbtui: there is no folder /no/such/folder\n"

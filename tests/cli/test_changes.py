@@ -1,0 +1,117 @@
+"""Changing a program's set-up from the command line: what runs, what is recorded, what is refused."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from cbtui import cli
+from cbtui.record import setup_of
+from sim.engine.setup import GroupChange, PeriodChange
+from sim.trace.recording import read
+
+CHANGES = (
+    *("--group", "SetBool_callback=shared"),
+    *("--group", "/service_start_turn:timer_callback=shared"),
+    *("--period", "timer_callback=0.5"),
+    *("--sensor-rate", "5"),
+)
+
+
+def cbtui(*words: str) -> "subprocess.CompletedProcess[str]":
+    command = [sys.executable, "-m", "cbtui", *words]
+    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+
+
+def starts(file: Path, callback: str) -> list[float]:
+    """When a callback started, in seconds."""
+    events: list[dict[str, Any]] = [json.loads(line) for line in file.read_text().splitlines()]
+    return [
+        each["t"] for each in events if each["event"] == "callback_start" and each["callback"] == callback
+    ]
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Where ``run.mcap`` and ``run.jsonl`` tell of a changed run with a call."""
+    folder = tmp_path_factory.mktemp("changes")
+    files = ["--record", str(folder / "run.mcap"), "--events", str(folder / "run.jsonl")]
+    done = cbtui("run", "exclusive-2-threads", "--for", "8", "--call", "1.2", *CHANGES, *files)
+    assert done.returncode == 0, done.stderr
+    return folder
+
+
+def test_a_changed_run_has_its_groups_and_periods(folder: Path) -> None:
+    ticks = starts(folder / "run.jsonl", "timer_callback")
+    assert ticks[:2] == [0.5, 1.0]
+    assert not [at for at in ticks if 1.2 < at < 6.2]
+
+
+def test_a_recording_holds_the_changes_and_tells_of_them(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    setup = setup_of(read(folder / "run.mcap").about)
+    assert setup is not None
+    assert setup.groups == (
+        GroupChange("", "SetBool_callback", "shared"),
+        GroupChange("/service_start_turn", "timer_callback", "shared"),
+    )
+    assert setup.periods == (PeriodChange("", "timer_callback", 500_000_000),)
+    assert setup.sensor_rate == 5
+    assert cli.main(["info", str(folder / "run.mcap")]) == 0
+    told = capsys.readouterr().out
+    assert "changed    SetBool shared group, timer shared group, timer every 0.5 s, sensors 5 Hz\n" in told
+
+
+def test_a_repeated_run_is_changed_in_the_same_way(folder: Path) -> None:
+    again = folder / "again.jsonl"
+    done = cbtui("run", "--inputs", str(folder / "run.mcap"), "--events", str(again))
+    assert done.returncode == 0, done.stderr
+    assert again.read_bytes() == (folder / "run.jsonl").read_bytes()
+
+
+def test_a_repeated_run_can_be_changed_once_more(folder: Path) -> None:
+    other = folder / "other.jsonl"
+    words = ["--group", "timer_callback=own", "--group", "/service_start_turn:timer_callback=own"]
+    done = cbtui("run", "--inputs", str(folder / "run.mcap"), *words, "--events", str(other))
+    assert done.returncode == 0, done.stderr
+    assert [at for at in starts(other, "timer_callback") if 1.2 < at < 6.2]
+
+
+def test_a_callback_that_there_is_not_is_told_of(folder: Path) -> None:
+    done = cbtui("run", "exclusive-2-threads", "--for", "1", "--group", "tick=own")
+    assert done.returncode == 0
+    assert "no callback is named tick; there are SetBool_callback, timer_callback" in done.stderr
+
+
+@pytest.mark.parametrize("command", ["run", "open"])
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (
+            ["--group", "odom_callback"],
+            "'odom_callback' is not a callback and its value; give a group, such as",
+        ),
+        (["--group", "=own"], "'=own' is not a callback and its value"),
+        (["--group", ":odom_callback=own"], "':odom_callback=own' is not a callback and its value"),
+        (["--group", "odom_callback=alone"], "'alone' is no group; give own, shared, reentrant or default"),
+        (["--period", "timer_callback"], "give seconds, such as timer_callback=0.2"),
+        (["--period", "timer_callback=0"], "0 is no period; give 0.001 to 3600 s"),
+        (["--period", "timer_callback=soon"], "'soon' is not a number; give 0.001 to 3600 s"),
+        (["--sensor-rate", "0"], "0 is no sensor rate; give 0.1 to 100 Hz"),
+        (["--sensor-rate", "inf"], "inf is no sensor rate; give 0.1 to 100 Hz"),
+        (["--threads", "0"], "an executor cannot have 0 threads here; give 1 to 64"),
+    ],
+)
+def test_a_change_that_cannot_be_made_is_refused_in_one_line(
+    command: str, words: list[str], sentence: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as refused:
+        cli.main([command, "shared-group", *words])
+    assert refused.value.code == 2
+    error = capsys.readouterr().err
+    assert sentence in error
+    assert len(error.splitlines()) == 1

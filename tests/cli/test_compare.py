@@ -1,0 +1,114 @@
+"""``cbtui compare`` from the command line: what is given to the runs, and what is refused."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from cbtui import cli
+from tests.trace.recording.files import write
+from tests.trace.samples import FULL
+
+
+def cbtui(*words: str) -> str:
+    command = [sys.executable, "-m", "cbtui", *words]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def figures(text: str, section: str, label: str) -> list[str]:
+    """What a row of a section tells of both runs, and of the difference."""
+    lines = iter(text.splitlines())
+    assert section in lines
+    row = next(line for line in lines if line.startswith(f"  {label}"))
+    return [cell.strip() for cell in row.removeprefix(f"  {label}").split("  ") if cell.strip()]
+
+
+def test_a_lesson_can_be_compared_with_itself_with_other_threads() -> None:
+    words = ("--to", "8", "--call", "2.55", "--threads-a", "2", "--threads-b", "1")
+    text = cbtui("compare", "reentrant-2-threads", "reentrant-2-threads", *words)
+    assert text.startswith(
+        "run A  reentrant-2-threads, 2 threads\nrun B  reentrant-2-threads, 1 thread\n0 to 8 s\n"
+    )
+    assert figures(text, "timer_callback", "calls") == ["7", "3", "-4 fewer"]
+    assert "  run B waits: no free worker" in text.splitlines()
+
+
+def test_lines_and_calls_reach_both_runs() -> None:
+    line = "ros2 service call /dummy_server_srv std_srvs/srv/SetBool '{data: true}'"
+    words = ("--to", "3", "--call", "1.2", "--at", "0.5", line)
+    text = cbtui("compare", "reentrant-2-threads", "exclusive-2-threads", *words)
+    assert figures(text, "SetBool_callback", "calls")[0] in ("1", "2")
+    alone = cbtui("compare", "reentrant-2-threads", "exclusive-2-threads", "--to", "3", "--call", "1.2")
+    assert alone != text
+
+
+def test_what_is_run_gets_the_inputs_of_a_recording_and_lasts_as_long(tmp_path: Path) -> None:
+    recording = str(tmp_path / "run.mcap")
+    cbtui("run", "exclusive-2-threads", "--for", "3", "--at", "1.2", "ros2 topic list", "--record", recording)
+    text = cbtui("compare", "exclusive-2-threads", "reentrant-1-thread", "--inputs", recording)
+    assert "0 to 3 s" in text.splitlines()
+    text = cbtui("compare", recording, "exclusive-2-threads", "--inputs", recording)
+    rows = [line for line in text.splitlines() if line.startswith("  ") and "run A" not in line]
+    assert len(rows) > 8
+    assert all(line.endswith("same") for line in rows)
+
+
+@pytest.fixture
+def recording(tmp_path: Path) -> str:
+    path = tmp_path / "run.mcap"
+    write(path, FULL)
+    return str(path)
+
+
+@pytest.fixture
+def node(tmp_path: Path) -> str:
+    path = tmp_path / "node.py"
+    path.write_text("")
+    return str(path)
+
+
+LESSONS = ["single-thread", "split-groups"]
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        ([*LESSONS, "--from", "x"], "'x' is not a number; give seconds"),
+        ([*LESSONS, "--to", "0"], "a run cannot last 0 seconds"),
+        ([*LESSONS, "--from", "9", "--to", "9"], "nothing is left to compare from 9 s to 9 s"),
+        ([*LESSONS, "--call", "-1"], "-1 s is before the run begins"),
+        ([*LESSONS, "--call", "61"], "a call at 61 s comes after the 60 s that are compared; give --to"),
+        ([*LESSONS, "--at", "5", "ros2 topic list", "--to", "5"], "a line at 5 s comes after the 5 s"),
+        ([*LESSONS, "--at", "soon", "ros2 topic list"], "'soon' is not a number"),
+        ([*LESSONS, "--threads-a", "0"], "an executor cannot have 0 threads here"),
+        ([*LESSONS, "--threads-b", "two"], "'two' is not a whole number"),
+        ([*LESSONS, "--inputs", "/no.mcap"], "/no.mcap cannot be read"),
+        ([*LESSONS, "--inputs", "RECORDING", "--call", "1"], "leave out --call and --at"),
+        ([*LESSONS, "--", "-some"], "only a file takes arguments; leave out what stands behind --"),
+        (["RECORDING", "single-thread", "--threads-a", "2"], "leave out --threads-a"),
+        (["single-thread", "RECORDING", "--threads-b", "2"], "leave out --threads-b"),
+        (["RECORDING", "RECORDING", "--call", "1"], "nothing is run; leave out --call"),
+        (["RECORDING", "RECORDING", "--at", "1", "ros2 topic list"], "nothing is run; leave out --at"),
+        (["RECORDING", "RECORDING", "--inputs", "RECORDING"], "nothing is run; leave out --inputs"),
+        (["RECORDING", "RECORDING", "--from", "1000"], "nothing is left to compare from 1000 s"),
+        (["single-thread"], "required: B"),
+        (["NODE", "/no/such.py"], "there is no file /no/such.py"),
+        (["/tmp/", "NODE"], "is a folder; name the file in it"),
+        (["nothing", "NODE"], "No lesson is called 'nothing'"),
+    ],
+)
+def test_what_cannot_be_compared_is_refused_in_one_sentence(
+    words: list[str], sentence: str, recording: str, node: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    files = {"RECORDING": recording, "NODE": node}
+    try:
+        code = cli.main(["compare", "--text", *(files.get(word, word) for word in words)])
+    except SystemExit as left:
+        code = int(str(left.code))
+    told = capsys.readouterr()
+    assert (code, told.out) == (2, "")
+    assert sentence in told.err
+    assert len(told.err.splitlines()) == 1

@@ -1,0 +1,47 @@
+"""Whatever keys are chosen: Textual does what footer and help say, and no key is in two minds."""
+
+from itertools import combinations
+
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from textual.binding import BindingsMap
+
+from cbtui.actions import ACTIONS, Scope, actions_of, bindings_of, key_id
+from cbtui.app import CbtuiApp
+from cbtui.config_keys import read_keys
+from cbtui.keymap import Keymap, canonical, keys_of
+
+POOL = sorted({key for action in ACTIONS for key in keys_of(action)} | {"f5", "f6", "ctrl+g", "é", "*"})
+CHOICES = st.dictionaries(
+    st.sampled_from(sorted({key_id(action) for action in ACTIONS})),
+    st.lists(st.sampled_from(POOL), min_size=1, max_size=3, unique=True),
+    max_size=25,
+)
+
+
+def keymap_of(choices: dict[str, list[str]]) -> Keymap:
+    return read_keys(dict(choices), lambda name, sentence: None)
+
+
+@given(CHOICES)
+@settings(max_examples=60, deadline=None)
+def test_textual_has_the_keys_that_are_shown(choices: dict[str, list[str]]) -> None:
+    keymap = keymap_of(choices)
+    told = CbtuiApp(keys=keymap)._keymap
+    for scope in Scope:
+        bindings = BindingsMap(bindings_of(scope))
+        bindings.apply_keymap(told)
+        bound = {(canonical(key), binding.action) for key, binding in bindings}
+        shown = keymap.of(action for action in ACTIONS if action.scope is scope)
+        assert bound == {(key, action.id) for action in shown for key in keys_of(action)}
+
+
+@given(CHOICES)
+@settings(max_examples=60, deadline=None)
+def test_only_those_share_a_key_that_share_one_in_the_registry(choices: dict[str, list[str]]) -> None:
+    keymap = keymap_of(choices)
+    for scope in Scope:
+        actions = actions_of(scope)
+        for (one, now), (other, other_now) in combinations(zip(actions, keymap.of(actions), strict=True), 2):
+            if not set(keys_of(one)) & set(keys_of(other)):
+                assert not set(keys_of(now)) & set(keys_of(other_now))

@@ -1,0 +1,56 @@
+"""Every lesson is as it says: answers, diagnoses, starter and solution are held against real runs."""
+
+import ast
+import re
+import sys
+from pathlib import Path
+
+import pytest
+
+from cbtui.lesson_lint import faults_of
+from cbtui.lesson_scaffold import TEMPLATE
+from lessons.catalogue import lessons
+from lessons.lesson import Lesson
+
+every_lesson = pytest.mark.parametrize("lesson", lessons(), ids=lambda lesson: lesson.id)
+EXERCISES = [lesson for lesson in lessons() if lesson.exercise is not None]
+
+
+@pytest.mark.parametrize(
+    "folder", [TEMPLATE, *(lesson.folder for lesson in lessons())], ids=lambda path: path.name
+)
+def test_a_lesson_is_as_it_says(folder: Path) -> None:
+    assert list(faults_of(folder)) == []
+
+
+@every_lesson
+def test_a_lesson_asks_gives_a_task_and_explains(lesson: Lesson) -> None:
+    assert 1 <= len(lesson.predictions) <= 2
+    assert lesson.task
+    assert 8 <= len(lesson.explanation.splitlines()) <= 30
+
+
+@every_lesson
+def test_what_is_asked_before_the_run_is_short(lesson: Lesson) -> None:
+    for prediction in lesson.predictions:
+        assert prediction.question.endswith("?")
+        assert len(prediction.question) <= 160
+        assert all(len(answer) <= 80 and not answer.endswith(".") for answer in prediction.answers)
+        assert prediction.because.endswith(".")
+        assert len(prediction.because) <= 200
+
+
+@every_lesson
+def test_the_checks_of_a_lesson_read_traces_and_diagnoses_and_nothing_else(lesson: Lesson) -> None:
+    tree = ast.parse(lesson.checks_path.read_text(encoding="utf-8"))
+    imported = {node.module or "" for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)}
+    imported |= {name.name for node in ast.walk(tree) if isinstance(node, ast.Import) for name in node.names}
+    allowed = re.compile(r"lessons\.checks|sim\.(trace|diagnosis)(\..+)?")
+    assert all(allowed.fullmatch(name) or name.split(".")[0] in sys.stdlib_module_names for name in imported)
+
+
+@pytest.mark.parametrize("lesson", EXERCISES, ids=lambda lesson: lesson.id)
+def test_the_files_of_an_exercise_fit_an_80_column_pane(lesson: Lesson) -> None:
+    for path in (lesson.starter_path, lesson.solution_path):
+        assert path is not None
+        assert all(len(line) <= 79 for line in path.read_text(encoding="utf-8").splitlines())

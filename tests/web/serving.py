@@ -1,0 +1,56 @@
+"""A server in a process of its own, and the processes that it started."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+
+class Serving:
+    """``cbtui serve`` at a free port; ``address`` is where."""
+
+    def __init__(self, process: "subprocess.Popen[str]") -> None:
+        self.process = process
+        assert process.stdout is not None
+        self.first_line = process.stdout.readline()
+        self.address = self.first_line.split()[4]
+
+    def descendants(self) -> list[int]:
+        """The numbers of all processes that it started, and that those started."""
+        found = [self.process.pid]
+        for process in found:
+            for task in Path(f"/proc/{process}/task").glob("*/children"):
+                found += map(int, task.read_text().split())
+        return found[1:]
+
+
+@contextmanager
+def serving(*words: str) -> Iterator[Serving]:
+    """Serve, and end it."""
+    command = [sys.executable, "-m", "cbtui", "serve", "--port", "0", *words]
+    with (
+        TemporaryDirectory() as home,
+        subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=_environment(home)) as process,
+    ):
+        try:
+            yield Serving(process)
+        finally:
+            process.terminate()
+
+
+def _environment(home: str) -> dict[str, str]:
+    """Whoever runs the tests may have a configuration, and progress that is not to be touched."""
+    folders = (f"XDG_{kind}_HOME" for kind in ("CONFIG", "DATA", "STATE", "CACHE"))
+    return os.environ | {"HOME": home} | dict.fromkeys(folders, home)
+
+
+def alive(process: int) -> bool:
+    """Tell whether a process still does something."""
+    try:
+        state = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+    return state not in "ZX"

@@ -1,0 +1,331 @@
+"""The factory as text: who sits, who waits and why can be read without a colour."""
+
+from cbtui.theme import Charset
+from cbtui.widgets.factory import FactoryPainter
+from sim.trace.timeline import Timeline
+from tests.support.runs import dummy_server_run, ns, shared_group_run, split_groups_run
+from tests.widgets.factory.scenes import (
+    four_workers_one_seat,
+    many_groups,
+    one_worker_three_areas,
+    stuck_in_a_call,
+)
+from tests.widgets.pictures import drawn, told
+
+SHARED = told(shared_group_run())
+SPLIT = told(split_groups_run())
+REENTRANT = told(dummy_server_run())
+
+
+def factory(
+    timeline: Timeline, now: float, width: int, height: int, charset: Charset = Charset.BRAILLE
+) -> str:
+    return FactoryPainter(charset).text(timeline, ns(now), width, height)
+
+
+def test_one_seat_starves_the_sensors() -> None:
+    assert factory(SHARED, 12.9, 64, 12) == drawn(
+        """
+        | 1 worker, 1 seat: 2 callbacks wait for it                      |
+        | belts                            areas                         |
+        |                                ┏━ A one seat ━━━ 2 wait ━┓     |
+        | odom  10/10 ! lost 168 ■■■■■■■✗┃                         ┃     |
+        |         waits 8.9 s: seat taken┃                         ┃     |
+        | scan  10/10 ! lost 168 ■■■■■■■✗┃▐☻ timer_callback▌ 8.9 s ┃     |
+        |         waits 8.9 s: seat taken┃   MainThread            ┃     |
+        | timer ◷ 500 ms ──────────────◆✗┃                         ┃     |
+        |      late 8.4 s: last call runs┃                         ┃     |
+        |                                ┗━━━━━━━━━━━━━━━━━━━━━━━━━┛     |
+        |                                                                |
+        | · MainThread works in A                                        |
+        """
+    )
+
+
+def test_the_same_starving_in_nine_rows_of_ascii() -> None:
+    assert factory(SHARED, 12.9, 78, 9, Charset.ASCII) == drawn(
+        """
+        | 1 worker, 1 seat: 2 callbacks wait for it  += A one seat ===== 2 wait =+     |
+        | odom  10/10 ! lost 168 ---#########[498ms]X|                           |     |
+        |   waits 8.9 s: seat taken by timer_callback|                           |     |
+        | scan  10/10 ! lost 168 ---#########[495ms]X|[@ timer_callback] 8.9 s   |     |
+        |   waits 8.9 s: seat taken by timer_callback|   MainThread              |     |
+        | timer every 500 ms ----------------------*X|                           |     |
+        |        late 8.4 s: its last call still runs|                           |     |
+        |                                            +===========================+     |
+        | . MainThread works in A                                                      |
+        """
+    )
+
+
+def test_one_seat_fits_a_narrow_pane() -> None:
+    assert factory(SHARED, 12.9, 38, 10, Charset.BLOCK) == drawn(
+        """
+        | 1 worker, 1 seat: 2 wait for it      |
+        |                  ╔═ A one seat ══╗   |
+        | odom  10/10 ! ■■✗║               ║   |
+        | 8.9 s: seat taken║               ║   |
+        | scan  10/10 ! ■■✗║▐☻ timer▌ 8.9 s║   |
+        | 8.9 s: seat taken║   MainThread  ║   |
+        | timer ○ 500 ms ♦✗║               ║   |
+        |   8.4 s: own call║               ║   |
+        |                  ╚═══════════════╝   |
+        | · MainThread works in A              |
+        """
+    )
+
+
+def test_four_workers_go_round_three_areas() -> None:
+    assert factory(SPLIT, 9.412, 64, 12, Charset.ASCII) == drawn(
+        """
+        | 4 workers, 3 areas, no callback waits for another              |
+        |                                += A one seat ============+     |
+        | timer every 500 ms ----------*X|[@ timer_callback] 5.4 s |     |
+        |      late 4.9 s: last call runs|   Pool-0_0              |     |
+        |                                += B one seat ============+     |
+        | odom  0/10    ------..........>|[ ] odom just ran        |o>   |
+        |                                |                         |     |
+        |                                += C one seat ============+     |
+        | scan  0/10    ------..........>|[ ] scan just ran        |o>   |
+        |                                |                         |     |
+        |                                +=========================+     |
+        | . Pool-0_0  . Pool-0_1  . Pool-0_2  o Pool-0_3 unused          |
+        """
+    )
+
+
+def test_three_areas_fit_nine_rows() -> None:
+    assert factory(SPLIT, 9.412, 78, 9) == drawn(
+        """
+        | 4 workers, 3 areas, no callback waits for another                            |
+        |                                            ┏━ A one seat ━━━━━━━━━━━━━━┓     |
+        | timer ◷ 500 ms 4.9 s: last call runs ────◆✗┃▐☻ timer_callback▌ 5.4 s   ┃     |
+        |                                            ┣━ B one seat ━━━━━━━━━━━━━━┫     |
+        | odom  0/10    ──────────────────□□□□□□□□□□▸┃▐ ▌ odom_callback just ran ┃☺▸   |
+        |                                            ┣━ C one seat ━━━━━━━━━━━━━━┫     |
+        | scan  0/10    ──────────────────□□□□□□□□□□▸┃▐ ▌ scan_callback just ran ┃☺▸   |
+        |                                            ┗━━━━━━━━━━━━━━━━━━━━━━━━━━━┛     |
+        | · Pool-0_0 in A  · Pool-0_1 from B  · Pool-0_2 from C  ☺ Pool-0_3 unused     |
+        """
+    )
+
+
+def test_three_areas_fit_a_narrow_pane() -> None:
+    assert factory(SPLIT, 9.412, 38, 10, Charset.BLOCK) == drawn(
+        """
+        | 4 workers, 3 areas                   |
+        | belts              areas             |
+        |                  ╔═ A one seat ══╗   |
+        | timer ○ 500 ms ♦✗║▐☻ timer▌ 5.4 s║   |
+        |                  ╠═ B one seat ══╣   |
+        | odom  0/10 ·····►║▐ ▌ odom ran   ║☺► |
+        |                  ╠═ C one seat ══╣   |
+        | scan  0/10 ·····►║▐ ▌ scan ran   ║☺► |
+        |                  ╚═══════════════╝   |
+        | ···☺ 1 busy, 2 idle, 1 unused        |
+        """
+    )
+
+
+def test_a_wide_pane_has_large_figures_and_a_yard() -> None:
+    assert factory(SPLIT, 9.412, 104, 20) == drawn(
+        r"""
+    | 4 workers, 3 areas, no callback waits for another                                                      |
+    | belts                                  areas                               workers                     |
+    |                                      ┏━ A one seat ━━━━━━━━━━━━━━━━┓                                   |
+    | timer ◷ 500 ms ────────────────────◆✗┃    ☻                        ┃                                   |
+    |  late 4.9 s: its last call still runs┃ ▐ /█\ ▌   timer  5.4 s      ┃        ·   Pool-0_0               |
+    |                                      ┃ ▐▄▄▄▄▄▌   Pool-0_0          ┃            works in A             |
+    |                                      ┗━━━━━━━━━━━━━━━━━━━━━━━━━━━━━┛                                   |
+    |                                                                                                        |
+    |                                      ┏━ B one seat ━━━━━━━━━━━━━━━━┓        ·   Pool-0_1               |
+    | odom  0/10    ────────────□□□□□□□□□□▸┃                             ┃ ☺          back from B            |
+    |                                      ┃ ▐     ▌   odom just ran     ┃/█\                                |
+    |                                      ┃ ▐▄▄▄▄▄▌                     ┃/ >                                |
+    |                                      ┗━━━━━━━━━━━━━━━━━━━━━━━━━━━━━┛        ·   Pool-0_2               |
+    |                                                                                 back from C            |
+    |                                      ┏━ C one seat ━━━━━━━━━━━━━━━━┓                                   |
+    | scan  0/10    ────────────□□□□□□□□□□▸┃                             ┃ ☺      ☺                          |
+    |                                      ┃ ▐     ▌   scan just ran     ┃/█\    /█\  Pool-0_3               |
+    |                                      ┃ ▐▄▄▄▄▄▌                     ┃/ >    / \  never needed           |
+    |                                      ┗━━━━━━━━━━━━━━━━━━━━━━━━━━━━━┛                                   |
+    |                                                                                                        |
+    """
+    )
+
+
+def test_large_figures_are_readable_in_ascii() -> None:
+    assert factory(SHARED, 12.9, 104, 13, Charset.ASCII) == drawn(
+        r"""
+    | 1 worker, 1 seat: 2 callbacks wait for it                                                              |
+    | belts                                  areas                               workers                     |
+    |                                      += A one seat ======= 2 wait =+                                   |
+    | odom  10/10 ! lost 168 ---##########X|                             |                                   |
+    |      waits 8.9 s: seat taken by timer|                             |        .   MainThread             |
+    |                                      |                             |            works in A             |
+    | scan  10/10 ! lost 168 ---##########X|    @                        |                                   |
+    |      waits 8.9 s: seat taken by timer| [ /|\ ]   timer  8.9 s      |                                   |
+    |                                      | [_____]   MainThread        |                                   |
+    | timer every 500 ms ----------------*X|                             |                                   |
+    |  late 8.4 s: its last call still runs|                             |                                   |
+    |                                      |                             |                                   |
+    |                                      +=============================+                                   |
+    """
+    )
+
+
+def test_four_workers_have_one_seat() -> None:
+    assert factory(four_workers_one_seat(), 9.0, 78, 9, Charset.BLOCK) == drawn(
+        """
+        | 4 workers, 1 seat: 1 callback waits for it, 3 workers idle                   |
+        | belts                                        areas                           |
+        |                                            ╔═ A one seat ════ 1 waits ═╗     |
+        | odom  3/3 ! lost 2 ─────▐4.5s▌▐4.6s▌▐4.7s▌✗║                           ║     |
+        |   waits 4.9 s: seat taken by timer_callback║▐☻ timer_callback▌ 5.0 s   ║     |
+        | timer ○ 500 ms ───────────────────────────►║   Pool-0_0                ║     |
+        |                                            ║                           ║     |
+        |                                            ╚═══════════════════════════╝     |
+        | · Pool-0_0 in A  ☺ worker 2 unused  ☺ worker 3 unused  ☺ worker 4 unused     |
+        """
+    )
+
+
+def test_four_workers_have_one_seat_in_large() -> None:
+    assert factory(four_workers_one_seat(), 9.0, 104, 19) == drawn(
+        r"""
+    | 4 workers, 1 seat: 1 callback waits for it, 3 workers idle                                             |
+    | belts                                  areas                               workers                     |
+    |                                      ┏━ A one seat ━━━━━━ 1 waits ━┓                                   |
+    | odom  3/3 ! lost 2 ────■▐4.6s▌▐4.7s▌✗┃                             ┃                                   |
+    |      waits 4.9 s: seat taken by timer┃    ☻                        ┃        ·   Pool-0_0               |
+    |                                      ┃ ▐ /█\ ▌   timer  5.0 s      ┃            works in A             |
+    | timer ◷ 500 ms ─────────────────────▸┃ ▐▄▄▄▄▄▌   Pool-0_0          ┃                                   |
+    |                                      ┃                             ┃        ☺                          |
+    |                                      ┃                             ┃       /█\  worker 2               |
+    |                                      ┗━━━━━━━━━━━━━━━━━━━━━━━━━━━━━┛       / \  never needed           |
+    |                                                                                                        |
+    |                                                                             ☺                          |
+    |                                                                            /█\  worker 3               |
+    |                                                                            / \  never needed           |
+    |                                                                                                        |
+    |                                                                             ☺                          |
+    |                                                                            /█\  worker 4               |
+    |                                                                            / \  never needed           |
+    |                                                                                                        |
+    """
+    )
+
+
+def test_one_worker_has_three_areas() -> None:
+    assert factory(one_worker_three_areas(), 12.0, 64, 12) == drawn(
+        """
+        | 1 worker, 3 areas: 2 callbacks wait for a worker               |
+        |                                ┏━ A one seat ━━ 1 waits ━┓     |
+        | odom  1/10    ─□□□□□□□□□▐7.0s▌✗┃▐ ▌ free                 ┃     |
+        |     waits 7.0 s: no free worker┃                         ┃     |
+        |                                ┣━ B one seat ━━ 1 waits ━┫     |
+        | scan  1/10    ─□□□□□□□□□▐7.0s▌✗┃▐ ▌ free                 ┃     |
+        |     waits 7.0 s: no free worker┃                         ┃     |
+        |                                ┣━ C one seat ━━━━━━━━━━━━┫     |
+        | timer ◷ 500 ms ───────────────▸┃▐☻ timer_callback▌ 8.0 s ┃     |
+        |                                ┃   Pool-0_0              ┃     |
+        |                                ┗━━━━━━━━━━━━━━━━━━━━━━━━━┛     |
+        | · Pool-0_0 works in C                                          |
+        """
+    )
+
+
+def test_one_worker_has_three_areas_in_nine_rows() -> None:
+    assert factory(one_worker_three_areas(), 12.0, 78, 9, Charset.ASCII) == drawn(
+        """
+        | 1 worker, 3 areas: 2 callbacks wait for a worker                             |
+        |                                            += A one seat ==== 1 waits =+     |
+        | odom  1/10    7.0 s: no free worker .....#X|[ ] free                   |     |
+        |                                            += B one seat ==== 1 waits =+     |
+        | scan  1/10    7.0 s: no free worker .....#X|[ ] free                   |     |
+        |                                            += C one seat ==============+     |
+        | timer every 500 ms ----------------------->|[@ timer_callback] 8.0 s   |     |
+        |                                            +===========================+     |
+        | . Pool-0_0 works in C                                                        |
+        """
+    )
+
+
+def test_two_workers_sit_in_one_open_area() -> None:
+    assert factory(REENTRANT, 5.0005, 78, 9) == drawn(
+        """
+        | 2 workers, 1 open area, no callback waits for another                        |
+        | belts                                        areas                           |
+        |                                            ┌╌ A open to all ╌╌╌╌╌╌╌╌╌╌╌┐     |
+        | dummy_server_srv 0/10    ───────□□□□□□□□□□▸╎(☻ service_callback) 2.5 s ╎     |
+        |                                            ╎(  timer_callback) starts  ╎   ◂☻|
+        | timer            ◷ 1.0 s ─◆───────────────▸╎( ) ( ) ( ) ( )            ╎     |
+        |                  next in 1.0 s             ╎                           ╎     |
+        |                                            └╌╌╌╌╌╌╌╌╌╌╌╌╌╌╌╌╌╌╌╌╌╌╌╌╌╌╌┘     |
+        | · Pool-0_0 works in A  · Pool-0_1 goes to A                                  |
+        """
+    )
+
+
+def test_two_workers_sit_in_one_open_area_in_block() -> None:
+    assert factory(REENTRANT, 5.0005, 64, 12, Charset.BLOCK) == drawn(
+        """
+        | 2 workers, 1 open area, no callback waits for another          |
+        | belts                            areas                         |
+        |                                ·· A open to all ··········     |
+        | dummy_serve… 0/10    ·········►:(☻ service) 2.5 s        :     |
+        |                                :(  timer_callback) starts:   ◄☻|
+        | timer        ○ 1.0 s ─♦───────►:( ) ( ) ( ) ( )          :     |
+        |              next in 1.0 s     :                         :     |
+        |                                ···························     |
+        |                                                                |
+        | · Pool-0_0 works in A  · Pool-0_1 goes to A                    |
+        |                                                                |
+        |                                                                |
+        """
+    )
+
+
+def test_an_open_area_in_ascii_has_no_wall() -> None:
+    assert factory(REENTRANT, 5.05, 64, 9, Charset.ASCII) == drawn(
+        """
+        | 2 workers, 1 open area, no callback waits for another          |
+        | belts                            areas                         |
+        |                                .. A open to all ..........     |
+        | dummy_serve~ 0/10    .........>:(@ service) 2.5 s        :     |
+        |                                :( ) timer just ran       :o>   |
+        | timer        every 1.0 s -*--->:( ) ( ) ( ) ( )          :     |
+        |              next in 950 ms    :                         :     |
+        |                                ...........................     |
+        | . Pool-0_0 works in A  . Pool-0_1 back from A                  |
+        """
+    )
+
+
+def test_a_worker_in_a_call_is_stuck_in_its_seat() -> None:
+    assert factory(stuck_in_a_call(), 3.0, 78, 9) == drawn(
+        """
+        | 2 workers, 1 seat: 1 callback waits for it, 1 worker idle                    |
+        | belts                                        areas                           |
+        |                                            ┏━ A one seat ━━━━ 1 waits ━┓     |
+        | timer       ◷ 1.0 s ──────────────────────▸┃                           ┃     |
+        |                                            ┃▐☻ timer_callback▌ 2.0 s   ┃     |
+        | motor_power 1/10    ───────□□□□□□□□□▐1.8s▌✗┃   stuck in call 1.8 s     ┃     |
+        |   waits 1.8 s: seat taken by timer_callback┃                           ┃     |
+        |                                            ┗━━━━━━━━━━━━━━━━━━━━━━━━━━━┛     |
+        | · Pool-0_0 works in A  ☺ worker 2 never needed                               |
+        """
+    )
+
+
+def test_the_most_telling_areas_come_first_in_a_short_pane() -> None:
+    assert factory(many_groups(), 2.0, 64, 6) == drawn(
+        """
+        | 2 workers, 8 areas: 1 waits for a worker        +4 more groups |
+        | topic0 0/10    ─────□□□□□□□□□□▸┃A▐ ▌ free                ┃     |
+        | topic1 0/10    ─────□□□□□□□□□□▸┃B▐ ▌ free                ┃     |
+        | topic3 0/10    ─────□□□□□□□□□□▸┃D▐☻ topic3▌ 1.0 s        ┃     |
+        | topic6 1/10    waits 1.0 s □□■✗┃G▐ ▌ free                ┃     |
+        | · MainThread works in D  ☺ worker 2 never needed               |
+        """
+    )

@@ -1,0 +1,257 @@
+"""Who stands where in the factory: a function of timeline, moment and glance, and of nothing else."""
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from rich.cells import cell_len
+
+from cbtui.theme import Charset, Role
+from cbtui.widgets.factory import FactoryPainter
+from cbtui.widgets.factory.scene import Area, Scene, Stay, scene_of
+from sim.trace.events import Reason
+from sim.trace.timeline import Timeline
+from tests.support.runs import Run, dummy_server_run, ns, shared_group_run, split_groups_run
+from tests.widgets.factory.scenes import (
+    four_workers_one_seat,
+    many_groups,
+    one_worker_three_areas,
+    stuck_in_a_call,
+)
+from tests.widgets.pictures import told
+
+GLANCE = ns(0.15)
+RUNS = [
+    told(shared_group_run()),
+    told(split_groups_run()),
+    told(dummy_server_run()),
+    four_workers_one_seat(),
+    one_worker_three_areas(),
+    stuck_in_a_call(),
+    many_groups(12),
+    Timeline(),
+]
+
+
+def one_call(start: float = 1.0, length: float = 1.0) -> Timeline:
+    """One thread, one timer, one call of it."""
+    run = Run()
+    worker = run.thread("MainThread")
+    run.executor("SingleThreadedExecutor", 1)
+    timer = run.timer(run.exclusive(run.node("/n")), "tick_callback", 10.0)
+    run.callback(timer, worker, start, length)
+    run.stop(9.0)
+    return told(run)
+
+
+def scene_at(timeline: Timeline, at: float, glance: float = 0.15) -> Scene:
+    return scene_of(timeline, ns(at), ns(glance))
+
+
+def only_area(timeline: Timeline, at: float) -> Area:
+    (area,) = scene_at(timeline, at).areas
+    return area
+
+
+@pytest.mark.parametrize(
+    ("at", "stay"),
+    [
+        (0.9, Stay.NEVER),
+        (1.0, Stay.COMES),
+        (1.149, Stay.COMES),
+        (1.15, Stay.WORKS),
+        (1.999, Stay.WORKS),
+        (2.0, Stay.LEAVES),
+        (2.149, Stay.LEAVES),
+        (2.151, Stay.IDLE),
+    ],
+)
+def test_a_worker_comes_works_leaves_and_waits(at: float, stay: Stay) -> None:
+    (worker,) = scene_at(one_call(), at).workers
+    assert worker.stay is stay
+
+
+def test_a_call_that_takes_no_time_is_seen_for_a_glance() -> None:
+    timeline = one_call(length=0.0)
+    assert [worker.stay for worker in scene_at(timeline, 1.1).workers] == [Stay.LEAVES]
+    assert [worker.stay for worker in scene_at(timeline, 1.2).workers] == [Stay.IDLE]
+
+
+@given(st.floats(0.0, 0.149), st.sampled_from([0.1, 1.0, 5.0, 20.0]))
+def test_at_any_speed_a_worker_has_walked_as_far_after_the_same_moment_on_screen(
+    shown: float, speed: float
+) -> None:
+    timeline = one_call(length=8.0)
+    (worker,) = scene_at(timeline, 1.0 + shown * speed, 0.15 * speed).workers
+    (slow,) = scene_at(timeline, 1.0 + shown, 0.15).workers
+    assert worker.stay is Stay.COMES
+    assert abs(worker.step - slow.step) <= 1
+
+
+def test_a_coming_worker_nears_the_area_and_a_leaving_one_the_yard() -> None:
+    def column(at: float, sign: str) -> int:
+        text = FactoryPainter(Charset.ASCII).text(one_call(), ns(at), 78, 9)
+        (line,) = (line for line in text.splitlines() if sign in line)
+        return line.index(sign)
+
+    assert column(1.0, "<@") > column(1.06, "<@") > column(1.14, "<@")
+    assert column(2.0, "o>") < column(2.06, "o>") < column(2.14, "o>")
+
+
+def test_threads_that_an_executor_has_not_started_yet_are_workers_too() -> None:
+    workers = scene_at(four_workers_one_seat(), 9.0).workers
+    assert [worker.name for worker in workers] == ["Pool-0_0", "worker 2", "worker 3", "worker 4"]
+    assert [worker.stay for worker in workers[1:]] == [Stay.NEVER] * 3
+
+
+def test_housekeeping_services_are_left_out() -> None:
+    run = Run()
+    run.thread("MainThread")
+    node = run.node("/n")
+    group = run.exclusive(node)
+    run.service(group, "/n/get_parameters", "get_parameters_callback")
+    run.service(run.exclusive(node), "/n/list_parameters", "list_parameters_callback")
+    run.subscription(group, "/a", "a_callback")
+    assert [belt.entity.name for belt in only_area(told(run), 1.0).belts] == ["/a"]
+
+
+def test_areas_have_the_letters_and_numbers_of_their_groups_though_some_are_left_out() -> None:
+    run = Run()
+    node = run.node("/n")
+    run.service(run.exclusive(node), "/n/list_parameters", "list_parameters_callback")
+    run.subscription(run.exclusive(node), "/a", "a_callback")
+    timeline = told(run)
+    area = only_area(timeline, 1.0)
+    assert (area.group.letter, area.number) == ("B", 1)
+    rows = FactoryPainter().paint(timeline, ns(1.0), 64, 12)
+    assert {run.ink.number for row in rows for run in row if run.ink.role is Role.LINE} == {1}
+
+
+def test_a_suspended_coroutine_keeps_its_seat_and_frees_its_worker() -> None:
+    run = Run()
+    worker = run.thread("MainThread")
+    asking = run.subscription(run.exclusive(run.node("/n")), "/a", "ask_callback")
+    run.start(asking, worker, 1.0)
+    run.suspend(asking, worker, 2.0)
+    timeline = told(run)
+    scene = scene_at(timeline, 3.0)
+    assert [worker.stay for worker in scene.workers] == [Stay.IDLE]
+    assert [entity.callback for entity in scene.areas[0].kept] == ["ask_callback"]
+    assert "kept by ask_callback" in FactoryPainter().text(timeline, ns(3.0), 78, 9)
+
+
+def test_a_timer_that_waits_for_its_own_last_call_is_not_counted_among_those_who_wait() -> None:
+    timeline = told(split_groups_run())
+    assert not list(scene_at(timeline, 9.4).waits())
+    text = FactoryPainter().text(timeline, ns(9.4), 104, 20)
+    assert "late 4.9 s: its last call still runs" in text
+
+
+def test_the_next_tick_leaves_out_those_that_were_missed() -> None:
+    run = Run()
+    timer = run.timer(run.exclusive(run.node("/n")), "tick_callback", 1.0)
+    run.callback(timer, run.thread("MainThread"), 5.3, 0.1, late=3.3)
+    (belt,) = only_area(told(run), 5.5).belts
+    assert belt.tick is not None
+    assert belt.tick.due == ns(6.0)
+    assert belt.tick.late == ns(3.3)
+
+
+def test_a_tick_nears_the_door_until_it_is_due() -> None:
+    run = Run()
+    timer = run.timer(run.exclusive(run.node("/n")), "tick_callback", 1.0)
+    run.callback(timer, run.thread("MainThread"), 1.0, 0.0)
+    timeline = told(run)
+
+    def place(at: float) -> int:
+        (line,) = (
+            line
+            for line in FactoryPainter(Charset.ASCII).text(timeline, ns(at), 78, 9).splitlines()
+            if "*" in line
+        )
+        return line.index("*")
+
+    assert place(1.1) < place(1.5) < place(1.9)
+
+
+@pytest.mark.parametrize(
+    ("reason", "words"),
+    [
+        (Reason.NO_FREE_WORKER, "waits 2.0 s: no free worker"),
+        (Reason.NOBODY_SPINS, "waits 2.0 s: nobody spins"),
+    ],
+)
+def test_whoever_waits_stands_at_the_door_with_the_reason(reason: Reason, words: str) -> None:
+    run = Run()
+    run.thread("MainThread")
+    entity = run.subscription(run.exclusive(run.node("/n")), "/a", "a_callback")
+    run.message(entity, 1.0)
+    run.wait(entity, 1.0, None, reason)
+    run.stop(9.0)
+    assert words in FactoryPainter().text(told(run), ns(3.0), 78, 9)
+
+
+def test_a_full_belt_says_so_and_what_it_lost() -> None:
+    text = FactoryPainter().text(four_workers_one_seat(), ns(9.0), 78, 9)
+    assert "3/3 ! lost 2" in text
+
+
+def test_boxes_carry_their_ages_the_oldest_at_the_door() -> None:
+    text = FactoryPainter(Charset.ASCII).text(four_workers_one_seat(), ns(9.0), 78, 9)
+    assert "[4.5s][4.6s][4.7s]X" in text
+
+
+def test_a_stuck_worker_names_the_service_where_there_is_room() -> None:
+    text = FactoryPainter().text(stuck_in_a_call(), ns(3.0), 138, 30)
+    assert "stuck in /motor_power 1.8 s" in text
+
+
+def test_more_belts_than_rows_say_how_many_are_left_out() -> None:
+    run = Run()
+    run.thread("MainThread")
+    group = run.exclusive(run.node("/n"))
+    entities = [run.subscription(group, f"/t{number}", f"t{number}_callback") for number in range(20)]
+    run.wait(entities[17], 1.0, None, Reason.NOBODY_SPINS)
+    run.stop(9.0)
+    text = FactoryPainter().text(told(run), ns(2.0), 64, 8)
+    assert "t17" in text
+    assert "+15 more belts" in text
+
+
+@settings(max_examples=150, deadline=None)
+@given(
+    st.sampled_from(RUNS),
+    st.floats(0, 31),
+    st.integers(0, 150),
+    st.integers(0, 45),
+    st.sampled_from(Charset),
+)
+def test_a_picture_has_the_size_that_was_asked_for(
+    timeline: Timeline, now: float, width: int, height: int, charset: Charset
+) -> None:
+    text = FactoryPainter(charset).text(timeline, ns(now), width, height)
+    lines = text.split("\n") if width and height else []
+    assert len(lines) == (height if width else 0)
+    assert all(cell_len(line) == width for line in lines)
+    assert charset is not Charset.ASCII or text.isascii()
+
+
+@given(st.sampled_from(RUNS), st.floats(0, 31), st.floats(0, 31))
+@settings(max_examples=30, deadline=None)
+def test_a_moment_looks_the_same_whatever_was_looked_at_before(
+    timeline: Timeline, now: float, other: float
+) -> None:
+    painter = FactoryPainter()
+    before = painter.paint(timeline, ns(now), 78, 9)
+    painter.paint(timeline, ns(other), 78, 9)
+    assert painter.paint(timeline, ns(now), 78, 9) == before
+
+
+@pytest.mark.parametrize(("width", "height"), [(38, 10), (64, 12), (78, 9), (138, 38)])
+def test_walls_stand_still_whatever_happens(width: int, height: int) -> None:
+    def walls(timeline: Timeline, at: float) -> list[tuple[int, int]]:
+        rows = FactoryPainter().text(timeline, ns(at), width, height).splitlines()
+        signs = "┏┓┗┛┣┫┃"
+        return [(y, x) for y, row in enumerate(rows) for x, sign in enumerate(row) if sign in signs]
+
+    for timeline in RUNS[:2]:
+        assert len({tuple(walls(timeline, at / 10)) for at in range(0, 300, 7)}) == 1

@@ -1,0 +1,169 @@
+"""The robot's world from above: what stands where, where the robot heads, and what its node believes."""
+
+import math
+
+import msgspec
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from rich.cells import cell_len
+from textual.geometry import Region
+
+from cbtui.theme import Charset, Role
+from cbtui.widgets.robot import Look
+from cbtui.widgets.robot.extents import Extent, View, near, whole
+from cbtui.widgets.robot.painter import RobotPainter
+from sim.trace.events import ArenaShown, RobotMoved, Scanned
+from sim.trace.timeline import Timeline
+from tests.support.runs import Run, ns, scan_from, shared_group_run, split_groups_run
+from tests.widgets.pictures import told
+
+PLAN = ArenaShown(
+    0,
+    walls=((-6.5, -6.5, 6.5, -6.5), (6.5, -6.5, 6.5, 6.5), (6.5, 6.5, -6.5, 6.5), (-6.5, 6.5, -6.5, -6.5)),
+    sphere=(0.95, 0.0, 0.2),
+    robot_radius=0.105,
+)
+SHARED = told(shared_group_run())
+
+
+def robot_at(x: float, y: float, yaw: float) -> RobotMoved:
+    return RobotMoved(0, x, y, yaw, 1.0, 0.0, 0.0, True, False, 0.0, 0.0)
+
+
+def standing(yaw: float, scan: bytes = b"") -> Timeline:
+    timeline = Timeline()
+    timeline.extend([PLAN, robot_at(0.0, 0.0, yaw)])
+    timeline.extend([Scanned(0, 1, scan)] if scan else [])
+    return timeline
+
+
+def map_of(timeline: Timeline, now: float, charset: Charset = Charset.ASCII) -> str:
+    """Return the map alone, 30 columns wide, so that only the surroundings are shown."""
+    return "\n".join(RobotPainter(charset).text(timeline, ns(now), 30, 20).splitlines()[1:-6])
+
+
+def test_the_sphere_lies_ahead_and_right_on_the_map() -> None:
+    lines = map_of(standing(0.0), 0.0).splitlines()
+    (line,) = (line for line in lines if "@" in line)
+    assert line.index("@") < line.index("O")
+
+
+@pytest.mark.parametrize(
+    ("degrees", "arrow"),
+    [(0, "▶"), (45, "◥"), (90, "▲"), (135, "◤"), (180, "◀"), (-135, "◣"), (-90, "▼"), (-45, "◢")],
+)
+def test_the_arrow_points_where_the_robot_heads(degrees: int, arrow: str) -> None:
+    picture = RobotPainter().text(standing(math.radians(degrees)), 0, 80, 12)
+    assert arrow in picture
+
+
+def test_a_fresh_scan_of_the_node_lies_under_the_true_one() -> None:
+    picture = RobotPainter().paint(told(split_groups_run(), until=9.4), ns(9.4), 80, 14).rows
+    roles = [run.ink.role for row in picture[1:-2] for run in row]
+    assert Role.TRUE_SCAN in roles
+    assert Role.SEEN_SCAN not in roles
+
+
+def test_a_stale_scan_of_the_node_stands_beside_the_true_one_and_its_age_is_told() -> None:
+    picture = RobotPainter().paint(SHARED, ns(9.25), 80, 14).rows
+    assert Role.SEEN_SCAN in [run.ink.role for row in picture[1:-2] for run in row]
+    assert "node saw 5.3 s ago" in "".join(run.text for run in picture[0])
+    assert Role.WARN in [run.ink.role for run in picture[0]]
+
+
+def test_true_and_believed_scan_differ_without_colours_too() -> None:
+    signs = map_of(SHARED, 9.25)
+    assert "." in signs
+    assert "x" in signs
+
+
+def room_of(timeline: Timeline) -> list[str]:
+    """Return the map of the whole room in ASCII, which stands right of the surroundings."""
+    lines = RobotPainter(Charset.ASCII).text(timeline, 0, 80, 24).splitlines()[1:-2]
+    return [line.split("|", 1)[1] for line in lines]
+
+
+def test_a_true_scan_taken_anywhere_falls_on_walls_and_sphere() -> None:
+    bare, scanned = Timeline(), Timeline()
+    bare.extend([PLAN, robot_at(1.0, -2.0, 0.7)])
+    scanned.extend([PLAN, robot_at(1.0, -2.0, 0.7), Scanned(0, 1, scan_from(1.0, -2.0, 0.7))])
+    things = room_of(bare)
+    points = [(x, y) for y, line in enumerate(room_of(scanned)) for x, sign in enumerate(line) if sign == "."]
+    assert len(points) > 50
+    for x, y in points:
+        around = "".join(line[max(x - 1, 0) : x + 2] for line in things[max(y - 1, 0) : y + 2])
+        assert "#" in around or "O" in around
+
+
+def test_the_figures_tell_pose_command_velocity_range_and_motors() -> None:
+    text = RobotPainter().text(SHARED, ns(9.25), 80, 14)
+    for words in (
+        "pose  0.28  0.00 m  -60°",
+        "told  0.00 m/s -0.20 rad/s",
+        "real  0.00 m/s -0.20 rad/s",
+        "motors on",
+    ):
+        assert words in text
+
+
+def test_motors_off_and_touching_are_said_in_words() -> None:
+    timeline = Timeline()
+    timeline.extend([PLAN, RobotMoved(0, 0.0, 0.0, 0.0, math.inf, 0.0, 0.0, False, True, 0.0, 0.0)])
+    text = RobotPainter().text(timeline, 0, 80, 14)
+    assert "motors OFF" in text
+    assert "touching YES" in text
+    assert "front    free" in text
+
+
+@pytest.mark.parametrize("width", [34, 40, 44, 80])
+def test_the_age_of_the_nodes_scan_is_told_at_every_width(width: int) -> None:
+    assert "node saw 10.2 s ago" in RobotPainter().text(SHARED, ns(14.2), width, 16)
+
+
+def test_a_run_without_a_robot_says_so() -> None:
+    assert "no robot in this run" in RobotPainter().text(told(Run()), 0, 44, 10)
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    st.floats(-30, 30),
+    st.floats(-30, 30),
+    st.floats(-4, 4),
+    st.integers(1, 120),
+    st.integers(0, 40),
+    st.sampled_from(Charset),
+    st.sampled_from(Look),
+)
+def test_the_pane_has_the_size_that_was_asked_for_wherever_the_robot_is(
+    x: float, y: float, yaw: float, width: int, height: int, charset: Charset, look: Look
+) -> None:
+    timeline = Timeline()
+    hit = msgspec.structs.replace(robot_at(x, y, yaw), touching=True)
+    timeline.extend([PLAN, hit, Scanned(0, 1, scan_from(0.0, 0.0, yaw))])
+    rows, picture = RobotPainter(charset).paint(timeline, 0, width, height, look, "The camera starts.")
+    texts = ["".join(run.text for run in row) for row in rows]
+    assert len(texts) <= height
+    assert all(cell_len(text) == width for text in texts)
+    assert charset is not Charset.ASCII or all(text.isascii() for text in texts)
+    assert picture is None or Region(0, 0, width, height).contains_region(picture)
+
+
+@given(st.integers(4, 100), st.integers(3, 60), st.sampled_from(Charset))
+def test_the_whole_extent_is_on_the_map_and_not_distorted(columns: int, lines: int, charset: Charset) -> None:
+    view = View.of(whole(PLAN), columns, lines, charset)
+    for x, y in ((-6.5, -6.5), (6.5, 6.5)):
+        column, line = view.cell(x, y)
+        assert 0 <= column < columns
+        assert 0 <= line < lines
+    assert view.metres_down * view.down == pytest.approx(2 * view.metres_across * view.across)
+
+
+def test_the_surroundings_stand_still_while_the_robot_creeps() -> None:
+    assert near(PLAN, robot_at(0.05, 0.0, 0.0)) == near(PLAN, robot_at(0.15, 0.02, 1.0))
+
+
+def test_far_from_the_sphere_the_map_follows_the_robot() -> None:
+    around = near(PLAN, robot_at(-5.0, 4.0, 0.0))
+    assert around.left < -5.0 < around.right < 0.0
+    assert isinstance(around, Extent)
