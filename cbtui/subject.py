@@ -51,8 +51,9 @@ class Subject:
 def of_lesson(lesson: Lesson, lessons: Sequence[Lesson]) -> Subject:
     """Return a lesson as a subject, among the ``lessons`` in their order."""
     place = lessons.index(lesson)
+    unit = [each for each in lessons if each.unit == lesson.unit]
     return Subject(
-        heading=f"{lesson.number}/{len(lessons)} {lesson.title}",
+        heading=f"{unit.index(lesson) + 1}/{len(unit)} {lesson.title}",
         guide=lesson.guide,
         node_path=lesson.node_path,
         service=lesson.service.name,
