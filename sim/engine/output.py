@@ -31,12 +31,13 @@ class LineSink(_TextStream):
 
     def write(self, text: str) -> int:
         """Take text; complete lines are handed on."""
-        *lines, self._rest = (self._rest + text).split("\n")
-        while len(self._rest) > _LONGEST:
-            lines.append(self._rest[:_LONGEST])
-            self._rest = self._rest[_LONGEST:]
+        *lines, last = (self._rest + text).split("\n")
         for line in lines:
-            self._take(line)
+            for piece in _pieces(line) or [""]:
+                self._take(piece)
+        *whole, self._rest = _pieces(last) or [""]
+        for piece in whole:
+            self._take(piece)
         return len(text)
 
     def finish(self) -> None:
@@ -44,6 +45,10 @@ class LineSink(_TextStream):
         if self._rest:
             rest, self._rest = self._rest, ""
             self._take(rest)
+
+
+def _pieces(line: str) -> list[str]:
+    return [line[start : start + _LONGEST] for start in range(0, len(line), _LONGEST)]
 
 
 class ProcessStream(_TextStream):

@@ -1,0 +1,69 @@
+"""Two nodes in one executor: a belt that moves, and an inspector.
+
+The belt moves on twice a second. An inspection takes three seconds.
+"""
+
+import time
+
+import rclpy
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
+from std_srvs.srv import SetBool
+
+TIMER_PERIOD = 0.5  # seconds from step to step of the belt
+INSPECTION = 3.0  # seconds
+
+
+class Belt(Node):
+    """Moves a belt on, step by step."""
+
+    def __init__(self):
+        super().__init__("belt")
+        self.steps = 0
+        self.timer = self.create_timer(TIMER_PERIOD, self.belt_callback)
+
+    def belt_callback(self):
+        self.steps += 1
+        self.get_logger().info(f"STEP {self.steps}")
+
+
+class Inspector(Node):
+    """Looks at a parcel when it is asked to, and takes its time."""
+
+    def __init__(self):
+        super().__init__("inspector")
+        self.srv = self.create_service(
+            SetBool, "/inspect", self.inspect_callback
+        )
+
+    def inspect_callback(self, _request, response):
+        """Inspect a parcel, whether true or false was sent."""
+        self.get_logger().warning("INSPECTING...")
+        time.sleep(INSPECTION)
+        self.get_logger().warning("INSPECTING...DONE")
+        response.success = True
+        response.message = "GOOD"
+        return response
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    belt = Belt()
+    inspector = Inspector()
+    # One executor, and one thread, for both nodes.
+    executor = SingleThreadedExecutor()
+    executor.add_node(belt)
+    executor.add_node(inspector)
+    try:
+        executor.spin()
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass  # Ctrl-C is the usual way to end a node
+    finally:
+        executor.shutdown()
+        belt.destroy_node()
+        inspector.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,70 @@
+"""Two nodes in one executor with two threads.
+
+Each node has a default group of its own, so two threads are all that
+the belt needs to move on during an inspection.
+"""
+
+import time
+
+import rclpy
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.node import Node
+from std_srvs.srv import SetBool
+
+TIMER_PERIOD = 0.5  # seconds from step to step of the belt
+INSPECTION = 3.0  # seconds
+
+
+class Belt(Node):
+    """Moves a belt on, step by step."""
+
+    def __init__(self):
+        super().__init__("belt")
+        self.steps = 0
+        self.timer = self.create_timer(TIMER_PERIOD, self.belt_callback)
+
+    def belt_callback(self):
+        self.steps += 1
+        self.get_logger().info(f"STEP {self.steps}")
+
+
+class Inspector(Node):
+    """Looks at a parcel when it is asked to, and takes its time."""
+
+    def __init__(self):
+        super().__init__("inspector")
+        self.srv = self.create_service(
+            SetBool, "/inspect", self.inspect_callback
+        )
+
+    def inspect_callback(self, _request, response):
+        """Inspect a parcel, whether true or false was sent."""
+        self.get_logger().warning("INSPECTING...")
+        time.sleep(INSPECTION)
+        self.get_logger().warning("INSPECTING...DONE")
+        response.success = True
+        response.message = "GOOD"
+        return response
+
+
+def main(args=None):
+    rclpy.init(args=args)
+    belt = Belt()
+    inspector = Inspector()
+    # One executor for both nodes, and a thread for each.
+    executor = MultiThreadedExecutor(num_threads=2)
+    executor.add_node(belt)
+    executor.add_node(inspector)
+    try:
+        executor.spin()
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass  # Ctrl-C is the usual way to end a node
+    finally:
+        executor.shutdown()
+        belt.destroy_node()
+        inspector.destroy_node()
+        rclpy.try_shutdown()
+
+
+if __name__ == "__main__":
+    main()
