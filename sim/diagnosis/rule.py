@@ -7,6 +7,7 @@ from enum import Enum
 from pathlib import Path
 from typing import ClassVar
 
+import sim
 from sim.diagnosis.look import Look
 from sim.trace.events import EntityId
 from sim.trace.model import Entity, Nanoseconds
@@ -92,10 +93,13 @@ class Rule(ABC):
         return self.weight
 
 
+_OURS = str(Path(sim.__file__).parent)
+
+
 def place_of(entity: EntityId, timeline: Timeline) -> Place | None:
-    """Where an entity's callback is written."""
+    """Where an entity's callback is written, None where the model itself wrote it, as a rate's tick."""
     known = timeline.entities.get(entity)
-    if known is None or not known.file:
+    if known is None or not known.file or known.file.startswith(_OURS):
         return None
     return Place(known.file, known.first_line, known.last_line)
 

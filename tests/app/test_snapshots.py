@@ -1,6 +1,7 @@
 from collections.abc import Callable
 
 import pytest
+from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
 from sim.trace.events import AnyEvent
@@ -35,22 +36,24 @@ def test_a_lesson_at_a_moment_looks_as_it_did(
     assert snap_compare(app, terminal_size=size, run_before=settle)
 
 
-@pytest.mark.parametrize("key", ["2", "3", "4"], ids=["code", "robot", "log"])
+@pytest.mark.parametrize("key", ["2", "3", "4", "5"], ids=["code", "factory", "robot", "log"])
 def test_a_pane_of_a_narrow_screen_looks_as_it_did(snap_compare: Compare, key: str) -> None:
     app = RecordedConsole("shared-group", shared_group_run().events, 14.25)
 
     assert snap_compare(app, terminal_size=NARROW, press=[key], run_before=settle)
 
 
-@pytest.mark.parametrize("key", ["question_mark", "t"], ids=["help", "threads"])
+@pytest.mark.parametrize(
+    "key", ["question_mark", "t", "d", "p", "G"], ids=["help", "threads", "diagnoses", "set-up", "moment"]
+)
 def test_a_window_over_a_lesson_looks_as_it_did(snap_compare: Compare, key: str) -> None:
     app = RecordedConsole("shared-group", shared_group_run().events, 14.25)
     assert snap_compare(app, terminal_size=NARROW, press=[key], run_before=settle)
 
 
-def test_a_light_theme_looks_as_it_did(snap_compare: Compare) -> None:
+def test_a_theme_of_high_contrast_looks_as_it_did(snap_compare: Compare) -> None:
     app = RecordedConsole("shared-group", shared_group_run().events, 14.25)
-    app.theme = "textual-light"
+    app.theme = "high-contrast"
     assert snap_compare(app, terminal_size=WIDE, run_before=settle)
 
 
@@ -65,3 +68,39 @@ def test_a_console_without_colours_looks_as_it_did(
 def test_an_ascii_console_looks_as_it_did(snap_compare: Compare) -> None:
     app = RecordedConsole("shared-group", shared_group_run().events, 14.25, charset="ascii")
     assert snap_compare(app, terminal_size=WIDE, run_before=settle)
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        ("space",),
+        ("left_square_bracket",) * 4,
+        ("less_than_sign",) * 4,
+        ("greater_than_sign",) * 4,
+        ("enter", "down", "down"),
+        ("z",),
+    ],
+    ids=["paused", "looking-back", "zoomed-out", "zoomed-in", "selected", "enlarged"],
+)
+@SIZES
+def test_what_keys_make_of_a_lesson_looks_as_it_did(
+    snap_compare: Compare, keys: tuple[str, ...], size: tuple[int, int]
+) -> None:
+    app = RecordedConsole("shared-group", shared_group_run().events, 14.25)
+    assert snap_compare(app, terminal_size=size, press=keys, run_before=settle)
+
+
+@SIZES
+def test_a_lost_engine_looks_as_it_did(snap_compare: Compare, size: tuple[int, int]) -> None:
+    app = RecordedConsole("shared-group", shared_group_run().events, 14.25)
+
+    async def lose(pilot: Pilot[None]) -> None:
+        app.engines.latest.end("the engine was killed by signal 9")
+        await settle(pilot)
+
+    assert snap_compare(app, terminal_size=size, run_before=lose)
+
+
+def test_too_small_a_terminal_looks_as_it_did(snap_compare: Compare) -> None:
+    app = RecordedConsole("shared-group", shared_group_run().events, 14.25)
+    assert snap_compare(app, terminal_size=(70, 20), run_before=settle)

@@ -9,7 +9,10 @@ from lessons.catalogue import find, lessons
 from lessons.lesson import Lesson
 
 ROBOT_LESSONS = [find(name) for name in ("single-thread", "shared-group", "split-groups")]
-SERVER_LESSONS = [find(name) for name in ("exclusive-2-threads", "reentrant-2-threads", "reentrant-1-thread")]
+SERVER_LESSONS = [
+    find(name)
+    for name in ("exclusive-2-threads", "reentrant-2-threads", "reentrant-1-thread", "no-groups-at-all")
+]
 ROS_PACKAGES = {"rclpy", "geometry_msgs", "nav_msgs", "sensor_msgs", "std_msgs", "std_srvs", "numpy"}
 
 every_lesson = pytest.mark.parametrize("lesson", lessons(), ids=lambda lesson: lesson.id)
@@ -178,6 +181,7 @@ def test_the_server_node_knows_the_arguments_its_lesson_gives(lesson: Lesson) ->
         ("exclusive-2-threads", "exclusive", "2"),
         ("reentrant-2-threads", "reentrant", "2"),
         ("reentrant-1-thread", "reentrant", "1"),
+        ("no-groups-at-all", "none", "2"),
     ],
 )
 def test_a_server_lesson_is_set_up_as_its_name_says(lesson_id: str, group_type: str, threads: str) -> None:

@@ -1,0 +1,1 @@
+../exclusive-2-threads/node.py

@@ -1,0 +1,60 @@
+"""What a run of this lesson shows, and what a mended node must do."""
+
+from lessons.checks import (
+    SECOND,
+    Check,
+    Stretch,
+    Verdict,
+    calls_of,
+    every_call_answered,
+    keeps_coming,
+    log_says,
+    never_raises,
+    requests_of,
+    seconds,
+    whole,
+)
+from sim.trace.model import Window
+from sim.trace.timeline import Timeline
+
+NODE_RUNS = Stretch("the node runs", lambda run: [whole(run)])
+EXPECTED = "from STEP 1 to STEP 4 in 1.4 to 2.6 s"
+
+
+def _walks_at_its_pace(run: Timeline) -> Verdict:
+    first = next((line.t for line in run.logs if "STEP 1" in line.text), None)
+    last = next((line.t for line in run.logs if "STEP 4" in line.text), None)
+    if first is None or last is None:
+        missing = "STEP 1" if first is None else "STEP 4"
+        return Verdict(False, EXPECTED, f"no {missing}", first)
+    took = last - first
+    right = 1.4 * SECOND <= took <= 2.6 * SECOND
+    return Verdict(right, EXPECTED, seconds(took), first)
+
+
+CHECKS = (
+    keeps_coming("blink_callback", NODE_RUNS, at_least=1.5),
+    log_says("ROUND DONE", at_least=2),
+    Check("the watchman keeps his pace", _walks_at_its_pace),
+    every_call_answered(),
+    never_raises(),
+)
+
+
+def second_step(run: Timeline) -> int:
+    """Whether the second step came in time, late, or not at all."""
+    asked = requests_of(run, "/walk_round")[0].sent
+    steps = [line.t for line in run.logs if "STEP 2" in line.text]
+    if not steps:
+        return 2
+    return 0 if steps[0] - asked < SECOND else 1
+
+
+def blink_in_the_round(run: Timeline) -> int:
+    """Whether blink went on, came back after a while, or never did."""
+    asked = requests_of(run, "/walk_round")[0].sent
+    round_time = Window(asked + 1, asked + 2 * SECOND)
+    if calls_of(run, "blink_callback", round_time):
+        return 0
+    later = Window(round_time.end, run.end + 1)
+    return 1 if calls_of(run, "blink_callback", later) else 2
