@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import TypeAlias
 
+from sim.trace.concurrency import threads_at_once
 from sim.trace.model import Entity, Nanoseconds, Wait, Window
-from sim.trace.statistics import CallbackStatistics, statistics_of, threads_at_once
+from sim.trace.statistics import CallbackStatistics, statistics_of
 from sim.trace.summary import RobotFigures, robot_in
 from sim.trace.timeline import Timeline
 from sim.trace.words import why_waiting

@@ -41,6 +41,12 @@ class Concurrency:
         self._settled = settled
 
 
+def threads_at_once(timeline: Timeline, window: Window) -> int:
+    """Return the most threads that ran callbacks at one moment of the window."""
+    rises = _rises(timeline, window, 0)
+    return rises[-1][1] if rises else 0
+
+
 def _rises(timeline: Timeline, window: Window, best: int) -> list[tuple[Nanoseconds, int]]:
     """Return when more than ``best`` threads ran at once, and how many, each time a record is broken.
 

@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import accumulate, groupby, pairwise
 
+from sim.trace.concurrency import threads_at_once
 from sim.trace.events import EntityId, EntityKind, ThreadId
 from sim.trace.model import Entity, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
@@ -62,7 +63,7 @@ class Statistics:
 
     ``callbacks`` has the entities whose callbacks ran, waited or lost messages, in order of appearance.
     ``busy`` is the share (0 to 1) of the window in which each thread ran callbacks, standing still in them
-    included; ``threads_at_once`` the most that did so at any one moment (calls without length count at none).
+    included; ``threads_at_once`` the most that did so at any one moment.
     """
 
     window: Window
@@ -121,19 +122,6 @@ def distribution(values: Iterable[Nanoseconds]) -> Distribution | None:
 def percentile(ranked: Sequence[Nanoseconds], per_cent: int) -> Nanoseconds:
     """The percentile of ascending values by nearest rank: number ⌈per_cent/100 · n⌉, counted from 1."""
     return ranked[max(0, -(-per_cent * len(ranked) // 100) - 1)]
-
-
-def threads_at_once(timeline: Timeline, window: Window) -> int:
-    """The most threads that ran callbacks at one moment of the window."""
-    changes: list[tuple[Nanoseconds, int]] = []
-    for thread in timeline.threads:
-        until = window.start
-        for span in timeline.spans_on(thread, window):
-            start, end = max(span.start, until), min(span.end_at(timeline.end), window.end)
-            if start < end:
-                changes += ((start, 1), (end, -1))
-                until = end
-    return max(accumulate(change for _, change in sorted(changes)), default=0)
 
 
 def _known(timeline: Timeline, window: Window) -> Window:

@@ -1,13 +1,13 @@
 """What a run comes to in figures: its callbacks, threads, service calls and the robot."""
 
-import heapq
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import groupby, pairwise
 
+from sim.trace.concurrency import threads_at_once
 from sim.trace.events import EntityId, RobotMoved
-from sim.trace.model import Call, Entity, Nanoseconds, Span, Wait, Window
+from sim.trace.model import Call, Entity, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
 from sim.trace.words import why_waiting
 
@@ -93,7 +93,7 @@ def summarise(timeline: Timeline) -> Summary:
         lost=timeline.lost,
         callbacks=tuple(_callbacks(timeline, whole)),
         threads_used=sum(bool(of_thread) for of_thread in spans),
-        threads_at_once=_most_at_once(span for of_thread in spans for span in of_thread),
+        threads_at_once=threads_at_once(timeline, whole),
         services=tuple(_services(timeline.calls)),
         robot=robot_in(timeline, whole),
     )
@@ -147,18 +147,6 @@ def _longest(waits: Iterable[Wait], timeline: Timeline) -> LongestWait | None:
                 shares[why_waiting(wait, timeline)] += end - wait.start
             longest = LongestWait(length, max(shares, key=shares.__getitem__))
     return longest
-
-
-def _most_at_once(spans: Iterable[Span]) -> int:
-    """The most threads that ran callbacks at the same time."""
-    most = 0
-    running: list[tuple[float, int]] = []
-    for span in sorted(spans, key=lambda span: span.start):
-        while running and running[0][0] <= span.start:
-            heapq.heappop(running)
-        heapq.heappush(running, (float("inf") if span.end is None else span.end, span.thread))
-        most = max(most, len({thread for _, thread in running}))
-    return most
 
 
 def _services(calls: Iterable[Call]) -> Iterator[ServiceFigures]:

@@ -16,7 +16,7 @@ from cbtui.widgets.about import About
 from sim.engine.setup import ProgramSetup
 from sim.trace import recording
 from tests.app.pictures import lines_of, text_of
-from tests.support.console import NARROW
+from tests.support.console import NARROW, TALL
 from tests.support.fake_session import FakeEngines
 from tests.support.runs import shared_group_run
 from tests.trace.recording.files import write
@@ -52,7 +52,7 @@ async def test_a_program_that_was_opened_lately_can_be_opened_again_as_it_was(pr
     remember(program, arguments=("-x",), clock="virtual")
     engines = FakeEngines([], 0)
     app = CbtuiApp(open_session=engines)
-    async with app.run_test(size=NARROW) as pilot:
+    async with app.run_test(size=TALL) as pilot:
         assert "my_node.py          program" in text_of(app)
         await pilot.press("up")
         assert "run again, on virtual time" in told(app)
@@ -67,7 +67,7 @@ async def test_a_file_given_to_the_command_is_among_the_recent_ones(
 ) -> None:
     monkeypatch.chdir(program.parent)
     app = CbtuiApp(start_file=(Path("my_node.py"), [], "real"), open_session=FakeEngines([], 0))
-    async with app.run_test(size=NARROW) as pilot:
+    async with app.run_test(size=TALL) as pilot:
         await pilot.press("q")
         await pilot.pause()
         assert "my_node.py" in text_of(app)
@@ -111,7 +111,7 @@ async def test_o_opens_a_program_whose_path_is_typed(program: Path, monkeypatch:
     monkeypatch.chdir(program.parent)
     engines = FakeEngines([], 0)
     app = CbtuiApp(open_session=engines)
-    async with app.run_test(size=NARROW) as pilot:
+    async with app.run_test(size=TALL) as pilot:
         await pilot.press("o", *"my_", "tab", "enter")
         assert isinstance(app.screen, LessonScreen)
         assert engines.latest.setup.programs == (ProgramSetup(str(program)),)

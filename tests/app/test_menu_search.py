@@ -10,7 +10,7 @@ from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
 from cbtui.widgets.menu_search import MenuSearch
 from tests.app.pictures import text_of
-from tests.support.console import NARROW
+from tests.support.console import NARROW, TALL
 from tests.support.fake_session import FakeEngines
 
 
@@ -28,7 +28,7 @@ def program(tmp_path: Path) -> Path:
 
 async def test_words_show_only_what_has_them_and_escape_shows_all(program: Path) -> None:
     app = menu()
-    async with app.run_test(size=NARROW) as pilot:
+    async with app.run_test(size=TALL) as pilot:
         await pilot.press("slash", *"THREADS reen")
         await pilot.pause()
         text = text_of(app)

@@ -20,6 +20,8 @@ from tests.support.fake_session import FakeEngines
 
 NARROW = (80, 24)
 WIDE = (140, 40)
+TALL = (80, 60)
+"""High enough for every lesson and what was opened lately."""
 
 
 class RecordedConsole(CbtuiApp):

@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sim.trace.concurrency import threads_at_once
 from sim.trace.events import (
     AnyEvent,
     CallbackResumed,
@@ -25,7 +26,6 @@ from sim.trace.statistics import (
     percentile,
     statistics,
     statistics_of,
-    threads_at_once,
 )
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, ns
@@ -129,14 +129,15 @@ def test_a_timer_uses_the_newest_message_that_each_subscription_of_its_node_has_
     }
 
 
-def test_threads_at_once_counts_moments_and_not_touching_calls() -> None:
+def test_threads_at_once_counts_moments_also_those_of_calls_without_length_and_not_touching_calls() -> None:
     run = Run()
     threads = [run.thread(f"worker {number}") for number in range(3)]
     timer = run.timer(run.reentrant(run.node("/n")), "tick", 1.0)
     for thread, at, took in ((0, 1.0, 1.0), (1, 2.0, 1.0), (2, 2.5, 1.0), (0, 2.7, 0.0)):
         run.callback(timer, threads[thread], at, took)
     timeline = timeline_of(run.events)
-    assert threads_at_once(timeline, Window(0, ns(5))) == 2
+    assert threads_at_once(timeline, Window(0, ns(5))) == 3
+    assert threads_at_once(timeline, Window(0, ns(2.7))) == 2
     assert threads_at_once(timeline, Window(0, ns(2.5))) == 1
     busy = statistics(timeline, Window(0, ns(2))).busy
     assert busy == {threads[0]: 0.5, threads[1]: 0.0, threads[2]: 0.0}
@@ -191,7 +192,7 @@ def test_the_figures_of_a_random_run_are_those_of_a_naive_search(
             begun = [span for span in calls if not resumed(naive, span)]
             assert ages_used(timeline, figures.entity, window) == naive_used(naive, begun)
     assert threads_at_once(timeline, window) == max(
-        (naive_at_once(naive, at) for at in range(window.start, window.end)), default=0
+        (naive_at_once(naive, at, window) for at in moments_in(naive, window)), default=0
     )
 
 
@@ -256,8 +257,29 @@ def naive_used(naive: Naive, calls: list[Span]) -> dict[EntityId, Distribution]:
     return used
 
 
-def naive_at_once(naive: Naive, at: int) -> int:
-    end = max(event.t for event in naive.events)
-    return sum(
-        any(s.thread == thread and s.start <= at < s.end_at(end) for s in naive.spans) for thread in THREADS
-    )
+def moments_in(naive: Naive, window: Window) -> set[int]:
+    """When something began, and when the window does: at no other moment are there more at once."""
+    return {span.start for span in naive.spans if span.start < window.end}
+
+
+def naive_at_once(naive: Naive, at: int, window: Window) -> int:
+    """The threads that run at a moment; a call without length needs one beside those that go on."""
+    busy = [stretches_of(naive, thread, window) for thread in THREADS]
+    lasting = sum(any(start <= at < end for start, end in stretches) for stretches in busy)
+    going_on = sum(any(start < at < end for start, end in stretches) for stretches in busy)
+    instant = any((at, at) in stretches for stretches in busy)
+    return max(lasting, going_on + instant)
+
+
+def stretches_of(naive: Naive, thread: int, window: Window) -> list[tuple[int, int]]:
+    """When a thread ran anything that reaches into the window; what touches is one stretch."""
+    joined: list[tuple[int, int]] = []
+    for span in sorted(naive.spans, key=lambda span: span.start):
+        end = span.end_at(window.end)
+        if span.thread != thread or not (span.start < window.end and max(end, span.start + 1) > window.start):
+            continue
+        if joined and span.start <= joined[-1][1]:
+            joined[-1] = (joined[-1][0], max(end, joined[-1][1]))
+        else:
+            joined.append((span.start, end))
+    return joined

@@ -22,10 +22,12 @@ ENGINE = b"multiprocessing.spawn"
 async def read_until(websocket: Socket, text: str) -> None:
     """Read what is drawn until a text was among it."""
     drawn = b""
-    while text.encode() not in drawn:
-        message = await websocket.receive(timeout=30)
-        assert message.type is aiohttp.WSMsgType.BINARY, f"{message} before {text!r} in {drawn[-2000:]!r}"
-        drawn += message.data
+    # A console never stops drawing, so that waiting for each message alone would know no end.
+    async with asyncio.timeout(60):
+        while text.encode() not in drawn:
+            message = await websocket.receive(timeout=30)
+            assert message.type is aiohttp.WSMsgType.BINARY, f"{message} before {text!r} in {drawn[-2000:]!r}"
+            drawn += message.data
 
 
 async def until_gone(processes: list[int]) -> None:
@@ -49,7 +51,7 @@ async def test_a_visitor_sees_the_menu_opens_a_lesson_and_leaves() -> None:
             async with session.ws_connect("/ws?width=140&height=40") as websocket:
                 await read_until(websocket, "Split groups")
                 await websocket.send_json(["stdin", "3"])
-                await read_until(websocket, "3/6 Split groups")
+                await read_until(websocket, "3/8 Split groups")
                 await until_an_engine_runs(server)
                 theirs = server.descendants()
                 await websocket.send_json(["stdin", "q"])
