@@ -125,7 +125,8 @@ def _of_learner(folder: Path, exercises: Sequence[Lesson], only: Lesson | None) 
         return found
     if only is not None and len(files) == 1:
         return [Paper(folder.name, only, files[0])]
-    names = " or ".join(each.file_name for each in wanted)
+    first, *others = (each.file_name for each in wanted)
+    names = f"{first}, nor one of another exercise" if others else first
     return [Paper(folder.name, only, problem=f"{folder} has no file {names}")]
 
 

@@ -61,7 +61,7 @@ def test_every_learner_has_a_row_whatever_the_one_before_did(
     assert dan["check 4"] == "failed: the robot makes 1 turn; expected 1 turn; saw 2 turns, at 14.000 s"
     assert (ann["problem"], dan["problem"]) == ("", "")
     assert bob["problem"] == "split_groups.py:28: expected ':'"
-    assert cyd["problem"] == f"{school}/cyd has no file split_groups.py"
+    assert cyd["problem"] == f"{school}/cyd has no file split_groups.py, nor one of another exercise"
     assert eve["problem"] == "eve.py does not tell by its name which exercise it is for"
 
 
