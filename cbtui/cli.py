@@ -4,6 +4,7 @@ Whatever a command needs is imported when it runs: ``cbtui --help`` must answer 
 """
 
 import argparse
+import os
 import sys
 from collections.abc import Callable, Sequence
 from typing import NoReturn
@@ -56,6 +57,10 @@ def main(argv: Sequence[str] | None = None) -> int:
             return action(options)
         except KeyboardInterrupt:
             return 130
+        except BrokenPipeError:
+            # Who read the output has read enough; Python would try to flush the rest as it ends.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            return 1
         except ValueError as error:
             _refuse_bad_lesson(error)
             raise
