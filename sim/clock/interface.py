@@ -37,8 +37,23 @@ class Clock(Protocol):
     def signal(self) -> Signal:
         """A new signal, not set."""
 
+    def choose(self, number: int) -> int:
+        """Which of ``number`` equals gets what they all wait for: 0, the oldest, unless orders are explored.
+
+        Call it with a lock held that keeps others from calling it.
+        """
+
     def start_thread(self, target: Callable[[], None], name: str) -> None:
         """Run ``target`` on a new daemon thread called ``name`` that lives on this clock's time."""
+
+    def switch_point(self) -> None:
+        """Let another thread go first, where orders are explored and the schedule wants it.
+
+        The calling thread must hold nothing that others wait for outside this clock.
+        """
+
+    def end_thread(self) -> None:
+        """Tell that the calling thread comes to its end now, without waiting: others are about to join it."""
 
     def interrupt(self, thread: int) -> None:
         """Raise KeyboardInterrupt in a thread (its ``get_ident``) once it waits or goes on, as Ctrl-C would.

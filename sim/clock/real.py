@@ -57,9 +57,19 @@ class RealClock:
         """A new signal, not set."""
         return RealSignal(self)
 
+    def choose(self, number: int) -> int:
+        """The first of some equals."""
+        return 0
+
     def start_thread(self, target: Callable[[], None], name: str) -> None:
         """Start an ordinary daemon thread."""
         _Thread(target=target, name=name, daemon=True).start()
+
+    def switch_point(self) -> None:
+        """Nothing: the machine switches where it likes."""
+
+    def end_thread(self) -> None:
+        """Nothing: whoever joins a thread waits while it ends."""
 
     def interrupt(self, thread: int) -> None:
         """Have the interpreter raise it there; a sleep or a wait for a lock is finished first."""

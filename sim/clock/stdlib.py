@@ -29,7 +29,8 @@ Number = TypeVar("Number", int, float)
 class VirtualLock:
     """``threading.Lock`` on virtual time: handed over in the order in which threads came for it.
 
-    Threads outside the clock may share it; they wait in real time.
+    Where orders are explored, any of those that wait may get it, or it is left to whoever comes first, and
+    threads switch in front of it and behind. Threads outside the clock may share it; they wait in real time.
     """
 
     _clock: VirtualClock
@@ -38,10 +39,14 @@ class VirtualLock:
         self._real = _allocate_lock()
         self._waiters: deque[VirtualThread] = deque()
         self._granted: VirtualThread | None = None
+        self.holder: VirtualThread | None = None
+        """The thread of the clock that has it."""
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Take the lock; False if it is not to be had at once (or within ``timeout`` seconds)."""
+        self._clock.switch_point()
         if self._real.acquire(blocking=False):
+            self._note_holder()
             return True
         if not blocking:
             if timeout != -1:
@@ -57,38 +62,69 @@ class VirtualLock:
         self._waiters.append(me)
         if self._real.acquire(blocking=False):  # a thread outside let go of it before it could see us
             self._waiters.remove(me)
+            self.holder = me
             return True
+        if deadline is None:
+            me.wants = self
+            self._clock.on_lock_wait(me)
+        taken = False
         try:
-            self._clock.park(deadline)
+            while not taken and self._clock.park(deadline) and self._granted is not me:
+                taken = self._real.acquire(blocking=False)  # it was left to whoever comes first
+        except BaseException:  # it was interrupted, or the run is over
+            self._give_up_place(me)
+            raise
         finally:
-            if self._granted is me:
-                self._granted = None
-                granted = True
-            else:
-                self._waiters.remove(me)
-                granted = False
-        return granted
+            me.wants = None
+        if self._granted is me:
+            self._granted = None
+            return True
+        self._waiters.remove(me)
+        if taken:
+            self.holder = me
+        return taken
+
+    def _give_up_place(self, me: VirtualThread) -> None:
+        """A thread in line takes the lock no more, even if it was handed to it."""
+        if self._granted is me:
+            self._granted = self.holder = None
+            self._real.release()
+        else:
+            self._waiters.remove(me)
+        self._serve_waiters()
 
     def release(self) -> None:
         """Let go of the lock, or hand it to the thread that has waited longest."""
         if not self._real.locked():
             raise RuntimeError("release unlocked lock")
+        self.holder = None
         if not self._clock.owns_current_thread():
             self._real.release()
             if self._waiters:
                 self._clock.inject(self._serve_waiters)
         elif self._waiters and self._granted is None:
-            self._grant()
+            self._pass_on()
         else:
             self._real.release()
+        self._clock.switch_point()
 
     def _serve_waiters(self) -> None:
         if self._waiters and self._granted is None and self._real.acquire(blocking=False):
-            self._grant()
+            self._pass_on()
 
-    def _grant(self) -> None:
-        self._granted = self._waiters.popleft()
-        self._clock.unpark(self._granted)
+    def _pass_on(self) -> None:
+        """Hand the lock, which is held, to one that waits, or wake that one and let it try."""
+        following = self._waiters[self._clock.choose(len(self._waiters))]
+        if self._clock.choose(2) == 0:
+            self._waiters.remove(following)
+            self._granted = self.holder = following
+        else:
+            self._real.release()
+        self._clock.unpark(following)
+
+    def _note_holder(self) -> None:
+        if self._clock.owns_current_thread():
+            self.holder = self._clock.current
 
     def locked(self) -> bool:
         """Whether somebody holds it."""
@@ -105,6 +141,7 @@ class VirtualLock:
     def _at_fork_reinit(self) -> None:
         self._real = _allocate_lock()
         self._waiters.clear()
+        self.holder = None
 
 
 def live_on(clock: VirtualClock) -> None:
@@ -127,7 +164,13 @@ def _replace_time(clock: VirtualClock) -> None:
             clock.sleep(round(seconds * 1e9))
 
     def here(virtual: Callable[[], Number], real: Callable[[], Number]) -> Callable[[], Number]:
-        return lambda: virtual() if clock.owns_current_thread() else real()
+        def ask() -> Number:
+            if not clock.owns_current_thread():
+                return real()
+            clock.switch_point()
+            return virtual()
+
+        return ask
 
     modules: Any = (time, threading, queue)
     modules[0].sleep = sleep

@@ -4,6 +4,9 @@ The threads pass a baton. A thread that waits hands it to the next one that can 
 served; when nobody can, time jumps to the earliest deadline (ties: the one that began to wait first).
 Computing takes no virtual time, so the same inputs give the same run, whatever the machine does.
 
+A schedule may choose other orders, those that a real machine could come to: any thread that can run goes on,
+and one that runs is left at a switch point, in front of or behind a lock or a question for the time.
+
 Paced to a speed, a jump takes as long as the pace says, and what comes from outside (a key pressed in the
 console) takes effect at the moment that the pace has reached. Time can stand, between two jumps or in the
 middle of a moment, and go on from there one step at a time.
@@ -14,13 +17,15 @@ So that such a run can be stopped and given inputs, a moment has a recess after 
 
 import threading
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
 from heapq import heappop, heappush
 from itertools import count
 
 from sim.clock.interface import Stopped
 from sim.clock.outside import start_outside
 from sim.clock.pace import Pace
+from sim.clock.schedule import FirstCome, Schedule
 from sim.clock.virtual_threads import VirtualSignal, VirtualThread
 
 # Kept from before sim.clock.stdlib puts the virtual ones in their place.
@@ -44,7 +49,12 @@ class VirtualClock:
 
     epoch = VIRTUAL_EPOCH
 
-    def __init__(self, speed: float | None = None) -> None:
+    def __init__(self, speed: float | None = None, schedule: Schedule | None = None) -> None:
+        self._schedule = schedule or FirstCome()
+        self.explores = self._schedule.explores
+        """Whether its schedule chooses among the orders that are possible."""
+        self.held_together = 0
+        """How many reasons there are not to switch threads at a switch point."""
         self._now = 0
         self._order = count(1)
         self._ready: deque[VirtualThread] = deque()
@@ -64,6 +74,8 @@ class VirtualClock:
         """
         self.on_recess: Callable[[int], None] = _ignore
         """Called in every recess, with its number, on the thread that waits; it must not wait."""
+        self.on_lock_wait: Callable[[VirtualThread], None] = _pass
+        """Called when a thread begins to wait for a lock without an end, on that thread; it must not wait."""
         self.recess = 0
         """Which recess of its moment the run is in; 0: none."""
         self._recesses = 0
@@ -152,6 +164,27 @@ class VirtualClock:
             thread.woken = True
             self._ready.append(thread)
 
+    def choose(self, number: int) -> int:
+        """Which of ``number`` equals that wait for something gets it, from 0: the oldest, unless explored."""
+        return self._schedule.choose(number)
+
+    def switch_point(self) -> None:
+        """Let another thread go first that can run, if the schedule wants it. Any thread may call this.
+
+        Put it where a real machine could switch, and where the calling thread holds nothing that another one
+        would wait for outside this clock.
+        """
+        if not self.explores or self.held_together or self._stopping or not self.owns_current_thread():
+            return
+        me = self.current
+        if self._ready and not me.ending and self._schedule.leaves(me, self._ready):
+            self._ready.append(me)
+            self._hand_on(me)
+
+    def end_thread(self) -> None:
+        """Have the calling thread run to its end from here, which it is near: others may join it for real."""
+        self.current.ending = True
+
     def inject(self, action: Callable[[], None]) -> None:
         """Have ``action`` run at the moment the run has reached; it must not wait. Any thread may call it."""
         self._inbox.append(action)
@@ -233,10 +266,11 @@ class VirtualClock:
             return
         self.pace.halt()
         self.in_moment = self.pace.stands
-        while self.pace.stands:
-            self._take_steering()
-            if self.pace.stands:
-                self._rest(None)
+        with self._together():
+            while self.pace.stands:
+                self._take_steering()
+                if self.pace.stands:
+                    self._rest(None)
         self.in_moment = False
 
     def stop(self) -> None:
@@ -267,13 +301,15 @@ class VirtualClock:
 
     def _retire(self, thread: VirtualThread) -> None:
         self._threads.discard(thread)
+        self._schedule.forget(thread)
         if self._threads:
             self._pass_baton(self._next_thread())
 
     def _hand_on(self, me: VirtualThread) -> None:
         self.steps += 1
         if self.steps >= self._next_recess and not self._stopping:
-            self._take_recess()
+            with self._together():
+                self._take_recess()
         following = self._next_thread()
         if following is not me:
             self._pass_baton(following)
@@ -284,9 +320,28 @@ class VirtualClock:
         following.gate.release()
 
     def _next_thread(self) -> VirtualThread:
+        if not self._ready:
+            with self._together():
+                self._await_ready()
+        place = 0 if self._stopping else self._schedule.next(self._ready)
+        following = self._ready[place]
+        del self._ready[place]
+        return following
+
+    def _await_ready(self) -> None:
         while not self._ready:
             self._jump()
-        return self._ready.popleft()
+            if self.explores:
+                self._serve_equals()
+
+    @contextmanager
+    def _together(self) -> Generator[None, None, None]:
+        """Meanwhile the thread that has the baton is not left, whoever asks: it sees to the clock itself."""
+        self.held_together += 1
+        try:
+            yield
+        finally:
+            self.held_together -= 1
 
     def _take_recess(self) -> None:
         """Do what is done at the end of a moment, but for letting time pass."""
@@ -371,6 +426,11 @@ class VirtualClock:
         else:
             due()
 
+    def _serve_equals(self) -> None:
+        """Let all threads go on whose deadline is this moment, up to the next action."""
+        while self._earliest_deadline() == self._now and isinstance(self._deadlines[0][2], VirtualThread):
+            self._serve_deadline()
+
     def _earliest_deadline(self) -> int | None:
         while self._deadlines:
             deadline, order, due = self._deadlines[0]
@@ -431,6 +491,10 @@ class _Steering:
 
 def _nothing() -> int | None:
     """Stand in for a hook that nobody set."""
+
+
+def _pass(_thread: VirtualThread) -> None:
+    """Stand in for a listener that nobody set."""
 
 
 def _ignore(_recess: int) -> None:

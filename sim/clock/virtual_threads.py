@@ -6,6 +6,7 @@ import threading
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from sim.clock.circles import Held
     from sim.clock.virtual import VirtualClock
 
 # Kept from before sim.clock.stdlib puts the virtual ones in their place.
@@ -17,6 +18,7 @@ class VirtualThread:
 
     __slots__ = (
         "current_wait",
+        "ending",
         "gate",
         "ident",
         "interrupted",
@@ -24,6 +26,7 @@ class VirtualThread:
         "knocked",
         "name",
         "waiting",
+        "wants",
         "woken",
     )
 
@@ -31,11 +34,14 @@ class VirtualThread:
         self.name = name
         self.is_main = False
         self.ident = 0
+        self.ending = False
         self.interrupted = False
         self.knocked = False
         self.gate = _allocate_lock()
         self.gate.acquire()
         self.waiting = False
+        self.wants: Held | None = None
+        """The lock that it waits for without an end."""
         self.woken = False
         self.current_wait = 0
 

@@ -72,6 +72,7 @@ class Clock:
 
     def now(self) -> Time:
         """The time it is."""
+        self._host.clock.switch_point()
         return self._time_at(self._host.clock.now())
 
     def _time_at(self, elapsed: int) -> Time:

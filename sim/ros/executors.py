@@ -10,6 +10,7 @@ from typing import Any, Self
 
 from sim.ros.context import Context
 from sim.ros.executor import Executor
+from sim.ros.running import Started, Work
 from sim.ros.task import Future
 from sim.ros.utilities import get_available_threads, get_default_context
 from sim.ros.waiting_ends import (
@@ -61,11 +62,15 @@ class SingleThreadedExecutor(Executor):
     ) -> None:
         self._want(timeout_sec, None, wait_condition)
         try:
-            begun = self._await_work(timeout_sec, wait_condition, self._begin)
+            started = self._await_work(timeout_sec, wait_condition, self._begin_and_start)
         except (ShutdownException, TimeoutException, ConditionReachedException):
             return
-        if begun is not None:
-            self._run(begun)
+        if started is not None:
+            self._run(started)
+
+    def _begin_and_start(self, work: Work, now: int) -> Started | None:
+        begun = self._begin(work, now)
+        return None if begun is None else self._start(begun)
 
 
 class MultiThreadedExecutor(Executor):

@@ -39,9 +39,9 @@ class Handler(Task[None]):
         executor, entity = self._serving, self.entity
         with executor._lock:
             taken = executor._enter(entity, executor._clock.now())
-        if taken is None:
-            return
-        self._outer = executor._probe.callback_started(entity, taken.message, taken.age, taken.left)
+            if taken is None:
+                return
+            self._outer = executor._probe.callback_started(entity, taken.message, taken.age, taken.left)
         try:
             outcome = entity.invoke(taken)
             if inspect.iscoroutine(outcome):

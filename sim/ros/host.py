@@ -5,7 +5,6 @@ on wall time that keeps no trace, so that the model works as a plain library too
 """
 
 import threading
-import time
 from collections.abc import Iterator
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
@@ -15,32 +14,15 @@ from weakref import ref
 
 from sim.clock import Clock, RealClock
 from sim.ros.domain import domain_of_machine
+from sim.ros.host_lock import lock_on
 from sim.ros.network import Network
 from sim.ros.probe import Probe, SilentProbe
 
 if TYPE_CHECKING:
     from sim.ros.tuning import Tuning
 
-# Kept from before sim.clock.stdlib puts the virtual ones in their place.
+# Kept from before sim.clock.stdlib puts the virtual one in its place.
 _RLock = threading.RLock
-_sleep = time.sleep
-
-_ASIDE = 50e-6
-"""Seconds for which a thread that finds the host's lock taken stands aside."""
-
-
-class HostLock(type(_RLock())):  # type: ignore[misc]
-    """A lock that is never queued up for: whoever finds it taken stands aside and tries again.
-
-    Its holder is then a thread that the interpreter has switched away from in the middle of a few quick
-    lines. Threads that queued up for the lock would from then on hand it to each other at every use, each
-    time with a switch between threads.
-    """
-
-    def __enter__(self) -> bool:
-        while not self.acquire(False):
-            _sleep(_ASIDE)
-        return True
 
 
 @dataclass(eq=False)
@@ -58,12 +40,15 @@ class Host:
     probe: Probe
     threads: int | None = None
     tuning: "Tuning | None" = None
-    lock: AbstractContextManager[bool] = field(default_factory=HostLock)
+    lock: AbstractContextManager[bool] = field(init=False)
     default_domain: int = field(default_factory=domain_of_machine)
     takes_signals: bool = False
     _gids: Iterator[int] = field(default_factory=lambda: count(1))
     _networks: dict[int, Network] = field(default_factory=dict)
     _waiters: "list[ref[WaitsExplained]]" = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.lock = lock_on(self.clock)
 
     @property
     def network(self) -> Network:

@@ -6,6 +6,7 @@ A value gets the type that ROS's parameter parser gives it, which differs from Y
 
 from __future__ import annotations
 
+import math
 import re
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -24,6 +25,8 @@ _FALSE = frozenset(("n", "N", "no", "No", "NO", "false", "False", "FALSE", "off"
 _INTEGER = re.compile(r"[+-]?(0[xX][0-9a-fA-F]+|0[0-7]*|[1-9][0-9]*)")
 _FLOAT = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 _SPECIAL_FLOAT = re.compile(r"[+-]?\.?(inf|nan|infinity)", re.IGNORECASE)
+_MOST_DIGITS = 1000
+"""Python itself refuses to read a decimal number of some thousand digits as an integer."""
 _INT64 = range(-(2**63), 2**63)
 _TEXT_TAG = "tag:yaml.org,2002:str"
 _KEY = "ros__parameters"
@@ -54,8 +57,11 @@ def read_file(path: str) -> NodeParameters:
     """
     try:
         text = Path(path).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as error:
-        reason = error.strerror if isinstance(error, OSError) else "it is not UTF-8"
+    except OSError as error:
+        raise ParameterYamlError(f"Error opening YAML file: {error.strerror}") from None
+    except ValueError as error:
+        # A name with a zero byte in it is no name of a file.
+        reason = "it is not UTF-8" if isinstance(error, UnicodeDecodeError) else "there cannot be such a file"
         raise ParameterYamlError(f"Error opening YAML file: {reason}") from None
     return read_nodes(text)
 
@@ -142,11 +148,22 @@ def _scalar(node: Any) -> bool | int | float | str:
 
 def _number(text: str) -> int | float | None:
     if _INTEGER.fullmatch(text):
-        value = _c_integer(text)
-        return value if value in _INT64 else float(text)
+        return _integer_or_double(text)
     if _FLOAT.fullmatch(text):
         return float(text)
     return float(text.replace(".", "")) if _SPECIAL_FLOAT.fullmatch(text) else None
+
+
+def _integer_or_double(text: str) -> int | float:
+    # What does not fit 64 bits is read once more by C's strtod, which knows hexadecimal digits and no octal.
+    if len(text) <= _MOST_DIGITS and (value := _c_integer(text)) in _INT64:
+        return value
+    if text.lstrip("+-")[:2] not in {"0x", "0X"}:
+        return float(text)
+    try:
+        return float.fromhex(text)
+    except OverflowError:
+        return -math.inf if text.startswith("-") else math.inf
 
 
 def _is_numeric(text: str) -> bool:

@@ -21,6 +21,8 @@ Work: TypeAlias = "Entity | Task[Any]"
 """What a cycle yields."""
 Begun: TypeAlias = "tuple[Entity, Taken] | Task[Any]"
 """A callback that its group has let in and that has what it needs to run."""
+Started: TypeAlias = "tuple[Entity, Taken, int] | Task[Any]"
+"""A callback that runs on this thread by its trace, and what ran here before (its id)."""
 
 
 class RunsWork:
@@ -78,15 +80,25 @@ class RunsWork:
             self._wake()
         return taken
 
-    def _run(self, begun: Begun) -> None:
-        """Run what has begun, on this thread; what it raises is raised."""
-        if isinstance(begun, Task):
-            self._run_task(begun)
-        else:
-            self._run_callback(*begun)
+    def _start(self, begun: Begun) -> Started:
+        """Tell the trace that it runs on this thread. With the lock held since it was taken.
 
-    def _run_callback(self, entity: Entity, taken: Taken) -> None:
+        Else what another thread takes next, or what its queue loses, could come before it on the trace.
+        """
+        if isinstance(begun, Task):
+            return begun
+        entity, taken = begun
         outer = self._probe.callback_started(entity, taken.message, taken.age, taken.left)
+        return entity, taken, outer
+
+    def _run(self, started: Started) -> None:
+        """Run what has started on this thread; what it raises is raised."""
+        if isinstance(started, Task):
+            self._run_task(started)
+        else:
+            self._run_callback(*started)
+
+    def _run_callback(self, entity: Entity, taken: Taken, outer: int) -> None:
         try:
             outcome = entity.invoke(taken)
         except BaseException as error:
@@ -116,7 +128,8 @@ class RunsWork:
         else:
             with self._lock:
                 self._running.append(entity)
-            self._step(task, entity, self._probe.callback_resumed(entity))
+                outer = self._probe.callback_resumed(entity)
+            self._step(task, entity, outer)
 
     def _step(self, task: Task[Any], entity: Entity, outer: int) -> None:
         awaited = task._advance()

@@ -14,7 +14,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from sim.clock import Signal
-from sim.ros.running import Begun, Work
+from sim.ros.running import Begun, Started, Work
 from sim.ros.waiting_ends import never
 
 if TYPE_CHECKING:
@@ -99,7 +99,8 @@ class WorkerPool:
 
     def _call_worker(self, now: int) -> None:
         if self._idle:
-            worker = self._idle.popleft()
+            worker = self._idle[self._clock.choose(len(self._idle))]
+            self._idle.remove(worker)
             self._expect(worker, now)
             worker.signal.set()
         elif len(self._workers) < self._executor.threads:
@@ -121,19 +122,19 @@ class WorkerPool:
     def _work(self, worker: Worker) -> None:
         worker.thread = threading.current_thread()
         try:
-            while (begun := self._next(worker)) is not None:
-                self._run(begun)
+            while (started := self._next(worker)) is not None:
+                self._run(started)
         finally:
             self._leave()
 
-    def _next(self, worker: Worker) -> Begun | None:
-        """Wait for the worker's next callback and begin it; None once the pool is dismissed."""
+    def _next(self, worker: Worker) -> Started | None:
+        """Wait for the worker's next callback and start it; None once the pool is dismissed."""
         while True:
             with self._lock:
                 now = self._clock.now()
                 begun = self._begin_claimed(worker, now) or self._begin_queued(now) or self._begin_found(now)
                 if begun is not None:
-                    return begun
+                    return self._executor._start(begun)
                 if self._dismissed:
                     return None
                 others_go_first = len(self._queue) > self._coming
@@ -201,9 +202,9 @@ class WorkerPool:
             self.submit(work, now)
         self._executor.wake()
 
-    def _run(self, begun: Begun) -> None:
+    def _run(self, started: Started) -> None:
         try:
-            self._executor._run(begun)
+            self._executor._run(started)
         except Exception as error:  # noqa: BLE001 -- kept for the thread that spins
             with self._lock:
                 self._errors.append(error)
@@ -228,6 +229,7 @@ class WorkerPool:
 
     def _leave(self) -> None:
         """A worker has nothing more to do; whoever waits for the end of the last goes on."""
+        self._clock.end_thread()
         with self._lock:
             self._living -= 1
             if self._living == 0:

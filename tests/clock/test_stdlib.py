@@ -48,6 +48,21 @@ def run(program: str) -> None:
 
 
 PROGRAMS = {
+    "a_lock_handed_to_one_who_is_interrupted_goes_to_the_next": """
+        lock, ends, got = threading.Lock(), [], []
+        def come():
+            ends.append(threading.get_ident())
+            with contextlib.suppress(KeyboardInterrupt), lock:
+                got.append(threading.get_ident())
+        lock.acquire()
+        threads = [thread(come), thread(come)]
+        time.sleep(1)
+        lock.release()
+        clock.interrupt(ends[0])
+        for each in threads:
+            each.join()
+        assert got == ends[1:]
+    """,
     "sleep_and_every_clock_show_virtual_time": """
         epoch = clock.epoch
         time.sleep(3600.5)

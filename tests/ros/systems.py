@@ -6,12 +6,13 @@ from typing import Any, TypeAlias
 
 from hypothesis import strategies as st
 
+from sim.clock.schedule import Schedule
 from sim.ros.callback_groups import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,
 )
-from sim.ros.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from sim.ros.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from sim.ros.interfaces import message, service
 from sim.ros.node import Node
 from tests.support.simulation import Simulation, Trace, simulate
@@ -71,13 +72,17 @@ class SourcePlan:
 
 @dataclass(frozen=True)
 class System:
-    """Lengths, periods and offsets are in grains; a group of None is the node's default group."""
+    """Lengths, periods and offsets are in grains; a group of None is the node's default group.
+
+    At ``shutdown`` a thread of its own shuts the executor down; None: it is never shut down.
+    """
 
     nodes: int
     groups: tuple[type[CallbackGroup], ...]
     entities: tuple[EntityPlan, ...]
     sources: tuple[SourcePlan, ...]
     threads: int | None
+    shutdown: int | None = None
 
     @property
     def workers(self) -> int:
@@ -126,9 +131,9 @@ def _threads() -> st.SearchStrategy[int | None]:
     return st.sampled_from([None, 1, 2, 3, 4])
 
 
-def play(system: System) -> Trace:
-    """Run a system for a while."""
-    return simulate(program_of(system), until=SECONDS)
+def play(system: System, schedule: Schedule | None = None) -> Trace:
+    """Run a system for a while, in the order of threads that ``schedule`` chooses."""
+    return simulate(program_of(system), until=SECONDS, schedule=schedule)
 
 
 def program_of(system: System) -> Callable[[Simulation], None]:
@@ -147,9 +152,19 @@ def program_of(system: System) -> Callable[[Simulation], None]:
         )
         for node in nodes:
             executor.add_node(node)
+        if system.shutdown is not None:
+            simulation.start(_shutting_down(simulation, executor, system.shutdown), "shutting down")
         executor.spin()
 
     return program
+
+
+def _shutting_down(simulation: Simulation, executor: Executor, grains: int) -> Callable[[], None]:
+    def run() -> None:
+        simulation.sleep(grains * GRAIN)
+        executor.shutdown()
+
+    return run
 
 
 def _make(

@@ -7,7 +7,7 @@ import sim.ros as rclpy
 from sim.clock import RealClock
 from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
 from sim.ros.executors import MultiThreadedExecutor
-from sim.ros.host import HostLock
+from sim.ros.host_lock import HostLock
 from sim.ros.interfaces import message
 from sim.ros.node import Node
 from sim.ros.task import Future

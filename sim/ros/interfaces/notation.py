@@ -33,7 +33,7 @@ _MISLEADING: Final = {
 
 _FIELD_NAME = re.compile(r"(?!.*__)(?!.*_$)[a-z][a-z0-9_]*")
 _PACKAGE_NAME = _FIELD_NAME
-_CONSTANT_NAME = re.compile(r"[A-Z]([A-Z0-9_]?[A-Z0-9]+)*")
+_CONSTANT_NAME = re.compile(r"[A-Z](_?[A-Z0-9])*")
 _INTERFACE_NAME = re.compile(r"[A-Z][A-Za-z0-9]*")
 _TYPE = re.compile(r"(?P<base>[^\[\]<>=]*)(<=(?P<length>[^\[\]]*))?(\[(?P<size>[^\[\]]*)\])?")
 

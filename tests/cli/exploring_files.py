@@ -1,0 +1,63 @@
+"""Nodes whose fate depends on the order of their threads, and one whose does not."""
+
+_HEAD = """
+import threading
+import rclpy
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from rclpy.executors import ExternalShutdownException, MultiThreadedExecutor
+from rclpy.node import Node
+
+
+def main():
+    rclpy.init()
+    node = Mine()
+    executor = MultiThreadedExecutor(num_threads=2)
+    executor.add_node(node)
+    try:
+        executor.spin()
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+"""
+
+CHECK_THEN_ACT = f"""{_HEAD}
+
+class Mine(Node):
+    def __init__(self):
+        super().__init__("seats")
+        self.free = 1
+        group = ReentrantCallbackGroup()
+        self.create_timer(0.1, self.ann, callback_group=group)
+        self.create_timer(0.1, self.bob, callback_group=group)
+
+    def ann(self):
+        self.take("ann")
+
+    def bob(self):
+        self.take("bob")
+
+    def take(self, who):
+        if self.free > 0:
+            print(who, "takes a seat")
+            self.free -= 1
+            assert self.free >= 0, "taken twice"
+"""
+
+IN_ONE_GROUP = CHECK_THEN_ACT.replace("group = Reentrant", "group = MutuallyExclusive")
+
+LOCK_ORDER = f"""{_HEAD}
+
+class Mine(Node):
+    def __init__(self):
+        super().__init__("bank")
+        self.one, self.two = threading.Lock(), threading.Lock()
+        self.create_timer(0.1, self.forth, callback_group=MutuallyExclusiveCallbackGroup())
+        self.create_timer(0.1, self.back, callback_group=MutuallyExclusiveCallbackGroup())
+
+    def forth(self):
+        with self.one, self.two:
+            pass
+
+    def back(self):
+        with self.two, self.one:
+            pass
+"""

@@ -1,0 +1,173 @@
+"""``cbtui explore``: other orders of a program's threads, what came of them, and their seeds."""
+
+import os
+import re
+import shlex
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from cbtui import cli
+from cbtui.commands.explore import _explored
+from cbtui.exploration_text import exploration_text
+from cbtui.exploring import Exploration, Failure, Result
+from cbtui.family import Family
+from lessons.catalogue import find
+from sim.engine.setup import RunSetup
+from tests.cli.exploring_files import CHECK_THEN_ACT, IN_ONE_GROUP, LOCK_ORDER
+
+
+def cbtui(*words: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "cbtui", *words], capture_output=True, text=True, check=False, timeout=60
+    )
+
+
+@pytest.fixture
+def file(tmp_path: Path) -> Path:
+    return tmp_path / "mine.py"
+
+
+def test_an_order_that_fails_is_found_and_its_seed_shows_it_again(file: Path) -> None:
+    file.write_text(CHECK_THEN_ACT)
+    explored = cbtui("explore", str(file), "--schedules", "8", "--for", "0.3")
+    assert explored.returncode == 1
+    assert explored.stderr == ""
+    assert re.match(r"mine.py: 8 schedules, \d outcomes, \d+ schedules? failed\n", explored.stdout)
+    assert " raised AssertionError\n      mine.py:" in explored.stdout
+    assert "taken twice" in explored.stdout
+    assert "✓" in explored.stdout
+    command = next(line for line in explored.stdout.splitlines() if "cbtui run" in line)
+    again = cbtui(*shlex.split(command)[1:])
+    assert "AssertionError: taken twice" in again.stdout + again.stderr
+
+
+def test_locks_that_are_taken_in_two_orders_are_found(file: Path) -> None:
+    file.write_text(LOCK_ORDER)
+    explored = cbtui("explore", str(file), "--schedules", "4", "--seed", "1", "--for", "0.5")
+    assert explored.returncode == 1
+    assert "    deadlock\n" in explored.stdout
+    assert "in forth" in explored.stdout
+    assert "in back" in explored.stdout
+
+
+def test_a_program_in_order_has_one_outcome_and_ends_with_0(file: Path) -> None:
+    file.write_text(IN_ONE_GROUP)
+    explored = cbtui("explore", str(file), "--schedules", "4", "--for", "0.3")
+    assert explored.stdout.startswith("mine.py: 4 schedules, 1 outcome, all went well\n\n✓ all of them")
+    assert explored.returncode == 0
+
+
+def test_a_solution_passes_its_checks_in_every_order() -> None:
+    solution = find("overlapping-timer").node_path.with_name("solution.py")
+    explored = cbtui("explore", str(solution), "--check", "overlapping-timer", "--schedules", "2")
+    assert "2 schedules, 1 outcome, all went well" in explored.stdout
+    assert f"cbtui check overlapping-timer {solution} --seed 1" in explored.stdout
+    assert explored.returncode == 0
+
+
+def test_checks_that_fail_are_named_with_what_was_seen() -> None:
+    explored = cbtui("explore", "overlapping-timer", "--schedules", "2")
+    assert "check failed: every call of inspect is counted\n      expected " in explored.stdout
+    assert explored.returncode == 1
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["nowhere.py"], "there is no file nowhere.py"),
+        (["no-lesson"], "no-lesson"),
+        (["shared-group", "--check", "shared-group"], "leave out --check"),
+        (["shared-group", "--for", "3"], "leave out --for and --call"),
+        (["mine.py", "--call", "11"], "when the run of 10 s is over"),
+        (["mine.py", "--schedules", "0"], "give 1 or more"),
+        (["mine.py", "--seed", "x"], "'x' is not a whole number"),
+        (["mine.py", "--check", "lock-or-group"], "has no exercise"),
+    ],
+)
+def test_what_cannot_be_explored_is_refused_in_a_line(
+    words: list[str],
+    sentence: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("mine.py").write_text(IN_ONE_GROUP)
+    with pytest.raises(SystemExit) as caught:
+        cli.main(["explore", *words])
+    assert caught.value.code == 2
+    (line,) = capsys.readouterr().err.splitlines()
+    assert sentence in line
+
+
+@pytest.mark.parametrize("command", ["run", "open"])
+def test_the_real_clock_takes_no_seed(command: str, file: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file.write_text(IN_ONE_GROUP)
+    with pytest.raises(SystemExit) as caught:
+        cli.main([command, str(file), "--seed", "3", "--clock", "real"])
+    assert caught.value.code == 2
+    assert "leave out --seed 3" in capsys.readouterr().err
+
+
+def test_ctrl_c_ends_it_and_every_process(file: Path) -> None:
+    file.write_text("while True:\n    pass\n")
+    explore = subprocess.Popen(
+        [sys.executable, "-m", "cbtui", "explore", str(file)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        start_new_session=True,
+    )
+    family = Family(explore.pid, "")
+    give_up = time.monotonic() + 30
+    while len(children := family.descendants()) < 4:  # itself, what tracks resources, what forks, an engine
+        assert time.monotonic() < give_up
+        time.sleep(0.05)
+    os.killpg(explore.pid, signal.SIGINT)  # as a terminal does
+    said, complained = explore.communicate(timeout=20)
+    assert (explore.returncode, said, complained) == (130, b"", b"")
+    for pid in children:
+        assert Family(pid, "").wait_for_end(10)
+
+
+DEADLOCK = Result((Failure("deadlock", "a waits for b"),), ("no-free-worker",))
+WELL = Result()
+
+
+def test_outcomes_that_failed_come_first_each_with_its_first_seed() -> None:
+    later = Result((Failure("deadlock", "b waits for a"),), ("no-free-worker",))
+    text = exploration_text("mine.py", {5: WELL, 6: DEADLOCK, 7: later}, ["cbtui run mine.py -- -x"])
+    assert text == (
+        "mine.py: 3 schedules, 2 outcomes, 2 schedules failed\n"
+        "\n"
+        "✗ 2 schedules, such as seed 6\n"
+        "    deadlock\n"
+        "      a waits for b\n"
+        "    diagnosis: no-free-worker\n"
+        "\n"
+        "✓ 1 schedule, such as seed 5\n"
+        "    no problem\n"
+        "\n"
+        "To see one again:\n"
+        "  cbtui run mine.py --seed 6 -- -x\n"
+    )
+
+
+class _Results(Exploration):
+    """An exploration whose runs are over already."""
+
+    def results(self, seeds, processes=None):  # type: ignore[no-untyped-def]
+        yield from {2: DEADLOCK, 1: WELL}.items()
+
+
+def test_a_terminal_is_told_how_far_it_has_come(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    exploration = _Results(RunSetup(title="mine", programs=()), "mine.py", None, 1.0)
+    monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
+    assert list(_explored(exploration, range(1, 3))) == [1, 2]
+    assert capsys.readouterr().err == ("\r1 of 2 schedules, 1 failed \r2 of 2 schedules, 1 failed \r\033[K")

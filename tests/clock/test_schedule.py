@@ -1,0 +1,87 @@
+"""The choices among orders of threads, without a clock and without threads."""
+
+from itertools import pairwise, permutations
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from sim.clock.schedule import FirstCome, Schedule, Seeded, schedule_of
+
+SEEDS = st.integers(1, 2**63)
+QUESTIONS = st.lists(st.tuples(st.sampled_from("nlc"), st.integers(1, 5)), max_size=60)
+
+
+def answers(schedule: Schedule, questions: list[tuple[str, int]]) -> list[int]:
+    """What a schedule says to next, leaves and choose among some threads."""
+    said = []
+    for question, number in questions:
+        threads = range(number)
+        match question:
+            case "n":
+                said.append(schedule.next(threads))
+            case "l":
+                said.append(int(schedule.leaves("me", threads)))
+            case _:
+                said.append(schedule.choose(number))
+    return said
+
+
+def order(seed: int, names: str) -> str:
+    """In which order threads go on that all wait at once."""
+    schedule, ready = Seeded(seed), list(names)
+    return "".join(ready.pop(schedule.next(ready)) for _ in names)
+
+
+def test_without_a_seed_the_first_goes_on_and_nobody_is_left() -> None:
+    for schedule in (FirstCome(), schedule_of(None), schedule_of(0)):
+        assert not schedule.explores
+        assert answers(schedule, [("n", 5), ("l", 5), ("c", 5)]) == [0, 0, 0]
+
+
+@given(SEEDS, QUESTIONS)
+def test_the_same_seed_asked_the_same_says_the_same(seed: int, questions: list[tuple[str, int]]) -> None:
+    assert answers(schedule_of(seed), questions) == answers(schedule_of(seed), questions)
+
+
+@given(SEEDS, st.integers(1, 9))
+def test_only_who_is_there_is_chosen(seed: int, number: int) -> None:
+    schedule = schedule_of(seed)
+    assert all(0 <= schedule.next(range(number)) < number for _ in range(20))
+    assert all(0 <= schedule.choose(number) < number for _ in range(20))
+
+
+def test_seeds_come_to_every_order_of_a_few_threads() -> None:
+    assert {order(seed, "abcd") for seed in range(1, 1_000)} == set(map("".join, permutations("abcd")))
+
+
+def test_no_thread_is_left_out_for_ever() -> None:
+    for seed in range(1, 50):
+        schedule = Seeded(seed)
+        assert {schedule.next("ab") for _ in range(2_000)} == {0, 1}
+
+
+def test_some_seeds_keep_to_one_thread_for_long_and_others_switch_often() -> None:
+    switches = []
+    for seed in range(1, 50):
+        schedule = Seeded(seed)
+        chosen = [schedule.next("ab") for _ in range(1_000)]
+        switches.append(sum(one != two for one, two in pairwise(chosen)))
+    assert min(switches) < 50
+    assert max(switches) > 300
+
+
+def test_a_running_thread_is_left_only_for_one_that_is_to_go_first() -> None:
+    for seed in range(1, 50):
+        schedule = Seeded(seed)
+        for _ in range(50):
+            if schedule.leaves("a", ["b", "c"]):
+                ready = ["b", "c", "a"]
+                assert schedule._priority("a") < max(map(schedule._priority, ready[:2]))
+
+
+def test_what_a_schedule_knows_of_a_thread_goes_with_it() -> None:
+    schedule = Seeded(3)
+    schedule.next(["a", "b"])
+    schedule.forget("a")
+    schedule.forget("never seen")
+    assert list(schedule._priorities) == ["b"]
