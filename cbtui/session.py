@@ -2,20 +2,38 @@
 
 import multiprocessing
 import os
+import signal
 import sys
+import tempfile
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, redirect_stderr
+from contextlib import contextmanager, redirect_stderr, suppress
+from multiprocessing import resource_tracker
+from multiprocessing.connection import Connection
+from multiprocessing.context import BaseContext
 from multiprocessing.process import BaseProcess
+from typing import Any
+from uuid import uuid4
 
 import msgspec
 
+from cbtui.family import MARK, Family
+from cbtui.interrupts import whole
+from cbtui.orphans import ENDS_ITSELF, watch_over
+from cbtui.silence import LOOK, Silence
+from cbtui.warden import Warden, ceiling
 from sim.engine.commands import Command, Stop, encode
+from sim.engine.last_words import ASKED, overflowed, place_in
+from sim.engine.outbox import TRACE_CLOSED
 from sim.engine.setup import RunSetup
 from sim.trace.events import AnyEvent, RunEnded, decode
 
 _GRACE = 0.4
 """Seconds that an engine gets to end by itself before it is killed."""
+_TO_WRITE = 0.2
+"""Seconds that an engine gets to write down where its threads stand."""
+_redirecting = threading.Lock()
+"""Standard error is the whole process's: two engines that start together take turns at it."""
 
 
 class Session:
@@ -23,7 +41,10 @@ class Session:
 
     ``deliver`` gets every batch of events in order, ``ended`` is called once when no more will come, with
     None if the run ended as it should and with a sentence if the engine was lost. Both are called on the
-    session's reader thread.
+    session's reader thread. An engine from which nothing comes is told of by a notice among the events. When
+    the engine has ended, whatever processes it started are ended too; one that takes more memory than
+    ``cbtui.warden.ceiling`` allows is, and so are all when this process is killed. ``context`` starts the
+    engine's process, None: afresh.
     """
 
     def __init__(
@@ -31,27 +52,48 @@ class Session:
         setup: RunSetup,
         deliver: Callable[[list[AnyEvent]], None],
         ended: Callable[[str | None], None],
+        context: BaseContext | None = None,
     ) -> None:
         self._deliver = deliver
         self._ended = ended
         self._stopping = False
-        context = multiprocessing.get_context("spawn")
-        self._pipe, self._far_end = context.Pipe()
-        self._process: BaseProcess = context.Process(
-            target=_engine,
-            args=(msgspec.msgpack.encode(setup), self._far_end),
-            name="cbtui-engine",
-            daemon=True,
-        )
+        self._started = False
+        self._setup = setup
+        self._context = context or multiprocessing.get_context("spawn")
+        self._pipe, self._far_end = self._context.Pipe()
         self._reader = threading.Thread(target=self._read, name="trace-reader", daemon=True)
 
     def start(self) -> None:
-        """Start the engine and the reader."""
+        """Start the engine, who watches over it, and the reader."""
+        with whole():
+            self._start()
+
+    def _start(self) -> None:
+        self._last_words = tempfile.TemporaryFile()  # noqa: SIM115 -- closed with the session
+        last_words = Connection(os.dup(self._last_words.fileno()), readable=False)
+        ours, self._alive = multiprocessing.Pipe(duplex=False)
+        engine: Any = self._context
+        self._process: BaseProcess = engine.Process(
+            target=_engine,
+            args=(msgspec.msgpack.encode(self._setup), self._far_end, last_words, ours),
+            name="cbtui-engine",
+            daemon=True,
+        )
+        mark = uuid4().hex
         # Starting a process hands on standard error, and Textual's stand-in for it has no descriptor.
-        with _engine_environment(), redirect_stderr(sys.__stderr__):
-            self._process.start()
+        with _redirecting, redirect_stderr(sys.__stderr__):
+            resource_tracker.ensure_running()  # it is this process's own, and must not get the engine's mark
+            with engine_environment(mark):
+                self._process.start()
         self._far_end.close()
+        last_words.close()
+        ours.close()
+        assert self._process.pid is not None
+        self._family = Family(self._process.pid, mark)
+        self._warden = Warden(self._family, ceiling(), self._ask_where_it_stands)
+        self._warden.start()
         self._reader.start()
+        self._started = True
 
     def send(self, command: Command) -> None:
         """Tell the engine something; nothing happens if it has ended."""
@@ -61,48 +103,87 @@ class Session:
             return  # the reader tells that the engine is gone
 
     def stop(self) -> None:
-        """End the engine, by force if it must be, and the reader. Safe to call twice."""
-        if self._stopping:
-            return
-        self._stopping = True
+        """End the engine, by force if it must be, what it started, and the reader. Safe to call twice.
+
+        Nothing happens if it could not be started.
+        """
+        with whole():
+            if self._started and not self._stopping:
+                self._stopping = True
+                self._stop()
+
+    def _stop(self) -> None:
         self.send(Stop())
-        self._process.join(_GRACE)
-        if self._process.is_alive():
-            self._process.kill()
-            self._process.join()
+        self._family.wait_for_end(_GRACE)
+        self._warden.stop()
+        self._process.kill()
+        self._process.join()
         if self._reader is not threading.current_thread():
             self._reader.join(_GRACE)
+        with suppress(OSError):
+            os.write(self._alive.fileno(), ENDS_ITSELF)
+        self._alive.close()
         self._pipe.close()
+        self._last_words.close()
 
     def _read(self) -> None:
         finished = False
+        silence = Silence()
         while True:
             try:
-                events = decode(self._pipe.recv_bytes())
+                if self._pipe.poll(LOOK):
+                    events = silence.came(decode(self._pipe.recv_bytes()))
+                else:
+                    events = silence.nothing_came(stopped=self._family.is_stopped())
             except (EOFError, OSError):
                 break
             except msgspec.DecodeError as error:
+                self._warden.stop()
                 self._ended(f"the engine sent something unreadable: {error}")
                 return
             finished = finished or any(isinstance(event, RunEnded) for event in events)
-            self._deliver(events)
+            if events:
+                self._deliver(events)
         self._ended(None if finished or self._stopping else self._epitaph())
 
+    def _ask_where_it_stands(self) -> None:
+        os.kill(self._family.pid, ASKED)
+        self._family.wait_for_end(_TO_WRITE)
+
     def _epitaph(self) -> str:
-        self._process.join(_GRACE)
-        code = self._process.exitcode
-        if code is None:
+        """What became of the engine, and where in the program."""
+        if not self._family.wait_for_end(_GRACE):
+            self._warden.stop()
             return "the engine closed its trace"
-        if code < 0:
+        self._warden.wait(_GRACE)
+        self._process.join(_GRACE)
+        self._last_words.seek(0)
+        words = self._last_words.read().decode(errors="replace")
+        place = place_in(words, [program.path for program in self._setup.programs])
+        return f"{self._cause(words)}{f' ({place})' if place else ''}"
+
+    def _cause(self, last_words: str) -> str:
+        code = self._process.exitcode
+        if self._warden.verdict is not None:
+            return f"{self._warden.verdict} and was ended"
+        if code == TRACE_CLOSED:
+            return "the program closed files of the engine's, as os.closerange does; close only your own"
+        if code is None or code >= 0:
+            return f"the engine ended with exit code {code}"
+        name = signal.Signals(-code).name if -code in set(signal.Signals) else str(-code)
+        if -code == signal.SIGKILL:
             return f"the engine was killed by signal {-code}"
-        return f"the engine ended with exit code {code}"
+        if overflowed(last_words):
+            return f"the program called itself until its stack was full, and crashed by {name}"
+        return f"the program crashed by {name}"
 
 
-def _engine(packed_setup: bytes, pipe: "multiprocessing.connection.Connection") -> None:
+def _engine(packed_setup: bytes, pipe: Connection, last_words: Connection, console: Connection) -> None:
     """Be the engine; imported only over there, so that the console stays light."""
+    watch_over(os.getpid(), console)
     from sim.engine.process import run
 
-    run(packed_setup, pipe)
+    run(packed_setup, pipe, last_words)
 
 
 _ENVIRONMENT = {
@@ -111,16 +192,27 @@ _ENVIRONMENT = {
 }
 
 
+_starting = threading.Lock()
+"""Held while a process is started: until then the environment is not this process's own."""
+
+
 @contextmanager
-def _engine_environment() -> Iterator[None]:
-    """Let processes started meanwhile have the engine's environment."""
-    before = {name: os.environ.get(name) for name in _ENVIRONMENT}
-    os.environ.update(_ENVIRONMENT)
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
+def engine_environment(mark: str = "") -> Iterator[None]:
+    """Let processes started meanwhile have the engine's environment and a mark; one thread at a time.
+
+    Ctrl-C in the terminal is the console's: they do not hear it until they have a session of their own.
+    """
+    wanted = {**_ENVIRONMENT, MARK: mark}
+    with _starting:
+        before = {name: os.environ.get(name) for name in wanted}
+        os.environ.update(wanted)
+        blocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            yield
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, blocked)
+            for name, value in before.items():
+                if value is None:
+                    del os.environ[name]
+                else:
+                    os.environ[name] = value

@@ -112,7 +112,10 @@ def decode(packed: bytes) -> Command:
     Raises:
         msgspec.DecodeError: the bytes are no command.
     """
-    return _decoder.decode(packed)
+    try:
+        return _decoder.decode(packed)
+    except (UnicodeDecodeError, RecursionError) as error:
+        raise msgspec.DecodeError(f"the bytes are no command: {error}") from None
 
 
 _input_decoder: msgspec.json.Decoder[InputCommand] = msgspec.json.Decoder(InputCommand)
@@ -129,4 +132,7 @@ def input_of(text: str) -> InputCommand:
     Raises:
         msgspec.DecodeError: the text is no input that this version knows.
     """
-    return _input_decoder.decode(text)
+    try:
+        return _input_decoder.decode(text)
+    except (UnicodeError, RecursionError) as error:
+        raise msgspec.DecodeError(f"the text is no input: {error}") from None

@@ -1,5 +1,7 @@
 """The way of events out of the engine: a bounded queue, and a thread that sends batches down the pipe."""
 
+import errno
+import os
 import threading
 import time
 from collections import deque
@@ -8,17 +10,23 @@ from multiprocessing.connection import Connection
 
 from sim.trace.events import AnyEvent, EventsLost, encode
 
-# Kept from before virtual time puts its own in their place.
+# Kept from before virtual time, or the keeping of last words, puts its own in their place.
 _RealThread = threading.Thread
 _real_sleep = time.sleep
 _real_lock = threading.Lock
+_leave = os._exit
 
 _PERIOD = 0.01
 """Seconds between two batches."""
+_QUIET = 100
+"""Periods without a batch after which an empty one tells that the engine is there."""
 _BATCH = 2048
 """Events after which a batch goes out at once."""
 _BOUND = 200_000
 """Events that may wait on the real clock; more are thrown away, and counted."""
+
+TRACE_CLOSED = 86
+"""The exit code of an engine whose program has closed the pipe that the trace goes down."""
 
 
 class Outbox:
@@ -46,6 +54,7 @@ class Outbox:
         self._closed = False
         self._lost = 0
         self._lost_told = 0
+        self._quiet = 0
 
     def start(self) -> None:
         """Begin to send."""
@@ -65,15 +74,24 @@ class Outbox:
     def flush(self) -> None:
         """Send everything that waits. A reader that has gone away is no error: nobody is left to tell."""
         with self._sending:
-            batch = [self._waiting.popleft() for _ in range(len(self._waiting))]
-            if self._lost > self._lost_told:
-                self._lost_told = self._lost
-                batch.append(EventsLost(batch[-1].t if batch else 0, self._lost))
-            if batch:
-                try:
-                    self._pipe.send_bytes(self._pack(batch))
-                except OSError:
-                    self._closed = True
+            waiting = len(self._waiting)
+            while waiting > 0 or self._lost > self._lost_told:
+                # A reader that was away for a while gets no more at once than otherwise.
+                batch = [self._waiting.popleft() for _ in range(min(waiting, _BATCH))]
+                waiting -= len(batch)
+                self._send(batch)
+
+    def _send(self, batch: list[AnyEvent]) -> None:
+        if self._lost > self._lost_told:
+            self._lost_told = self._lost
+            batch.append(EventsLost(batch[-1].t if batch else 0, self._lost))
+        try:
+            self._quiet = 0
+            self._pipe.send_bytes(self._pack(batch))
+        except OSError as error:
+            if error.errno == errno.EBADF:
+                _leave(TRACE_CLOSED)
+            self._closed = True
 
     def close(self, last: AnyEvent) -> None:
         """Record ``last`` as the last event of all, and send everything."""
@@ -87,3 +105,7 @@ class Outbox:
             _real_sleep(_PERIOD)
             self._before_batch()
             self.flush()
+            self._quiet += 1
+            if self._quiet >= _QUIET and not self._closed:
+                with self._sending:
+                    self._send([])

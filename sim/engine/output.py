@@ -54,15 +54,22 @@ def _pieces(line: str) -> list[str]:
 class ProcessStream(_TextStream):
     """Standard output or error of whichever process writes; their lines do not mix.
 
-    ``take`` gets the process that wrote a line, and the line.
+    ``take`` gets the process that wrote a line, and the line; ``after_line`` is called on the writing thread
+    once a line is whole.
     """
 
-    def __init__(self, take: Callable[[Process, str], None]) -> None:
+    def __init__(
+        self, take: Callable[[Process, str], None], after_line: Callable[[], None] = lambda: None
+    ) -> None:
         self._take = take
+        self._after_line = after_line
 
     def write(self, text: str) -> int:
         """Take text of the calling thread's process."""
-        return current_process().keep(self._sink).write(text)
+        length = current_process().keep(self._sink).write(text)
+        if text.endswith("\n"):
+            self._after_line()
+        return length
 
     def finish(self) -> None:
         """Hand on the last line of the calling thread's process."""

@@ -18,10 +18,15 @@ import msgspec
 
 from sim.clock import Clock, PacedClock, VirtualClock
 from sim.clock.paced_stdlib import follow
+from sim.clock.schedule import schedule_of
 from sim.clock.stdlib import live_on
 from sim.engine import commands
 from sim.engine.children import allow_children, refuse_children
+from sim.engine.descriptors import Descriptors, leave_terminal
+from sim.engine.held_up import HeldUp
+from sim.engine.last_words import keep_last_words
 from sim.engine.lines import Lines
+from sim.engine.lock_circles import LockCircles
 from sim.engine.outbox import Outbox
 from sim.engine.output import ProcessStream
 from sim.engine.program import Outcome, script
@@ -34,6 +39,7 @@ from sim.engine.standstill import Standstill
 from sim.engine.starting import Starter, StartError, is_launch_file
 from sim.engine.time_control import RealControl, VirtualControl
 from sim.engine.tuned import tuning_of
+from sim.engine.unheard import tell_of_unheard
 from sim.engine.watchdog import Watchdog
 from sim.robot.bullet import WorldUnavailable
 from sim.ros import importing
@@ -46,16 +52,24 @@ from sim.trace.events import InputGiven, Notice, Printed, RunEnded, RunStarted, 
 _GRACE = 0.5
 """Real seconds that a program gets to wind up once its run is over."""
 
+# Kept from before a clock, a program or the keeping of last words put their own in their place.
 _real_sleep = time.sleep
+_leave = os._exit
 
 
 class Engine:
     """One run of one program. ``pipe`` carries events out and commands in."""
 
-    def __init__(self, setup: RunSetup, pipe: Connection) -> None:
+    def __init__(self, setup: RunSetup, pipe: Connection, last_words: Connection) -> None:
         self._setup = setup
         self._pipe = pipe
-        clock = VirtualClock(setup.speed) if setup.clock == "virtual" else PacedClock(setup.speed or 1.0)
+        self._last_words = last_words
+        self._pid = os.getpid()
+        clock = (
+            VirtualClock(setup.speed, schedule_of(setup.seed))
+            if setup.clock == "virtual"
+            else PacedClock(setup.speed or 1.0)
+        )
         self._virtual = clock if isinstance(clock, VirtualClock) else None
         self._clock: Clock = clock
         self._contents = Contents(
@@ -78,6 +92,7 @@ class Engine:
         self._programs = Programs(self._host, self._outbox.record)
         self._starter = Starter(self._programs, self._setup)
         self._lines = Lines(self._host, self._outbox.record, self._starter, self._programs.look)
+        self._descriptors = Descriptors(self._take_line)
         self._over = False
         self._grace_begins = threading.Lock()
         self._grace_begins.acquire()
@@ -89,6 +104,9 @@ class Engine:
         threading.Thread(target=self._obey, name="commands", daemon=True).start()
         threading.Thread(target=self._leave_after_grace, name="grace", daemon=True).start()
         self._redirect_output()
+        keep_last_words(self._last_words, self._outbox.flush)
+        for program in self._setup.programs[:1]:
+            tell_of_unheard(self._tell_of_error, program.path, str(Path(program.path).parent))
         install(self._host)
         importing.install()
         self._starter.add_own_interfaces()
@@ -100,10 +118,12 @@ class Engine:
             self._virtual.before_jump = self._host.explain_waits
             Watchdog(self._virtual, self._outbox.record, self._give_up).start()
             self._virtual.on_recess = Standstill(self._virtual, self._outbox.record, self._give_up).look
+            self._virtual.on_lock_wait = LockCircles(self._virtual, self._outbox.record).look
             live_on(self._virtual)
             random.seed(0)
         elif isinstance(self._clock, PacedClock):
             follow(self._clock)
+            HeldUp(self._clock, self._outbox.record).start()
         self._schedule()
         self._end(self._run_programs())
 
@@ -183,17 +203,20 @@ class Engine:
         self._grace_begins.acquire()
         _real_sleep(_GRACE)
         self._starter.close()
-        os._exit(0)
+        _leave(0)
 
     def _give_up(self, sentence: str) -> None:
         if self._setup.speed is None:
             self._finish_run(sentence, failed=True)
-            os._exit(1)
+            _leave(1)
 
     def _end(self, outcome: Outcome) -> None:
+        if os.getpid() != self._pid:
+            _leave(outcome.status)  # a program forked, and this is the other one
+        self._descriptors.finish()
         self._finish_run(outcome.sentence, failed=outcome.failed)
         self._starter.close()
-        os._exit(0)
+        _leave(0)
 
     def _redirect_output(self) -> None:
         def stream(error: bool) -> ProcessStream:
@@ -205,17 +228,23 @@ class Engine:
                 else:
                     process.keep(self._tell_of_hidden_output)
 
-            return ProcessStream(take)
+            # Python's own logging writes errors while it holds a lock that does not live on the clock.
+            return ProcessStream(take) if error else ProcessStream(take, self._clock.switch_point)
 
         sys.stdout = stream(error=False)
         sys.stderr = stream(error=True)
 
-    def _settle_children(self) -> None:
-        def take(text: str, error: bool) -> None:
-            self._outbox.record(Printed(self._clock.now(), text, error))
+        self._descriptors.detach()
 
+    def _take_line(self, text: str, error: bool) -> None:
+        self._outbox.record(Printed(self._clock.now(), text, error))
+
+    def _tell_of_error(self, sentence: str) -> None:
+        self._outbox.record(Notice(self._clock.now(), Severity.ERROR, sentence))
+
+    def _settle_children(self) -> None:
         if self._virtual is None:
-            allow_children(self._host, self._outbox, take)
+            allow_children(self._host, self._outbox, self._pipe)
         else:
             refuse_children()
 
@@ -240,7 +269,7 @@ class Engine:
             try:
                 command = commands.decode(self._pipe.recv_bytes())
             except (EOFError, OSError):
-                os._exit(0)  # the console is gone
+                _leave(0)  # the console is gone
             except msgspec.DecodeError as error:
                 self._outbox.record(Notice(self._clock.now(), Severity.ERROR, f"unreadable command: {error}"))
                 continue
@@ -289,14 +318,17 @@ def _nobody_waits(_end: object) -> None:
     """Take the end of a program that nobody is told of."""
 
 
-def run(packed_setup: bytes, pipe: Connection) -> None:
-    """Be the engine process of one run."""
+def run(packed_setup: bytes, pipe: Connection, last_words: Connection) -> None:
+    """Be the engine process of one run; where its threads stand as it crashes goes to ``last_words``."""
+    leave_terminal()
     setup = msgspec.msgpack.decode(packed_setup, type=RunSetup)
-    # Ctrl-C in the terminal reaches every process of its group; the console decides what it means.
-    os.setpgid(0, 0)
-    engine = Engine(setup, pipe)
+    os.set_inheritable(pipe.fileno(), False)
+    engine = Engine(setup, pipe, last_words)
     try:
         engine.run()
+    except KeyboardInterrupt:  # it was stopped before its program began, and has told so
+        engine._starter.close()
+        _leave(0)
     except WorldUnavailable as error:
         engine._finish_run(str(error), failed=True)
-        os._exit(1)
+        _leave(1)

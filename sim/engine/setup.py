@@ -85,7 +85,9 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     without programs ends with its lines. ``inputs``, in the order of their
     moments, need the virtual clock. ``groups`` and ``periods`` change the programs' callbacks, the later of
     two changes of one callback counts. ``sensor_rate`` (Hz) is that of the robot's odometry and scans, None
-    leaves the usual one. With ``contents`` the trace has what published messages hold.
+    leaves the usual one. With ``contents`` the trace has what published messages hold. ``seed`` chooses,
+    on the virtual clock, among the orders in which a machine could run threads; None and 0 are first come,
+    first served.
     """
 
     title: str
@@ -104,3 +106,4 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     groups: tuple[GroupChange, ...] = ()
     periods: tuple[PeriodChange, ...] = ()
     contents: bool = False
+    seed: int | None = None

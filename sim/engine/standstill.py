@@ -40,5 +40,5 @@ class Standstill:
         return (
             f"time stands still: {thread.name} ({place_of(thread)}) and whatever else runs came to "
             f"{recess * WAITS_TO_RECESS:,} waits in one moment; a loop that sleeps 0 s never lets time pass: "
-            "let it sleep a little, or run with the real clock"
+            "let it sleep a little, or run the file by itself with --clock real"
         )

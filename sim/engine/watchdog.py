@@ -53,7 +53,8 @@ class Watchdog:
         thread = self._clock.current
         return (
             f"{thread.name} does not come to a wait ({place_of(thread)}): it computes without end, "
-            "or waits for something outside the virtual clock; mend it, or run with the real clock"
+            "or waits for something outside the virtual clock; mend it, "
+            "or run the file by itself with --clock real"
         )
 
 

@@ -57,7 +57,8 @@ def _import_bullet() -> Any:
     except ImportError as missing:
         raise WorldUnavailable(
             f"The robot's world needs PyBullet, which this Python cannot import ({missing}): install it with "
-            f"`{sys.executable} -m pip install pybullet`; Python 3.11 has a ready-made wheel."
+            f"`{sys.executable} -m pip install pybullet`; Python 3.11 has a ready-made wheel, "
+            "and `cbtui doctor` says more."
         ) from missing
 
 

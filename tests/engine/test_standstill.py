@@ -82,6 +82,7 @@ def test_that_time_stands_is_told_once_with_the_place(tmp_path: Path) -> None:
         "time stands still: MainThread (node.py:5, in dawdle) and whatever else runs came to 10,000 waits "
         "in one moment"
     ]
+    assert told[0].text.endswith("let it sleep a little, or run the file by itself with --clock real")
     ended = run.events[-1]
     assert isinstance(ended, RunEnded)
     assert ended.failed

@@ -23,6 +23,7 @@ def test_a_thread_that_never_comes_to_a_wait_is_named_with_its_line(monkeypatch:
     notice = told.get()
     assert isinstance(notice, Notice)
     assert "MainThread does not come to a wait (test_watchdog.py:" in notice.text
+    assert notice.text.endswith("mend it, or run the file by itself with --clock real")
     assert given_up.get().startswith("MainThread does not come to a wait")
 
 

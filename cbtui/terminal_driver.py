@@ -1,0 +1,45 @@
+"""What the console reads keys from and draws to, where that is a terminal: it may be closed at any moment."""
+
+import os
+from collections.abc import Callable
+from typing import IO, Any, cast
+
+from textual.drivers.linux_driver import LinuxDriver
+
+
+class TerminalDriver(LinuxDriver):
+    """Draws to nothing once the terminal is gone, so that the console comes to its end all the same."""
+
+    def __init__(self, *args: Any, **options: Any) -> None:
+        super().__init__(*args, **options)
+        terminal: Any = self._file
+        self._file = cast("Any", _Lasting(terminal))
+
+
+class _Lasting:
+    """A file of a terminal that takes what is written even when the terminal is gone."""
+
+    def __init__(self, file: IO[str]) -> None:
+        self._file = file
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._file, name)
+
+    def write(self, text: str) -> int:
+        """Write, to nowhere if need be."""
+        self._surely(lambda: self._file.write(text))
+        return len(text)
+
+    def flush(self) -> None:
+        """Send what was written."""
+        self._surely(self._file.flush)
+
+    def _surely(self, step: Callable[[], object]) -> None:
+        try:
+            step()
+        except OSError:
+            # What Python still holds back is written as it ends, and must find a place too.
+            nowhere = os.open(os.devnull, os.O_WRONLY)
+            os.dup2(nowhere, self._file.fileno())
+            os.close(nowhere)
+            step()

@@ -1,0 +1,146 @@
+"""Nodes that spoil what they share with the engine: it goes on, tells of it, and can be ended."""
+
+import signal
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from cbtui.live_run import State
+from tests.faults.support import FIRST, Provoked, node_with, provoked, still_here
+
+AT = f"node.py:{FIRST}"
+
+
+class GoesOn(NamedTuple):
+    """What a node does, after which it goes on; one of the engine's notices, and one line of its log."""
+
+    fault: str
+    notice: str = ""
+    line: str = ""
+
+
+FAULTS = {
+    "an exception in a destructor": GoesOn(
+        "class D:\n    def __del__(self): 1 / 0\nD()",
+        f"node.py:{FIRST + 1}: ZeroDivisionError: division by zero; Python drops what comes out of "
+        "N.fault.<locals>.D.__del__",
+        "ZeroDivisionError: division by zero",
+    ),
+    "an exception in a thread": GoesOn(
+        "def work(): 1 / 0\nthreading.Thread(target=work, name='worker').start()",
+        f"{AT}: ZeroDivisionError: division by zero; worker ended by it, and the rest goes on",
+        "ZeroDivisionError: division by zero",
+    ),
+    "threads that are left": GoesOn(
+        "for _ in range(50): threading.Thread(target=time.sleep, args=(1e6,)).start()"
+    ),
+    "stdout is closed": GoesOn("sys.stdout.close()\nos.close(1)\nos.close(2)\nos.close(0)"),
+    "a shell writes to the terminal": GoesOn("os.system('echo from a shell')", line="from a shell"),
+    "C writes to the terminal": GoesOn("os.write(1, b'raw\\n')\nos.write(2, b'raw too\\n')", line="raw too"),
+    "the keyboard is read": GoesOn("print('keys:', os.read(0, 10))", line="keys: b''"),
+    "the terminal is opened": GoesOn(
+        "try: open('/dev/tty')\nexcept OSError as error: print('no', error.filename)", line="no /dev/tty"
+    ),
+    "the folder is changed": GoesOn("os.chdir('/')\nprint('in', os.getcwd())", line="in /"),
+    "signals are ignored": GoesOn(
+        "for each in (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1, signal.SIGCHLD):\n"
+        "    signal.signal(each, signal.SIG_IGN)"
+    ),
+    "time is patched": GoesOn(
+        "time.sleep = time.monotonic = time.time = time.perf_counter = lambda *_: 0.0\n"
+        "threading.Lock = threading.Thread = None\nprint('patched')",
+        line="patched",
+    ),
+    "its file is deleted": GoesOn("os.remove(__file__)"),
+    "velocities that are no numbers": GoesOn(
+        "velocity = Twist()\nvelocity.linear.x = float('nan')\n"
+        "self.create_publisher(Twist, '/cmd_vel', 10).publish(velocity)"
+    ),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_a_node_that_goes_on_after_its_fault_is_still_followed_and_can_be_ended(
+    folder: Path, name: str
+) -> None:
+    fault, notice, line = FAULTS[name]
+    with provoked(node_with(folder, fault)) as run:
+        run.until(lambda live: still_here(live) and all(_is_told(run, notice, line)))
+        assert run.live.alive
+        assert run.notices == ([notice] if notice else [])
+        _stop_in_time(run)
+
+
+def _is_told(run: Provoked, notice: str, line: str) -> tuple[bool, bool]:
+    return not notice or notice in run.notices, not line or line in run.printed
+
+
+def _stop_in_time(run: Provoked) -> None:
+    began = time.monotonic()
+    run.recorded = run.live.stop()
+    assert time.monotonic() - began < 2.0
+
+
+@pytest.mark.parametrize(
+    "name", ["an exception in a destructor", "an exception in a thread", "time is patched"]
+)
+def test_on_virtual_time_too(folder: Path, name: str) -> None:
+    fault, notice, line = FAULTS[name]
+    with provoked(node_with(folder, fault), "virtual") as run:
+        run.until(lambda live: still_here(live) and all(_is_told(run, notice, line)))
+        assert run.live.alive
+
+
+def test_what_comes_out_of_a_destructor_again_and_again_is_told_once(folder: Path) -> None:
+    fault = FAULTS["an exception in a destructor"].fault
+    with provoked(node_with(folder, fault, again=True)) as run:
+        run.until(lambda live: still_here(live) and len(live.timeline.logs) > 20)
+        assert len(run.notices) == 1
+
+
+def test_a_file_that_is_gone_is_told_of_when_it_is_run_again(folder: Path) -> None:
+    path = node_with(folder, "os.remove(__file__)\nos._exit(1)")
+    with provoked(path) as run:
+        run.to_its_end()
+    for recording in folder.glob("*.mcap"):
+        recording.unlink()
+    with provoked(path) as again:
+        again.to_its_end()
+        assert again.sentence.startswith("the run is over: node.py cannot be read: No such file or directory")
+        assert again.live.state is State.ENDED
+
+
+@pytest.mark.parametrize(
+    "fault",
+    ["lock = threading.Lock()\nlock.acquire()\nlock.acquire()", "os.read(os.pipe()[0], 1)"],
+    ids=["a lock", "a pipe"],
+)
+def test_a_callback_that_waits_for_ever_on_the_real_clock_is_told_of_with_its_place(
+    folder: Path, fault: str
+) -> None:
+    with provoked(node_with(folder, fault)) as run:
+        run.until(lambda _: run.notices != [])
+        (notice,) = run.notices
+        line = FIRST + fault.count("\n")
+        assert notice.startswith(f"tick has not come back for 3 s (node.py:{line}, in fault): it computes")
+        _stop_in_time(run)
+
+
+def test_a_callback_that_sleeps_long_is_not_taken_for_one_that_hangs(folder: Path) -> None:
+    with provoked(node_with(folder, "time.sleep(4)")) as run:
+        run.until(still_here)
+        assert run.notices == []
+
+
+def test_a_node_that_destroys_itself_can_still_be_ended(folder: Path) -> None:
+    with provoked(node_with(folder, "self.destroy_node()\nprint('destroyed')")) as run:
+        run.until(lambda _: "destroyed" in run.printed)
+        _stop_in_time(run)
+
+
+def test_a_signal_that_ends_programs_ends_this_one_in_a_sentence(folder: Path) -> None:
+    with provoked(node_with(folder, f"os.kill(os.getpid(), {int(signal.SIGALRM)})")) as run:
+        run.to_its_end()
+        assert run.live.loss == "the program crashed by SIGALRM"

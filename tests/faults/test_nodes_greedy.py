@@ -1,0 +1,110 @@
+"""Nodes that take more than there is: memory and processes are watched from outside, and all are ended."""
+
+from pathlib import Path
+
+import pytest
+
+from cbtui import cli, warden
+from cbtui.live_run import State
+from tests.faults.support import FIRST, node_with, provoked, still_here
+
+LITTLE = "0.3"
+"""GB that a node may use here: twice what an engine takes."""
+
+
+@pytest.mark.parametrize("clock", ["real", "virtual"])
+@pytest.mark.parametrize(
+    "fault",
+    ["kept = []\nwhile True: kept.append(bytearray(b'x') * 2_000_000)", "self.kept = b'x' * 3_000_000_000"],
+    ids=["bit by bit", "at once"],
+)
+def test_a_node_that_takes_memory_without_end_is_ended_and_told_with_its_place(
+    folder: Path, fault: str, clock: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(warden.CEILING, LITTLE)
+    with provoked(node_with(folder, fault), clock) as run:
+        run.to_its_end()
+        assert run.live.loss is not None
+        assert run.live.loss.startswith("the node used more than 0.3 GB of memory and was ended (node.py:")
+        assert run.live.loss.endswith("in fault)")
+        assert run.live.state is State.LOST
+
+
+def test_the_memory_of_what_a_node_starts_counts(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv(warden.CEILING, LITTLE)
+    hog = "[sys.executable, '-c', 'import time; x = b\"x\" * 900_000_000; time.sleep(100)']"
+    with provoked(node_with(folder, f"subprocess.Popen({hog})")) as run:
+        run.to_its_end()
+        assert run.live.loss is not None
+        assert run.live.loss.startswith("the node used more than 0.3 GB of memory and was ended")
+
+
+def test_the_ceiling_is_what_the_environment_says_and_never_more_than_half_of_the_machine_else(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setenv(warden.CEILING, "1.5")
+    assert warden.ceiling() == 1_500_000_000
+    monkeypatch.delenv(warden.CEILING)
+    assert 0 < warden.ceiling() <= 4_000_000_000
+
+
+@pytest.mark.parametrize("text", ["", "much", "0", "-1", "nan", "inf"])
+def test_a_ceiling_that_is_none_is_refused_in_a_sentence(
+    text: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setenv(warden.CEILING, text)
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["run", "hello"])
+    assert ended.value.code == 2
+    said = f"cbtui: CBTUI_MEMORY_GB has to be a number of GB above 0, such as 4, and is {text!r}\n"
+    assert capsys.readouterr().err == said
+
+
+def test_a_node_that_forks_goes_on_and_its_other_half_is_told_that_it_has_no_ros(folder: Path) -> None:
+    with provoked(node_with(folder, "os.fork()")) as run:
+        run.until(
+            lambda live: still_here(live) and any("cannot use ROS here" in line for line in run.printed)
+        )
+        assert run.live.alive
+
+
+def test_forking_does_not_live_on_virtual_time_and_says_so(folder: Path) -> None:
+    with provoked(node_with(folder, "os.fork()"), "virtual") as run:
+        run.to_its_end()
+        assert f"node.py:{FIRST}: the program raised NotImplementedError: os.fork does not" in run.sentence
+
+
+def test_a_node_that_forks_without_end_is_ended_with_all_that_came_of_it(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(warden, "_MOST_PROCESSES", 12)
+    fault = """
+for _ in range(40):
+    if os.fork() == 0:
+        os.setsid()
+        time.sleep(100)
+time.sleep(9)
+"""
+    with provoked(node_with(folder, fault)) as run:
+        run.to_its_end()
+        assert run.live.loss is not None
+        assert run.live.loss.startswith("the node had more than 12 processes and was ended (node.py:")
+
+
+def test_nothing_that_a_node_starts_outlives_it(folder: Path) -> None:
+    fault = """
+os.system('sleep 300 &')
+subprocess.Popen(['sleep', '300'], start_new_session=True)
+subprocess.Popen(['sh', '-c', 'setsid sleep 300 & exit'])
+"""
+    with provoked(node_with(folder, fault)) as run:
+        run.until(still_here)
+
+
+def test_nothing_that_a_node_started_outlives_its_crash(folder: Path) -> None:
+    fault = (
+        "subprocess.Popen(['sleep', '300'], start_new_session=True)\nos.system('sleep 300 &')\nos._exit(1)"
+    )
+    with provoked(node_with(folder, fault)) as run:
+        run.to_its_end()
+        assert run.live.state is State.LOST

@@ -1,0 +1,88 @@
+"""Nodes that rage on: meanwhile the console answers keys, and meanwhile ``ctrl+r`` runs the file again."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from cbtui import warden
+from cbtui.live_run import LiveRun, State
+from sim.trace.recording import read
+from tests.faults.support import ANSWERED, FIRST, console_on, node_with
+
+CROWD = 2500
+"""Entities of which each would cost a little of every frame."""
+
+
+class Rages(NamedTuple):
+    """What a node does at each call of its timer, and the clock on which it does it."""
+
+    fault: str
+    clock: str = "real"
+    entities: int = 1
+    """How many the console knows of when the first key is pressed."""
+
+
+FAULTS = {
+    "loops for ever": Rages("while True: pass"),
+    "loops for ever on virtual time": Rages("while True: pass", "virtual"),
+    "prints 100 MB": Rages("for _ in range(20): print('x' * 50_000)"),
+    "publishes 1 MB at 1 kHz": Rages(
+        "if not hasattr(self, 'big'):\n"
+        "    self.big = self.create_publisher(String, 'big', 10)\n"
+        "    self.create_subscription(String, 'big', lambda _: None, 10)\n"
+        "    self.message = String(data='x' * 1_000_000)\n"
+        "for _ in range(20): self.big.publish(self.message)"
+    ),
+    "makes 1,000 topics a second": Rages(
+        "for each in range(20): self.create_publisher(String, f't{self.count}_{each}', 10)"
+    ),
+    "makes timers without end": Rages(
+        "for _ in range(100): self.create_timer(1000.0, self.tick)", entities=CROWD
+    ),
+    "makes services without end": Rages(
+        "for each in range(100): self.create_service(SetBool, f's{self.count}_{each}', lambda _, r: r)",
+        entities=CROWD,
+    ),
+}
+
+
+def begun(live: LiveRun) -> bool:
+    """Whether the node's timer is known."""
+    return bool(live.timeline.entities)
+
+
+@pytest.mark.parametrize("name", FAULTS)
+async def test_the_console_answers_while_a_node_rages_and_runs_it_again(folder: Path, name: str) -> None:
+    fault, clock, entities = FAULTS[name]
+    async with console_on(node_with(folder, fault, again=True), clock) as console:
+        await console.until(lambda live: len(live.timeline.entities) >= entities)
+        console.app.simulate_key("R")
+        assert await console.answers() < ANSWERED
+        first = console.screen.live_run
+        console.app.simulate_key("ctrl+r")
+        await console.until(lambda live: live is not first and begun(live))
+    (path,) = folder.glob("*.mcap")
+    assert read(path).damage is None
+
+
+async def test_a_loop_without_end_on_the_real_clock_is_told_on_screen_with_its_place(folder: Path) -> None:
+    async with console_on(node_with(folder, "while True: pass")) as console:
+        await console.until(lambda live: bool(live.timeline.notices))
+        (notice,) = console.screen.live_run.timeline.notices
+        assert notice.text.startswith(f"tick has not come back for 3 s (node.py:{FIRST}, in fault)")
+
+
+async def test_a_node_that_took_too_much_memory_can_be_run_again_with_the_key(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(warden.CEILING, "0.4")
+    path = node_with(folder, "self.kept = b'x' * 3_000_000_000")
+    async with console_on(path) as console:
+        await console.until(lambda live: live.state is State.LOST)
+        assert "the node used more than 0.4 GB of memory" in str(console.screen.live_run.loss)
+        first = console.screen.live_run
+        node_with(folder, "pass")
+        await console.pilot.press("r")
+        await console.until(lambda live: live is not first and begun(live))
+        assert console.screen.live_run.alive

@@ -1,0 +1,197 @@
+"""Engines that are killed or stopped from outside, pipes that break, consoles that are killed."""
+
+import fcntl
+import os
+import signal
+import struct
+import subprocess
+import sys
+import termios
+import time
+from collections.abc import Callable
+from multiprocessing import active_children
+from pathlib import Path
+from queue import Queue
+from threading import Event
+
+import pytest
+
+from cbtui.live_run import State
+from cbtui.session import Session
+from cbtui.silence import SILENT, Silence
+from cbtui.widgets.diagnosis_line import DiagnosisLine
+from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
+from sim.trace.events import AnyEvent, Notice, Printed, RunStarted, Severity
+from sim.trace.recording import read
+from tests.faults.support import ANSWERED, PATIENCE, Console, console_on, node_with, nothing_left, still_here
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc")
+
+IN_C = "open('reached', 'w')\nsum(range(10 ** 15))"
+"""Never comes back, and lets no other thread of Python's go on."""
+WITH_CHILDREN = """\
+if os.fork() == 0:
+    time.sleep(300)
+subprocess.Popen(['sleep', '300'], start_new_session=True)
+subprocess.Popen(['sh', '-c', 'setsid sleep 300 & exit'])
+open('reached', 'w')
+"""
+MOST_IN_A_SOCKET = 50_000
+"""Bytes of small batches that come to this in no test: only the beginning of a large one does."""
+
+
+def engine() -> int:
+    """The number of the only engine's process."""
+    (process,) = (each for each in active_children() if each.name == "cbtui-engine")
+    assert process.pid is not None
+    return process.pid
+
+
+def comes_true(condition: Callable[[], bool]) -> bool:
+    """Wait until something is so; whether it was in time."""
+    deadline = time.monotonic() + PATIENCE
+    while not condition():
+        if time.monotonic() > deadline:
+            return False
+        time.sleep(0.01)
+    return True
+
+
+def said(console: Console) -> str:
+    """What the line of the diagnosis says."""
+    diagnosis = console.screen.query_one(DiagnosisLine).diagnosis
+    return "" if diagnosis is None else diagnosis.text
+
+
+async def test_an_engine_that_is_killed_is_told_of_and_can_be_run_again(folder: Path) -> None:
+    async with console_on(node_with(folder, "pass")) as console:
+        await console.until(still_here)
+        os.kill(engine(), signal.SIGKILL)
+        await console.until(lambda live: live.state is State.LOST)
+        assert await console.answers() < ANSWERED
+        assert said(console) == "engine lost: killed by signal 9; r runs again"
+        await console.pilot.press("r")
+        await console.until(still_here)
+
+
+async def test_an_engine_that_is_stopped_is_told_of_and_goes_on_when_it_may(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("cbtui.session.LOOK", 0.05)
+    async with console_on(node_with(folder, "pass")) as console:
+        await console.until(still_here)
+        stopped = engine()
+        os.kill(stopped, signal.SIGSTOP)
+        await console.until(lambda live: live.state is State.SILENT)
+        assert await console.answers() < ANSWERED
+        assert said(console) == "engine does not answer: its process was stopped; r runs again"
+        os.kill(stopped, signal.SIGCONT)
+        await console.until(lambda live: live.state is State.LIVE)
+        os.kill(stopped, signal.SIGSTOP)
+        await console.until(lambda live: live.state is State.SILENT)
+        await console.pilot.press("r")
+        await console.until(lambda live: live.state is State.LIVE and still_here(live))
+        assert engine() != stopped
+
+
+async def test_an_engine_that_code_in_c_keeps_is_told_of(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("cbtui.session.LOOK", 0.05)
+    async with console_on(node_with(folder, IN_C)) as console:
+        await console.until(lambda live: live.state is State.SILENT)
+        assert await console.answers() < ANSWERED
+        assert said(console).startswith("engine does not answer: code in C keeps it")
+
+
+def test_a_machine_that_slept_says_nothing_of_the_engine() -> None:
+    silence = Silence()
+    silence.came([RunStarted(0, "", "real", 0), Printed(7, "last", error=False)])
+    assert [silence.nothing_came(stopped=False) for _ in range(9)] == [[]] * 9
+    (notice,) = silence.nothing_came(stopped=False)
+    assert isinstance(notice, Notice)
+    assert (notice.t, notice.severity) == (7, Severity.WARN)
+    assert notice.text.startswith(SILENT)
+    assert silence.nothing_came(stopped=False) == []
+    assert silence.came([]) == [Notice(7, Severity.INFO, "the engine answers again")]
+    assert silence.came([]) == []
+
+
+def test_a_pipe_that_breaks_in_the_middle_of_a_message_gives_what_came_whole(folder: Path) -> None:
+    path = node_with(folder, "print('x' * 20_000_000)")
+    news: Queue[list[AnyEvent] | str | None] = Queue()
+    go_on = Event()
+
+    def deliver(events: list[AnyEvent]) -> None:
+        news.put(events)
+        go_on.wait(PATIENCE)
+
+    programs = (ProgramSetup(str(path)),)
+    setup = RunSetup(title="", programs=programs, clock="real", robot=RobotUse.NEVER)
+    session = Session(setup, deliver, news.put)
+    with nothing_left():
+        session.start()
+        assert comes_true(lambda: _waiting(session._pipe.fileno()) > MOST_IN_A_SOCKET)
+        os.kill(engine(), signal.SIGKILL)
+        go_on.set()
+        came = []
+        while isinstance(batch := news.get(timeout=PATIENCE), list):
+            came += batch
+        session.stop()
+    assert isinstance(came[0], RunStarted)
+    assert not any(isinstance(event, Printed) for event in came)
+    assert batch == "the engine was killed by signal 9"
+
+
+def _waiting(descriptor: int) -> int:
+    """Bytes that can be read."""
+    (number,) = struct.unpack("i", fcntl.ioctl(descriptor, termios.FIONREAD, b"\0" * 4))
+    return int(number)
+
+
+@pytest.mark.parametrize("fault", [WITH_CHILDREN, IN_C], ids=["with children", "kept by code in C"])
+def test_a_console_that_is_killed_takes_its_engine_and_what_it_started_along(
+    fault: str, folder: Path
+) -> None:
+    path = node_with(folder, fault)
+    with nothing_left(within=PATIENCE):
+        console = _console(path, "--record", "run.mcap")
+        assert comes_true((folder / "reached").exists)
+        console.kill()
+        console.communicate()
+    recording = read(folder / "run.mcap")
+    assert list(recording.batches()) or recording.damage
+    assert recording.damage is not None
+    assert "breaks off" in recording.damage
+
+
+def test_a_machine_that_slept_finishes_its_run(folder: Path) -> None:
+    path = node_with(folder, "open('reached', 'w')")
+    with nothing_left():
+        console = _console(path, "--for", "1", "--record", "run.mcap")
+        assert comes_true((folder / "reached").exists)
+        both = [console.pid, *_engines_of(console.pid)]
+        assert len(both) == 2
+        for each in both:
+            os.kill(each, signal.SIGSTOP)
+        time.sleep(2)  # it is how long the machine sleeps, and nothing is waited for
+        for each in both:
+            os.kill(each, signal.SIGCONT)
+        _, complaints = console.communicate(timeout=PATIENCE)
+    assert console.returncode == 0
+    assert SILENT not in complaints.decode()
+    recording = read(folder / "run.mcap")
+    times = [event.t for events in recording.batches() for event in events]
+    assert recording.damage is None
+    assert max(times) >= 1_000_000_000
+
+
+def _console(path: Path, *words: str) -> "subprocess.Popen[bytes]":
+    """A console without a screen, on the real clock."""
+    command = [sys.executable, "-m", "cbtui", "run", str(path), "--clock", "real", "--no-robot", *words]
+    return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
+
+
+def _engines_of(console: int) -> list[int]:
+    children = Path(f"/proc/{console}/task/{console}/children").read_text().split()
+    return [int(each) for each in children if b"spawn_main" in Path(f"/proc/{each}/cmdline").read_bytes()]

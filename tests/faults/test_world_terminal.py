@@ -1,0 +1,47 @@
+"""A terminal's window that is closed, and a terminal in which the console is told to hang up."""
+
+import signal
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from sim.trace.recording import read
+from tests.faults.support import PATIENCE, nothing_left
+from tests.terminal.console import TerminalConsole, opened
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc")
+
+_ESCAPE = "\x1b"
+"""Out of the question what one expects, without an answer."""
+HUNG_UP = 128 + signal.SIGHUP
+
+
+@contextmanager
+def recording_console(home: Path) -> Iterator[TerminalConsole]:
+    """A console that records; when it has ended nothing of it may be left, and the recording is whole."""
+    with nothing_left(within=PATIENCE), opened(100, 30, home, "open", "split-groups") as console:
+        console.until("What do you expect?")
+        console.press(_ESCAPE)
+        console.until("LIVE")
+        console.press("R")
+        console.until("Recording to")
+        yield console
+    (path,) = Path.cwd().glob("*.mcap")
+    assert read(path).damage is None
+
+
+def test_a_console_whose_window_is_closed_ends_and_finishes_its_recording(tmp_path: Path) -> None:
+    with recording_console(tmp_path) as console:
+        console.close_window()
+        assert console.ended() == HUNG_UP
+
+
+def test_a_console_that_is_told_to_hang_up_gives_the_terminal_back(tmp_path: Path) -> None:
+    with recording_console(tmp_path) as console:
+        console.process.send_signal(signal.SIGHUP)
+        assert console.ended() == HUNG_UP
+        assert console.left_on() == set()
+        assert "Recorded" in console.said()
