@@ -72,7 +72,8 @@ class Look:
         for entity in self.timeline.entities.values():
             if entity.node == node:
                 for span in self.timeline.spans_of(entity.id, whole)[:1]:
-                    return self.timeline.threads[span.thread].process
+                    thread = self.timeline.threads.get(span.thread)
+                    return 0 if thread is None else thread.process
         return 0
 
     @cached_property
@@ -81,8 +82,16 @@ class Look:
         return frozenset(call.id for call in self.now.pending_calls)
 
     def entities(self, *kinds: EntityKind) -> Iterator[Entity]:
-        """The entities of some kinds, of all if none is named, in order of appearance."""
-        return (each for each in self.timeline.entities.values() if not kinds or each.kind in kinds)
+        """The entities of some kinds, of all if none is named, that did anything in the window, or still do.
+
+        What nothing happened to breaks no rule: a look costs nothing for it.
+        """
+        return (each for each in self._active if not kinds or each.kind in kinds)
+
+    @cached_property
+    def _active(self) -> list[Entity]:
+        entities, active = self.timeline.entities, self.timeline.active_since(self.window.start)
+        return [entities[each] for each in sorted(active)]
 
     def spans(self, entity: EntityId) -> tuple[Span, ...]:
         """The calls of an entity that lasted into the window, in order of start."""

@@ -253,10 +253,10 @@ class Standstill:
 
     def _carried(self) -> Iterator[tuple[CallId, EntityId]]:
         """In whose queue each request and reply lies."""
-        for entity, queue in self._moment.queues.items():
-            if self._timeline.entities[entity].kind in (EntityKind.CLIENT, EntityKind.SERVICE):
-                for each in queue.messages:
-                    yield each.id, entity
+        for entity in self._timeline.entities.values():
+            if entity.kind in (EntityKind.CLIENT, EntityKind.SERVICE):
+                for each in self._moment.queues[entity.id].messages:
+                    yield each.id, entity.id
 
     def _call(self, number: CallId) -> Call | None:
         """A call by its number; numbers are given in the order of sending."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import os.path
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from glob import glob
@@ -11,6 +12,11 @@ from pathlib import Path
 from typing import Any
 
 from sim.packages.errors import PackageError
+
+_LONGEST = 100_000
+"""Characters or items of a value: a few lines can double one until no memory holds it."""
+_WIDE = re.compile(r"[%{][^%{}]*(\d{4}|\*)|\{[^{}]*\{")
+"""A place to fill in that asks for thousands of columns, or for as many as something else says."""
 
 
 @dataclass(slots=True)
@@ -35,9 +41,14 @@ class Expressions:
         if read is None:
             raise self.trouble(node)
         try:
-            return read(self, node)
-        except (TypeError, ValueError, KeyError, IndexError, OSError) as error:
+            value = read(self, node)
+        except (TypeError, ValueError, LookupError, AttributeError, OSError, NotImplementedError) as error:
             raise PackageError(f"{self.place(node)}: {ast.unparse(node)} fails: {error}") from None
+        except (MemoryError, OverflowError, RecursionError):
+            raise PackageError(f"{self.place(node)}: an expression in it becomes too large") from None
+        if isinstance(value, (str, bytes, list, tuple, dict)) and len(value) > _LONGEST:
+            raise PackageError(f"{self.place(node)}: an expression in it becomes too large")
+        return value
 
     def carry_out(self, statement: ast.stmt) -> None:
         """Take note of an import, an assignment or an addition to a list; nothing else has an effect."""
@@ -102,7 +113,7 @@ class Expressions:
             return function(self.path.parent, *map(self.value, node.args), **options)
         if isinstance(node.func, ast.Attribute) and node.func.attr in _TEXT_METHODS:
             text = self.value(node.func.value)
-            if isinstance(text, str):
+            if isinstance(text, str) and not _WIDE.search(text):
                 return getattr(text, node.func.attr)(*map(self.value, node.args))
         raise self.trouble(node)
 
@@ -140,7 +151,7 @@ class Expressions:
             return self.value(node.left) + self.value(node.right)
         if isinstance(node.op, ast.Mod):
             text = self.value(node.left)
-            if isinstance(text, str):
+            if isinstance(text, str) and not _WIDE.search(text):
                 return text % self.value(node.right)
         raise self.trouble(node)
 
@@ -177,6 +188,8 @@ _READERS: Mapping[type[ast.expr], Callable[[Expressions, Any], Any]] = {
 
 
 def _glob(root: Path, pattern: str, *, recursive: bool = False) -> list[str]:
+    if Path(pattern).is_absolute() or ".." in Path(pattern).parts:
+        raise ValueError("it looks outside of the package")
     return sorted(glob(pattern, root_dir=root, recursive=recursive))  # noqa: PTH207 -- it is that function
 
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from xml.etree import ElementTree
 
 from sim.packages.errors import PackageError
 
 MANIFEST = "package.xml"
+_NAME = re.compile(r"\w[\w-]*", re.ASCII)
+"""Folders are called like that, so there is no path in it."""
 _LARGEST = 1_000_000
 """Bytes; a real manifest has a few thousand."""
 
@@ -31,6 +34,8 @@ def read_name(folder: Path) -> str:
     name = (root.findtext("name") or "").strip()
     if root.tag != "package" or not name:
         raise PackageError(f"{path}: a package manifest needs <package> with a <name> in it")
+    if not _NAME.fullmatch(name):
+        raise PackageError(f"{path}: {name!r} is no name of a package; use letters, digits, '_' and '-'")
     return name
 
 

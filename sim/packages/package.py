@@ -113,7 +113,7 @@ class Package:
         return {
             place.relative_to(share): path
             for place, path in self._installed.data_files.items()
-            if place.is_relative_to(share)
+            if place.is_relative_to(share) and ".." not in place.parts
         }
 
     def launch_file(self, name: str) -> Path:
@@ -155,8 +155,11 @@ class Package:
         (prefix / "share" / self.name).mkdir(parents=True)
         for place, path in links:
             link = prefix / place
-            link.parent.mkdir(parents=True, exist_ok=True)
-            link.symlink_to(path.resolve())
+            try:
+                link.parent.mkdir(parents=True, exist_ok=True)
+                link.symlink_to(path.resolve())
+            except (OSError, ValueError):  # a file where another one needs a folder, or a name that is none
+                raise PackageError(f"package {self.name!r} cannot install {path} as {place}") from None
         return prefix
 
     @property

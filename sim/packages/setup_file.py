@@ -59,6 +59,8 @@ def _read_py(path: Path, installed: Installed) -> None:
         tree = ast.parse(path.read_bytes())
     except SyntaxError as error:
         raise PackageError(f"{path}:{error.lineno}: {error.msg}") from None
+    except (ValueError, RecursionError, MemoryError):  # of the parser's own: its stack has an end
+        raise PackageError(f"{path}: it is no Python that can be read") from None
     names = Expressions(path)
     for statement in _statements(tree.body):
         call = _setup_call(statement)
@@ -164,7 +166,10 @@ def _take_entry_point(text: str, origin: str, installed: Installed) -> None:
 
 
 def _read_cfg(path: Path, installed: Installed) -> None:
-    sections = _sections(path.read_text(encoding="utf-8"), str(path))
+    try:
+        sections = _sections(path.read_text(encoding="utf-8"), str(path))
+    except (OSError, UnicodeDecodeError):
+        raise PackageError(f"{path}: it cannot be read as UTF-8 text") from None
     scripts = sections.get("options.entry_points", {}).get("console_scripts", "")
     for text in scripts.splitlines():
         if text.strip():
@@ -173,8 +178,19 @@ def _read_cfg(path: Path, installed: Installed) -> None:
         installed.scripts[PurePosixPath(script).name] = path.parent / script
     for folder, patterns in sections.get("options.data_files", {}).items():
         for pattern in re.split(r"[\n,]", patterns):
-            files = sorted(path.parent.glob(pattern.strip())) if pattern.strip() else []
-            _take_files(folder, map(str, files), path.parent, installed)
+            _take_files(folder, _matching(pattern.strip(), path), path.parent, installed)
+
+
+def _matching(pattern: str, path: Path) -> list[str]:
+    """The files that a pattern in a ``setup.cfg`` stands for."""
+    if not pattern:
+        return []
+    if Path(pattern).is_absolute() or ".." in Path(pattern).parts:
+        raise PackageError(f"{path}: {pattern} looks outside of the package")
+    try:
+        return sorted(map(str, path.parent.glob(pattern)))
+    except (ValueError, IndexError):
+        raise PackageError(f"{path}: {pattern!r} is no pattern of files") from None
 
 
 def _sections(text: str, origin: str) -> dict[str, Any]:

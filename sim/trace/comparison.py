@@ -1,15 +1,16 @@
 """Two runs side by side: the figures of the same window of both, callback by callback."""
 
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import TypeAlias
 
-from sim.trace.concurrency import threads_at_once
+from sim.trace.concurrency import threads_in_slices
 from sim.trace.model import Entity, Nanoseconds, Wait, Window
-from sim.trace.statistics import CallbackStatistics, statistics_of
-from sim.trace.summary import RobotFigures, robot_in
+from sim.trace.slices import PIECE, Slices, at_once, listed
+from sim.trace.statistics import CallbackStatistics, statistics_in_slices
+from sim.trace.summary import RobotFigures, robot_in_slices, trail_in_parts
 from sim.trace.timeline import Timeline
 from sim.trace.words import why_waiting
 
@@ -89,7 +90,13 @@ def compare(first: Timeline, second: Timeline, window: Window) -> Comparison:
     Those that have no such partner match without their node, if that leaves no doubt. Takes time in
     proportion to the calls and waits in the window.
     """
-    of_first, of_second = _sides(first, window), _sides(second, window)
+    return at_once(compare_in_slices(first, second, window))
+
+
+def compare_in_slices(first: Timeline, second: Timeline, window: Window) -> Slices[Comparison]:
+    """The same in small pieces. The runs may go on in between: what comes after the window plays no part."""
+    of_first = yield from _sides(first, window)
+    of_second = yield from _sides(second, window)
     partners = _partners(of_first, of_second)
     pairs: list[tuple[Key, Side | None, Side | None]] = [
         (key, side, of_second.get(partners.get(key, key))) for key, side in of_first.items()
@@ -100,8 +107,8 @@ def compare(first: Timeline, second: Timeline, window: Window) -> Comparison:
     short = Counter(_short_name(key) for key, *_ in used)
     return Comparison(
         window,
-        _run_figures(first, window),
-        _run_figures(second, window),
+        (yield from _run_figures(first, window)),
+        (yield from _run_figures(second, window)),
         tuple(
             Pair(_short_name(key) if short[_short_name(key)] == 1 else _long_name(key), one, other)
             for key, one, other in used
@@ -128,14 +135,15 @@ def _long_name(key: Key) -> str:
     return f"{_short_name(key)} ({place}{f' #{number}' if number > 1 else ''})"
 
 
-def _sides(timeline: Timeline, window: Window) -> dict[Key, Side]:
+def _sides(timeline: Timeline, window: Window) -> Slices[dict[Key, Side]]:
     equals: Counter[tuple[str, str, str, str]] = Counter()
     sides: dict[Key, Side] = {}
-    for entity in timeline.entities.values():
+    for entity in tuple(timeline.entities.values()):
         alike = _description(entity, timeline)
         equals[alike] += 1
-        waits = _wait_figures(timeline.waits_of(entity.id, window), timeline, window)
-        sides[*alike, equals[alike]] = Side(statistics_of(timeline, entity.id, window), waits)
+        waits = yield from _wait_figures(timeline.waits_of(entity.id, window), timeline, window)
+        figures = yield from statistics_in_slices(timeline, entity.id, window)
+        sides[*alike, equals[alike]] = Side(figures, waits)
     return sides
 
 
@@ -143,33 +151,41 @@ def _description(entity: Entity, timeline: Timeline) -> tuple[str, str, str, str
     return timeline.nodes.get(entity.node, ""), entity.kind.value, entity.callback, entity.name
 
 
-def _wait_figures(waits: Sequence[Wait], timeline: Timeline, window: Window) -> WaitFigures | None:
+def _wait_figures(waits: Sequence[Wait], timeline: Timeline, window: Window) -> Slices[WaitFigures | None]:
     """Lengths are of what lies in the window; the waits of one series share the time since when they are."""
     shares: defaultdict[str, int] = defaultdict(int)
-    longest = 0
-    for _, series in groupby(waits, key=lambda wait: wait.since):
-        length = 0
-        for wait, part in _parts(series, timeline, window):
-            shares[why_waiting(wait, timeline)] += part
-            length += part
+    lengths = yield from listed(
+        (wait.since, why_waiting(wait, timeline), _part(wait, timeline, window)) for wait in waits
+    )
+    longest = length = latest = 0
+    for number, (since, why, part) in enumerate(lengths):
+        shares[why] += part
+        length = length + part if since == latest else part
+        latest = since
         longest = max(longest, length)
+        if number % PIECE == 0:
+            yield
     if not longest:
         return None
     return WaitFigures(longest, sum(shares.values()), max(shares, key=shares.__getitem__))
 
 
-def _parts(series: Iterator[Wait], timeline: Timeline, window: Window) -> Iterator[tuple[Wait, Nanoseconds]]:
-    for wait in series:
-        end = timeline.end if wait.end is None else wait.end
-        yield wait, max(0, min(end, window.end) - max(wait.start, window.start))
+def _part(wait: Wait, timeline: Timeline, window: Window) -> Nanoseconds:
+    """How long a wait lasted in the window."""
+    end = timeline.end if wait.end is None else wait.end
+    return max(0, min(end, window.end) - max(wait.start, window.start))
 
 
-def _run_figures(timeline: Timeline, window: Window) -> RunFigures:
-    used = sum(bool(timeline.spans_on(thread, window)) for thread in timeline.threads)
-    robot = robot_in(timeline, window)
+def _run_figures(timeline: Timeline, window: Window) -> Slices[RunFigures]:
+    used = 0
+    for thread in tuple(timeline.threads):
+        used += bool(timeline.spans_on(thread, window))
+        yield
+    robot = yield from robot_in_slices(timeline, window)
     before = timeline.robot(window.start)
     if robot is not None and before is not None:
         robot = replace(robot, travelled=robot.travelled - before.travelled)
-    touching = [step.touching for step in timeline.trail(window)]
+    touching = yield from listed(pose.touching for pose in trail_in_parts(timeline, window))
     collisions = sum(touches for touches, _ in groupby(touching))
-    return RunFigures(timeline.end, used, threads_at_once(timeline, window), robot, collisions)
+    most = yield from threads_in_slices(timeline, window)
+    return RunFigures(timeline.end, used, most, robot, collisions)

@@ -6,6 +6,7 @@ from enum import IntEnum
 from operator import itemgetter
 
 from sim.trace.model import Nanoseconds, Span, Window
+from sim.trace.slices import Slices, at_once, parts
 from sim.trace.timeline import Timeline
 
 _SETTLED_AFTER: Nanoseconds = 1_000_000_000
@@ -43,8 +44,17 @@ class Concurrency:
 
 def threads_at_once(timeline: Timeline, window: Window) -> int:
     """Return the most threads that ran callbacks at one moment of the window."""
-    rises = _rises(timeline, window, 0)
-    return rises[-1][1] if rises else 0
+    return at_once(threads_in_slices(timeline, window))
+
+
+def threads_in_slices(timeline: Timeline, window: Window) -> Slices[int]:
+    """The same in small pieces."""
+    best = 0
+    for part in parts(window, sum(timeline.calls_of(entity, window) for entity in timeline.entities)):
+        rises = _rises(timeline, part, best)
+        best = rises[-1][1] if rises else best
+        yield
+    return best
 
 
 def _rises(timeline: Timeline, window: Window, best: int) -> list[tuple[Nanoseconds, int]]:

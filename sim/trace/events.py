@@ -533,4 +533,7 @@ def decode(batch: bytes) -> list[AnyEvent]:
     Raises:
         msgspec.DecodeError: the bytes are no batch of events.
     """
-    return _decoder.decode(batch)
+    try:
+        return _decoder.decode(batch)
+    except (UnicodeDecodeError, RecursionError) as error:
+        raise msgspec.DecodeError(f"the bytes are no events: {error}") from None

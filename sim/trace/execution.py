@@ -207,9 +207,11 @@ class Execution:
         rows = self._threads[thread].covering(at)
         return self._spans.span(rows[-1]) if rows else None
 
-    def holds(self, entity: EntityId, at: Nanoseconds) -> bool:
-        """Whether the entity's callback runs or is suspended at ``at``."""
-        return bool(self._entities[entity].covering(at) or self._suspended[entity].covering(at))
+    def holders(self, at: Nanoseconds) -> set[EntityId]:
+        """The entities of which a callback runs or is suspended at ``at``."""
+        rows = [row for lane in self._threads.values() for row in lane.covering(at)]
+        suspended = {entity for entity, lane in self._suspended.items() if lane.covering(at)}
+        return suspended.union(map(self._spans.entity, rows))
 
     def busy(self, thread: ThreadId, window: Window) -> Nanoseconds:
         """How long the thread ran callbacks in the window."""

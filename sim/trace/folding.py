@@ -6,6 +6,7 @@ from operator import attrgetter
 from typing import Any, TypeAlias
 
 from sim.trace import events as ev
+from sim.trace.activity import Activity
 from sim.trace.blocking import Blocking
 from sim.trace.calls import Calls
 from sim.trace.cast import Cast
@@ -40,6 +41,7 @@ class Folded:
         self.contents_lost = 0
         self.end: Nanoseconds = 0
         self.cast = Cast()
+        self.active = Activity()
         self.execution = Execution(spill)
         self.waiting = Waiting(spill)
         self.blocking = Blocking(spill)
@@ -99,9 +101,9 @@ class Folded:
             ev.WaitStarted: self.waiting.start,
             ev.WaitEnded: self._wait_ended,
             ev.CallbackStarted: self._callback_started,
-            ev.CallbackEnded: self.execution.finish,
-            ev.CallbackSuspended: self.execution.suspend,
-            ev.CallbackResumed: self.execution.resume,
+            ev.CallbackEnded: self._callback_ended,
+            ev.CallbackSuspended: self._callback_suspended,
+            ev.CallbackResumed: self._callback_resumed,
             ev.CallbackFailed: self._callback_failed,
             ev.Published: self.publications.add,
             ev.QosMismatched: self.mismatches.add,
@@ -146,6 +148,7 @@ class Folded:
     def _entity_gone(self, event: ev.EntityGone) -> None:
         self.waiting.finish(event.entity, event.t)
         self.queues[event.entity].clear(event.t)
+        self.active.note(event.entity, event.t)
 
     def _ready(self, event: ev.EntityReady) -> None:
         self.queues[event.entity].arrive(event.t, event.depth, event.message)
@@ -153,16 +156,31 @@ class Folded:
     def _message_dropped(self, event: ev.MessageDropped) -> None:
         self.queues[event.entity].lose(event.t, event.depth, event.message)
         self.dropped_at.add([event.t])
+        self.active.note(event.entity, event.t)
 
     def _wait_ended(self, event: ev.WaitEnded) -> None:
         self.waiting.finish(event.entity, event.t)
+        self.active.note(event.entity, event.t)
 
     def _callback_started(self, event: ev.CallbackStarted) -> None:
+        self.active.note(event.entity, event.t)
         self.execution.start(event)
         self.blocking.go_on(event.thread, event.t)
         self.queues[event.entity].take(event.t, event.depth, event.message)
         if self.scans.carried_by(event.message) and self._takes_messages(event.entity):
             self.scans.take(event.t, event.message)
+
+    def _callback_ended(self, event: ev.CallbackEnded) -> None:
+        self.execution.finish(event)
+        self.active.note(event.entity, event.t)
+
+    def _callback_suspended(self, event: ev.CallbackSuspended) -> None:
+        self.execution.suspend(event)
+        self.active.note(event.entity, event.t)
+
+    def _callback_resumed(self, event: ev.CallbackResumed) -> None:
+        self.execution.resume(event)
+        self.active.note(event.entity, event.t)
 
     def _callback_failed(self, event: ev.CallbackFailed) -> None:
         self.execution.fail(event)

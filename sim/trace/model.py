@@ -1,6 +1,6 @@
 """What a timeline knows about a run: the cast, what ran, what waited, and one moment of it all."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
@@ -209,10 +209,10 @@ class Moment:
     """
 
     at: Nanoseconds
-    running: dict[ThreadId, Span] = field(default_factory=dict)
-    waiting: dict[EntityId, Wait] = field(default_factory=dict)
-    blocked: dict[ThreadId, Blocked] = field(default_factory=dict)
-    queues: dict[EntityId, Queue] = field(default_factory=dict)
-    holders: dict[GroupId, tuple[EntityId, ...]] = field(default_factory=dict)
+    running: Mapping[ThreadId, Span] = field(default_factory=dict)
+    waiting: Mapping[EntityId, Wait] = field(default_factory=dict)
+    blocked: Mapping[ThreadId, Blocked] = field(default_factory=dict)
+    queues: Mapping[EntityId, Queue] = field(default_factory=dict)
+    holders: Mapping[GroupId, tuple[EntityId, ...]] = field(default_factory=dict)
     pending_calls: tuple[Call, ...] = ()
     log_position: int = 0

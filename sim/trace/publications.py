@@ -9,7 +9,7 @@ _TIME, _NODE, _ENTITY = range(1, 4)
 
 
 class Publications:
-    """The publishings, by number of message."""
+    """What was published, by number of message."""
 
     __slots__ = ("_latest", "_table")
 

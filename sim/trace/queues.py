@@ -30,7 +30,7 @@ class QueueHistory:
         self._arrived = Table(spill, 2)
         self._lost_at = Table(spill, 1)
         self._now: deque[MessageId] = deque()
-        self._left_early: dict[MessageId, Nanoseconds] = {}
+        self._left_early = Table(spill, 2)
 
     def arrive(self, at: Nanoseconds, depth: int, message: MessageId) -> None:
         """Something came, ``depth`` are there now."""
@@ -76,7 +76,7 @@ class QueueHistory:
 
     def _become(self, at: Nanoseconds, depth: int) -> None:
         self._steps.add([at, depth])
-        while len(self._now) > depth:
+        while self._now and len(self._now) > depth:
             self._now.popleft()
 
     def _leave(self, at: Nanoseconds, message: MessageId) -> None:
@@ -85,7 +85,7 @@ class QueueHistory:
             return
         if message in self._now:
             self._now.remove(message)
-        self._left_early[message] = at
+        self._left_early.add([message, at])
 
     def _messages(self, at: Nanoseconds, depth: int, born: Born) -> Sequence[QueuedMessage]:
         after = self._arrived.until(at)
@@ -97,13 +97,13 @@ class QueueHistory:
             return QueuedMessage(messages[place], arrivals[place] if since is None else since)
 
         places: Sequence[int] = range(len(messages))
-        if self._left_early:
+        if len(self._left_early):
             places = [place for place in places if not self._has_left(messages[place], arrivals[place], at)]
         return Answer(places, queued)
 
     def _oldest(self, depth: int, after: int, at: Nanoseconds) -> int:
         """The place from which on ``depth`` of the arrivals before ``after`` are still there at ``at``."""
-        if not self._left_early:
+        if not len(self._left_early):
             return max(0, after - depth)
         place = after
         while depth > 0 and place:
@@ -112,4 +112,7 @@ class QueueHistory:
         return place
 
     def _has_left(self, message: MessageId, arrived: Nanoseconds, at: Nanoseconds) -> bool:
-        return arrived <= self._left_early.get(message, -1) <= at
+        place = self._left_early.until(message) - 1
+        if place < 0 or self._left_early.cell(place, 0) != message:
+            return False
+        return arrived <= self._left_early.cell(place, 1) <= at

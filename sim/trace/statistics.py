@@ -4,15 +4,24 @@ Every distribution takes its percentiles by nearest rank: the p-th is the smalle
 per cent of the values do not exceed. So each figure is one that occurred.
 """
 
+from array import array
 from bisect import bisect_right
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import accumulate, groupby, pairwise
+from operator import itemgetter
+from typing import Any, TypeAlias
+
+import numpy as np
 
 from sim.trace.concurrency import threads_at_once
 from sim.trace.events import EntityId, EntityKind, ThreadId
-from sim.trace.model import Entity, Nanoseconds, Span, Wait, Window
+from sim.trace.model import Entity, Nanoseconds, Window
+from sim.trace.slices import PIECE, Slices, at_once, listed, parts
 from sim.trace.timeline import Timeline
+
+_Ranked: TypeAlias = np.ndarray[Any, np.dtype[np.int64]]
+"""Nanoseconds in ascending order."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,35 +102,68 @@ def statistics_of(timeline: Timeline, entity: EntityId, window: Window) -> Callb
     Raises:
         KeyError: the timeline knows no such entity.
     """
+    return at_once(statistics_in_slices(timeline, entity, window))
+
+
+def statistics_in_slices(timeline: Timeline, entity: EntityId, window: Window) -> Slices[CallbackStatistics]:
+    """The same in small pieces; the run may go on in between, after the window.
+
+    Raises:
+        KeyError: the timeline knows no such entity.
+    """
     about = timeline.entities[entity]
-    stretches = [span for span in timeline.spans_of(entity, window) if span.start >= window.start]
-    calls = timeline.calls_begun(entity, window)
     is_timer = about.kind is EntityKind.TIMER
-    ages = distribution(span.age for span in calls)
+    # Numbers and no spans: hundreds of thousands of objects would keep the garbage collector busy.
+    lengths, starts, ages = array("q"), array("q"), array("q")
+    errors = 0
+    for part in parts(window, timeline.calls_of(entity, window)):
+        begun = [span for span in timeline.spans_of(entity, part) if span.start >= part.start]
+        lengths.extend(span.end - span.start for span in begun if span.end is not None)
+        errors += sum(bool(span.error) for span in begun)
+        calls = timeline.calls_begun(entity, part)
+        starts.extend(span.start for span in calls)
+        ages.extend(span.age for span in calls)
+        yield
+    of_ages = yield from _distributed(ages)
     return CallbackStatistics(
         entity=about,
-        calls=len(calls),
-        duration=distribution(span.end - span.start for span in stretches if span.end is not None),
-        wait=distribution(_waits(timeline, calls, window)),
-        jitter=_jitter(about, calls),
+        calls=len(starts),
+        duration=(yield from _distributed(lengths)),
+        wait=(yield from _waited(timeline, entity, starts, window)),
+        jitter=(yield from _jitter(about, starts, ages)),
         drops=timeline.drops_of(entity, window),
-        age=None if is_timer else ages,
-        late=ages if is_timer else None,
-        errors=sum(bool(span.error) for span in stretches),
+        age=None if is_timer else of_ages,
+        late=of_ages if is_timer else None,
+        errors=errors,
     )
 
 
 def distribution(values: Iterable[Nanoseconds]) -> Distribution | None:
     """The distribution of values; None for none."""
-    ranked = sorted(values)
-    if not ranked:
+    return at_once(_distributed(values))
+
+
+def _distributed(values: Iterable[Nanoseconds]) -> Slices[Distribution | None]:
+    ranked = yield from _ranked(values)
+    if not len(ranked):
         return None
-    return Distribution(len(ranked), ranked[0], percentile(ranked, 50), percentile(ranked, 95), ranked[-1])
+    least, median, p95, most = (percentile(ranked, per_cent) for per_cent in (0, 50, 95, 100))
+    return Distribution(len(ranked), least, median, p95, most)
 
 
-def percentile(ranked: Sequence[Nanoseconds], per_cent: int) -> Nanoseconds:
+def _ranked(values: Iterable[Nanoseconds]) -> Slices[_Ranked]:
+    """Values in ascending order; an hour's are sorted within milliseconds."""
+    found = array("q")
+    for value in values:
+        found.append(value)
+        if len(found) % PIECE == 0:
+            yield
+    return np.sort(np.frombuffer(found, dtype=np.int64))
+
+
+def percentile(ranked: Sequence[Nanoseconds] | _Ranked, per_cent: int) -> Nanoseconds:
     """The percentile of ascending values by nearest rank: number ⌈per_cent/100 · n⌉, counted from 1."""
-    return ranked[max(0, -(-per_cent * len(ranked) // 100) - 1)]
+    return int(ranked[max(0, -(-per_cent * len(ranked) // 100) - 1)])
 
 
 def _known(timeline: Timeline, window: Window) -> Window:
@@ -129,39 +171,54 @@ def _known(timeline: Timeline, window: Window) -> Window:
     return Window(window.start, min(window.end, max(timeline.end, window.start)))
 
 
-def _waits(timeline: Timeline, calls: Sequence[Span], window: Window) -> Iterable[Nanoseconds]:
-    """How long each call's callback had been ready; a series of waits belongs to one call at most."""
-    if not calls:
-        return
+def _waited(
+    timeline: Timeline, entity: EntityId, starts: Sequence[Nanoseconds], window: Window
+) -> Slices[Distribution | None]:
+    """How long the callback had been ready before each call."""
+    if not starts:
+        return None
     # A wait that ends with the window's first moment is one for a call that begins then.
-    waits = timeline.waits_of(calls[0].entity, Window(window.start - 1, window.end))
-    over = list(_over(waits))
+    waits = timeline.waits_of(entity, Window(window.start - 1, window.end))
+    known = yield from listed((wait.since, wait.end) for wait in waits)
+    over = yield from listed(_over(known))
+    return (yield from _distributed(_waits(starts, over)))
+
+
+def _waits(
+    starts: Sequence[Nanoseconds], over: Sequence[tuple[Nanoseconds, Nanoseconds]]
+) -> Iterator[Nanoseconds]:
+    """How long the callback had been ready; a series of waits belongs to one call at most."""
     place = 0
-    for call in calls:
+    for start in starts:
         waited = 0
-        while place < len(over) and over[place][0] <= call.start:
+        while place < len(over) and over[place][0] <= start:
             ended, since = over[place]
             waited = ended - since
             place += 1
         yield waited
 
 
-def _over(waits: Sequence[Wait]) -> Iterator[tuple[Nanoseconds, Nanoseconds]]:
+def _over(
+    waits: Iterable[tuple[Nanoseconds, Nanoseconds | None]],
+) -> Iterator[tuple[Nanoseconds, Nanoseconds]]:
     """End and ``since`` of each series of waits that is over; in a series only the reason changes."""
-    for since, series in groupby(waits, key=lambda wait: wait.since):
-        *_, last = series
-        if last.end is not None:
-            yield last.end, since
+    for since, series in groupby(waits, key=itemgetter(0)):
+        *_, (_, end) = series
+        if end is not None:
+            yield end, since
 
 
-def _jitter(entity: Entity, calls: Sequence[Span]) -> Distribution | None:
+def _jitter(
+    entity: Entity, starts: Sequence[Nanoseconds], ages: Sequence[Nanoseconds]
+) -> Slices[Distribution | None]:
     if entity.kind is EntityKind.TIMER:
-        steps = [after.start - before.start for before, after in pairwise(calls)]
-        return distribution(abs(step - entity.period) for step in steps)
+        steps = (after - before for before, after in pairwise(starts))
+        return (yield from _distributed(abs(step - entity.period) for step in steps))
     if entity.kind is EntityKind.SUBSCRIPTION:
-        published = [call.start - call.age for call in calls]
-        steps = sorted(after - before for before, after in pairwise(published))
-        return distribution(abs(step - percentile(steps, 50)) for step in steps)
+        published = (start - age for start, age in zip(starts, ages, strict=True))
+        ranked = yield from _ranked(after - before for before, after in pairwise(published))
+        middle = percentile(ranked, 50) if len(ranked) else 0
+        return (yield from _distributed(abs(int(step) - middle) for step in ranked))
     return None
 
 

@@ -8,6 +8,7 @@ from itertools import groupby, pairwise
 from sim.trace.concurrency import threads_at_once
 from sim.trace.events import EntityId, RobotMoved
 from sim.trace.model import Call, Entity, Nanoseconds, Wait, Window
+from sim.trace.slices import PIECE, Slices, at_once, listed, parts
 from sim.trace.timeline import Timeline
 from sim.trace.words import why_waiting
 
@@ -15,6 +16,9 @@ TURNING = 0.02
 """From how many rad/s on the robot counts as turning, and not as drifting while it drives straight."""
 TURN = 0.5
 """From how many radians in one direction on it counts as a turn."""
+
+_BETWEEN_POSES: Nanoseconds = 20_000_000
+"""About how long it is from one pose of the robot to the next."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -160,20 +164,40 @@ def _services(calls: Iterable[Call]) -> Iterator[ServiceFigures]:
 
 def robot_in(timeline: Timeline, window: Window) -> RobotFigures | None:
     """What the robot did in a window; ``travelled`` counts from the run's beginning."""
-    trail = timeline.trail(window)
-    if not trail:
+    return at_once(robot_in_slices(timeline, window))
+
+
+def robot_in_slices(timeline: Timeline, window: Window) -> Slices[RobotFigures | None]:
+    """The same in small pieces."""
+    last = timeline.robot(window.end - 1)
+    if last is None or last.t < window.start:
         return None
-    turns = [abs(angle) for angle in _stretches(trail) if abs(angle) > TURN]
-    last = trail[-1]
+    timed = (step for step in pairwise(trail_in_parts(timeline, window)) if step[0].t < step[1].t)
+    steps = yield from listed((_direction(*step), step[1].turned - step[0].turned) for step in timed)
+    angles = yield from _angles(steps)
+    turns = [abs(angle) for angle in angles if abs(angle) > TURN]
     return RobotFigures(len(turns), sum(turns), last.travelled, last.x, last.y, last.yaw)
 
 
-def _stretches(trail: Iterable[RobotMoved]) -> Iterator[float]:
+def _angles(steps: Iterable[tuple[int, float]]) -> Slices[list[float]]:
     """The signed angles, in radians, of the stretches in which the robot turned in one direction."""
-    timed = (step for step in pairwise(trail) if step[0].t < step[1].t)
-    for direction, steps in groupby(timed, key=lambda step: _direction(*step)):
-        if direction:
-            yield sum(after.turned - before.turned for before, after in steps)
+    found: list[float] = []
+    latest = 0
+    for number, (direction, angle) in enumerate(steps):
+        if direction and direction == latest:
+            found[-1] += angle
+        elif direction:
+            found.append(angle)
+        latest = direction
+        if number % PIECE == 0:
+            yield
+    return found
+
+
+def trail_in_parts(timeline: Timeline, window: Window) -> Iterator[RobotMoved]:
+    """Where the robot was in a window, looked up bit by bit."""
+    for part in parts(window, window.length // _BETWEEN_POSES):
+        yield from timeline.trail(part)
 
 
 def _direction(before: RobotMoved, after: RobotMoved) -> int:

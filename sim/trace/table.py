@@ -8,6 +8,9 @@ from typing import overload
 from sim.trace.blocks import Blocks
 from sim.trace.spill import Spill
 
+_LARGEST = 2**63 - 1
+"""The largest number that a cell holds."""
+
 
 class Table:
     """Rows of so many 64-bit integers each; a row number stands for one of them.
@@ -34,7 +37,7 @@ class Table:
         """Add a row behind all others; returns its number."""
         tail = self._tail
         number = self._spilled + len(tail) // self._width
-        tail.fromlist(row)
+        _put(row, tail)
         if len(tail) >= self._full:
             self._put_by()
         return number
@@ -43,7 +46,7 @@ class Table:
         """Add a row where its first cell belongs, behind its equals."""
         tail = self._tail
         if not tail or tail[-self._width] <= row[0]:
-            tail.fromlist(row)
+            _put(row, tail)
             if len(tail) >= self._full:
                 self._put_by()
         else:
@@ -55,7 +58,9 @@ class Table:
             self._tail[0:0] = self._blocks.pop()
             self._spilled -= self._rows_in_block
         cell = (place - self._spilled) * self._width
-        self._tail[cell:cell] = array("q", row)
+        cells = array("q")
+        _put(row, cells)
+        self._tail[cell:cell] = cells
         while len(self._tail) >= self._full:
             self._put_by()
 
@@ -184,3 +189,11 @@ def _unpacked(data: bytes) -> "array[int]":
     block = array("q")
     block.frombytes(data)
     return block
+
+
+def _put(row: list[int], cells: "array[int]") -> None:
+    """Put a row behind the cells; a number that no cell holds, as bad files have them, as near as can be."""
+    try:
+        cells.fromlist(row)
+    except OverflowError:
+        cells.fromlist([max(-_LARGEST - 1, min(_LARGEST, number)) for number in row])

@@ -14,6 +14,7 @@ from sim.trace.events import (
     ThreadId,
 )
 from sim.trace.folding import Folded, ShellEvent
+from sim.trace.lookup import Lookup
 from sim.trace.model import (
     Blocked,
     Call,
@@ -50,9 +51,11 @@ class Timeline:
 
     def __init__(self) -> None:
         self._run = Folded()
+        self._moment: Moment | None = None
 
     def extend(self, events: Iterable[AnyEvent]) -> None:
         """Take in a batch; state after batches is the state after one batch of them all."""
+        self._moment = None
         self._run.extend(events)
 
     # the run as a whole
@@ -176,19 +179,18 @@ class Timeline:
     # moments
 
     def moment(self, at: Nanoseconds) -> Moment:
-        """Who runs, waits or stands still, and why; what is held, queued, called and logged by then."""
-        running = {thread: self._run.execution.innermost(thread, at) for thread in self.threads}
-        waiting = {entity: self._run.waiting.at(entity, at) for entity in self.entities}
-        return Moment(
-            at,
-            {thread: span for thread, span in running.items() if span is not None},
-            {entity: wait for entity, wait in waiting.items() if wait is not None},
-            {blocked.thread: blocked for blocked in self._run.blocking.at(at)},
-            {entity: self.queue(entity, at) for entity in self.entities},
-            {group: self._holders(group, at) for group in self.groups},
-            self._run.calls.pending(at),
-            self.logs_until(at),
-        )
+        """Who runs, waits or stands still, and why; what is held, queued, called and logged by then.
+
+        Every pane asks for the same one: the latest is kept until the run goes on.
+        """
+        if self._moment is None or self._moment.at != at:
+            self._moment = self._moment_at(at)
+        return self._moment
+
+    def active_since(self, at: Nanoseconds) -> set[EntityId]:
+        """The entities that did anything at ``at`` or later, or are in the middle of something at the end."""
+        lasting = {*self._run.waiting.waiting(self.end), *self._run.execution.holders(self.end)}
+        return lasting.union(self._run.active.since(at)) & self.entities.keys()
 
     def queue(self, entity: EntityId, at: Nanoseconds) -> Queue:
         """The queue of an entity: a request in it was born when it was sent, a reply when it arrived."""
@@ -284,9 +286,31 @@ class Timeline:
         """The scan whose message a callback last took, at or before ``at``."""
         return self._run.scans.seen(at)
 
-    def _holders(self, group: GroupId, at: Nanoseconds) -> tuple[EntityId, ...]:
-        members = self._run.cast.members(group)
-        return tuple(entity.id for entity in members if self._run.execution.holds(entity.id, at))
+    def _moment_at(self, at: Nanoseconds) -> Moment:
+        running = {thread: self._run.execution.innermost(thread, at) for thread in self.threads}
+        waiting = {entity: self._run.waiting.at(entity, at) for entity in self._run.waiting.waiting(at)}
+        return Moment(
+            at,
+            {thread: span for thread, span in running.items() if span is not None},
+            {
+                entity: wait
+                for entity, wait in waiting.items()
+                if wait is not None and entity in self.entities
+            },
+            {blocked.thread: blocked for blocked in self._run.blocking.at(at)},
+            Lookup(self.entities, lambda entity: self.queue(entity, at)),
+            self._holders(at),
+            self._run.calls.pending(at),
+            self.logs_until(at),
+        )
+
+    def _holders(self, at: Nanoseconds) -> dict[GroupId, tuple[EntityId, ...]]:
+        holders: dict[GroupId, tuple[EntityId, ...]] = dict.fromkeys(self.groups, ())
+        for entity in sorted(self._run.execution.holders(at)):
+            known = self.entities.get(entity)
+            if known is not None and known.group in holders:
+                holders[known.group] += (entity,)
+        return holders
 
     def _events_beside(self, entity: EntityId, at: Nanoseconds, step: int) -> Iterator[Nanoseconds]:
         yield from self._run.execution.beside(entity, at, step)

@@ -20,6 +20,10 @@ class Waiting(Intervals):
         super().__init__(spill, more=5)
         self._lanes: defaultdict[EntityId, Lane] = defaultdict(lambda: Lane(self))
         self._latest: dict[EntityId, Row] = {}
+        self._none = Lane(self)
+        self._open: set[EntityId] = set()
+        self._changed: Nanoseconds = 0
+        """When the latest wait began or ended."""
 
     def start(self, event: WaitStarted) -> None:
         """An entity begins to wait, or goes on waiting for another reason."""
@@ -32,25 +36,36 @@ class Waiting(Intervals):
         row = self.open(begun, event.since, event.entity, event.holder, reason, event.workers_busy)
         self._lanes[event.entity].add(row)
         self._latest[event.entity] = row
+        self._open.add(event.entity)
+        self._changed = max(self._changed, event.t)
 
     def finish(self, entity: EntityId, at: Nanoseconds) -> None:
         """An entity waits no longer."""
         latest = self._latest.get(entity)
         if latest is not None and self.ended_at(latest) == OPEN:
             self.close(latest, at)
+            self._open.discard(entity)
+            self._changed = max(self._changed, at)
 
     def of(self, entity: EntityId, window: Window) -> Sequence[Wait]:
         """Waits of an entity."""
-        return Answer(self._lanes[entity].overlapping(window), self._wait)
+        return Answer(self._of(entity).overlapping(window), self._wait)
 
     def at(self, entity: EntityId, at: Nanoseconds) -> Wait | None:
         """The wait of an entity that is in progress at ``at``."""
-        rows = self._lanes[entity].covering(at)
+        rows = self._of(entity).covering(at)
         return self._wait(rows[-1]) if rows else None
+
+    def waiting(self, at: Nanoseconds) -> Sequence[EntityId]:
+        """The entities that may wait at ``at``, in order: of the latest moment those only that do."""
+        return sorted(self._open if at >= self._changed else self._lanes)
 
     def beside(self, entity: EntityId, at: Nanoseconds, step: int) -> Iterator[Nanoseconds]:
         """Starts of waits of the entity, with the nearest after or before ``at``."""
-        return self._lanes[entity].starts_beside(at, step)
+        return self._of(entity).starts_beside(at, step)
+
+    def _of(self, entity: EntityId) -> Lane:
+        return self._lanes.get(entity, self._none)
 
     def _goes_on(self, latest: Row, since: Nanoseconds) -> bool:
         return self.ended_at(latest) == OPEN or self.table.cell(latest, self.SINCE) == since

@@ -40,12 +40,16 @@ class Caller:
 
 @dataclass(frozen=True)
 class CallingSystem:
-    """One-shot timers, due at tenths of a second, and services numbered from 0 that call on in their turn."""
+    """One-shot timers, due at tenths of a second, and services numbered from 0 that call on in their turn.
+
+    ``heartbeat`` is the group of a timer that does nothing, for as long as the system runs; None for no such.
+    """
 
     groups: tuple[type[CallbackGroup], ...]
     timers: tuple[tuple[int, Caller], ...]
     services: tuple[Caller, ...]
     threads: int | None
+    heartbeat: int | None
 
 
 @dataclass
@@ -53,11 +57,13 @@ class Fate:
     """What the scheduler itself tells at the end: whether anything can run, and what has begun and not ended.
 
     ``at_work`` counts the callbacks while they run; ``unfinished`` is what was left of them at the end.
+    ``heart_beats`` tells whether the heartbeat was called shortly before the end.
     """
 
     something_can_run: bool = True
     at_work: int = 0
     unfinished: int = 0
+    heart_beats: bool = False
 
 
 def calling_systems() -> st.SearchStrategy[CallingSystem]:
@@ -71,6 +77,7 @@ def calling_systems() -> st.SearchStrategy[CallingSystem]:
         st.lists(timer, min_size=1, max_size=4).map(tuple),
         st.lists(_callers(group, st.none() | st.integers(0, 3)), max_size=3).map(tuple),
         st.sampled_from([None, 1, 2, 3, 4]),
+        st.none() | group,
     )
 
 
@@ -94,6 +101,8 @@ def play(system: CallingSystem) -> tuple[Diagnosed, Fate]:
             make.service(number, plan)
         for number, (due, plan) in enumerate(system.timers):
             make.timer(number, due / 10, plan)
+        if system.heartbeat is not None:
+            make.heartbeat(groups[system.heartbeat])
         simulation.at(SECONDS - 0.5, lambda: _ask_the_scheduler(simulation, fate))
         executor = executor_of(system.threads)
         executor.add_node(node)
@@ -153,6 +162,14 @@ class _Maker:
             callback = tick
         callback.__name__ = f"tick_{number}"
         timer = self._node.create_timer(due, callback, self._groups[plan.group])
+
+    def heartbeat(self, group: CallbackGroup) -> None:
+        """Have a callback called twice a second that does nothing."""
+
+        def beat() -> None:
+            self._fate.heart_beats = self._simulation.now > SECONDS - 2
+
+        self._node.create_timer(0.5, beat, group)
 
     def _work(self, plan: Caller) -> Callable[[], Any]:
         sleep, fate = self._simulation.sleep, self._fate

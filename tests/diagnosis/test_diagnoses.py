@@ -12,6 +12,7 @@ from sim.trace.events import (
     AnyEvent,
     CallbackStarted,
     EntityAppeared,
+    EventsLost,
     WaitStarted,
 )
 from sim.trace.timeline import Timeline
@@ -142,6 +143,18 @@ def test_the_list_has_a_sign_a_reason_a_cure_and_a_place_for_each_finding() -> N
 
 def test_where_nothing_was_found_the_list_is_silent() -> None:
     assert findings_text((), Timeline()) == ""
+
+
+def test_a_trace_that_lacks_events_says_so_beside_what_it_finds() -> None:
+    run = Run("busy")
+    run.log("here", 1.0)
+    assert diagnose(timeline_of(run.events)) == ()
+    run.add(EventsLost(ns(2.0), 1200))
+    timeline = timeline_of(run.events)
+    (found,) = diagnose(timeline)
+    assert (found.rule.id, found.rule.weigh(found, timeline)) == ("gaps-in-trace", Weight.REMARK)
+    told = found.rule.explain(found, timeline).what
+    assert told.startswith("1,200 events are missing from the trace")
 
 
 @given(legal_runs(), st.integers(0, 2**64 - 1))

@@ -3,7 +3,8 @@
 import pytest
 
 import sim.ros as rclpy
-from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
+from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from sim.ros.executors import SingleThreadedExecutor
 from sim.ros.node import Node
 from tests.diagnosis.findings import Diagnosed, Int32, diagnosed, once, spin
 from tests.support.builder import ns
@@ -50,6 +51,31 @@ def test_a_callback_whose_group_is_free_waits_long_for_a_thread() -> None:
     run = slow_and_quick(same_group=False, threads=None)
     assert run.problems() == {("no-free-worker", "quick")}
     assert run.explained("no-free-worker").what == "quick waited 2.9 s: the only thread ran slow"
+
+
+def test_calls_of_one_callback_on_all_threads_are_no_reason_for_one_thread_more() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+
+        def count(_: object) -> None:
+            simulation.sleep(2.0)  # as calls do that wait for one lock
+
+        def quick() -> None: ...
+
+        group = ReentrantCallbackGroup()
+        node.create_subscription(Int32, "t", count, 10, callback_group=group)
+        publisher = node.create_publisher(Int32, "t", 10)
+        for _ in range(3):
+            publisher.publish(Int32())
+        once(node, 0.5, quick)
+        spin(node, 3)
+
+    run = diagnosed(program)
+    assert run.one("no-free-worker").culprit == run.trace.entity("count")
+    told = run.explained("no-free-worker")
+    assert told.what == "quick waited 1.5 s: 3 calls of count kept a thread each, and no thread was free"
+    assert told.cure.startswith("give count a MutuallyExclusiveCallbackGroup")
+    assert "num_threads" not in told.cure
 
 
 def test_groups_of_their_own_and_two_threads_are_well() -> None:
@@ -111,6 +137,26 @@ def test_a_node_that_nobody_ever_spins_is_told() -> None:
     assert run.problems() == {("node-never-spins", "tick")}
     told = run.explained("node-never-spins").what
     assert told == "tick of /forgotten is ready for 4.0 s and does not run: nobody ever spun its node"
+
+
+def test_a_node_whose_executor_is_made_and_never_spun_is_told_so() -> None:
+    def program(simulation: Simulation) -> None:
+        node = Node("forgotten")
+
+        def tick() -> None: ...
+
+        node.create_timer(1.0, tick)
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        simulation.sleep(5.0)
+
+    run = diagnosed(program)
+    assert run.problems() == {("node-never-spins", "tick")}
+    told = run.explained("node-never-spins")
+    assert told.what.endswith("does not run: no executor that spins has its node")
+    assert told.cure == (
+        "add the node to an executor, and call spin() on that: one that is only made runs nothing"
+    )
 
 
 def test_a_node_that_is_spun_no_more_is_told() -> None:

@@ -3,6 +3,7 @@
 from sim.diagnosis.rule import Rule
 from sim.diagnosis.rules.deadlock import NeedsOneMoreWorker, SelfMadeDeadlock
 from sim.diagnosis.rules.errors import ExceptionSwallowed
+from sim.diagnosis.rules.gaps import GapsInTrace
 from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, StaleData
 from sim.diagnosis.rules.services import NobodyOffers, UnreturnedResponse
 from sim.diagnosis.rules.threads import GroupsChangeNothing, ThreadsNeverUsed
@@ -24,6 +25,7 @@ RULES: tuple[Rule, ...] = (
     OverrunTimer(),
     StaleData(),
     DroppedMessages(),
+    GapsInTrace(),
     GroupsChangeNothing(),
     ThreadsNeverUsed(),
 )

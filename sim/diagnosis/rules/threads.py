@@ -1,11 +1,12 @@
 """Rules on threads and groups that make no difference: remarks, since nothing goes wrong."""
 
 from collections.abc import Iterator
+from itertools import islice
 
 from sim.diagnosis.look import Look
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, place_of
 from sim.diagnosis.words import listed, thread_count
-from sim.trace.events import EntityKind, GroupKind
+from sim.trace.events import EntityKind, GroupKind, NodeId
 from sim.trace.model import Entity, Executor, Group, Nanoseconds
 from sim.trace.timeline import Timeline
 
@@ -69,7 +70,7 @@ class GroupsChangeNothing(Rule):
             )
         groups = [each for each in timeline.groups.values() if each.node == subject.node]
         plural = len(groups) > 1
-        named = listed(each.letter for each in groups)
+        named = listed(_named([each.letter for each in groups]))
         return Explanation(
             f"group{'s' if plural else ''} {named} change{'' if plural else 's'} nothing: "
             "there is only one thread",
@@ -79,8 +80,17 @@ class GroupsChangeNothing(Rule):
         )
 
 
+_MOST_LETTERS = 8
 _THREADS = "threads"
 _GROUPS = "groups"
+
+
+def _named(letters: list[str]) -> list[str]:
+    """The letters of so many groups as a sentence can bear; the others are counted."""
+    if len(letters) <= _MOST_LETTERS:
+        return letters
+    shown = letters[: _MOST_LETTERS - 1]
+    return [*shown, f"{len(letters) - len(shown)} more"]
 
 
 def _with_workers(timeline: Timeline) -> list[Executor]:
@@ -89,24 +99,26 @@ def _with_workers(timeline: Timeline) -> list[Executor]:
 
 def _one_for_all(timeline: Timeline) -> Group | None:
     """The exclusive group that all callbacks share though there is more than one thread."""
-    groups = [each for each in timeline.groups.values() if _callbacks(timeline, each)]
+    if not _with_workers(timeline):
+        return None
+    groups = list(islice((each for each in timeline.groups.values() if _callbacks(timeline, each)), 2))
     if len(groups) != 1 or groups[0].kind is not GroupKind.EXCLUSIVE:
         return None
-    return groups[0] if _with_workers(timeline) and len(_callbacks(timeline, groups[0])) > 1 else None
+    return groups[0] if len(_callbacks(timeline, groups[0])) > 1 else None
 
 
 def _node_with_groups(timeline: Timeline) -> Entity | None:
     """A callback of a node that has several groups, or a reentrant one; a lone default group is nobody's."""
-    for node in timeline.nodes:
-        groups = [
-            each for each in timeline.groups.values() if each.node == node and _callbacks(timeline, each)
-        ]
-        if len(groups) > 1 or any(each.kind is GroupKind.REENTRANT for each in groups):
-            return _callbacks(timeline, groups[0])[0]
+    first: dict[NodeId, Entity] = {}
+    for group in timeline.groups.values():
+        for callback in _callbacks(timeline, group)[:1]:
+            if group.node in first or group.kind is GroupKind.REENTRANT:
+                return first.get(group.node, callback)
+            first[group.node] = callback
     return None
 
 
 def _callbacks(timeline: Timeline, group: Group) -> list[Entity]:
-    """The entities of a group that a program calls its own: with a callback, or clients."""
+    """The first two entities of a group that a program calls its own: with a callback, or clients."""
     members = timeline.group_members(group.id)
-    return [each for each in members if each.callback or each.kind is EntityKind.CLIENT]
+    return list(islice((each for each in members if each.callback or each.kind is EntityKind.CLIENT), 2))

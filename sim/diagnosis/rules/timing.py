@@ -17,8 +17,8 @@ _HABIT = 3
 class OverlappingCallback(Rule):
     """A callback began again while an earlier call of it still ran, as a reentrant group allows.
 
-    What both calls read, change and write back can be lost. For services this is what reentrant groups are
-    made for, hence a remark.
+    What both calls read, change and write back can be lost, unless a lock guards that, which the trace does
+    not tell. For services this is what reentrant groups are made for, hence a remark.
     """
 
     id = "overlapping-callback"
@@ -40,12 +40,15 @@ class OverlappingCallback(Rule):
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Name the danger."""
         subject = who(found.subject, timeline)
-        cure = f"give {subject} a MutuallyExclusiveCallbackGroup, or guard what its calls share with a lock"
+        cure = (
+            f"give {subject} a MutuallyExclusiveCallbackGroup, or see that a lock guards what its calls share"
+        )
         if entity_of(found, timeline).kind is EntityKind.TIMER:
             cure += "; a callback shorter than the timer's period never overlaps"
         return Explanation(
             f"{subject} ran twice at once for {duration(found.lasted)}{often(found.count)}",
-            "a reentrant group lets the same callback in again, and one call can undo what the other changed",
+            "a reentrant group lets the same callback in again; without a lock, one call can undo what the "
+            "other changed",
             cure,
             place_of(found.subject, timeline),
         )

@@ -58,12 +58,22 @@ class NoFreeWorker(Rule):
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Name who kept the threads."""
         subject, culprit = who(found.subject, timeline), who(found.culprit, timeline)
-        alone = thread_count(timeline) == 1
-        busy = f"the only thread ran {culprit}" if alone else f"all threads were busy, one with {culprit}"
+        beside_itself = len(timeline.spans_of(found.culprit, Window(found.at, found.at + 1)))
+        cure = f"spin with {one_thread_more(timeline)}, or keep {culprit} short"
+        if thread_count(timeline) == 1:
+            busy = f"the only thread ran {culprit}"
+        elif beside_itself > 1:
+            busy = f"{beside_itself} calls of {culprit} kept a thread each, and no thread was free"
+            cure = (
+                f"give {culprit} a MutuallyExclusiveCallbackGroup: then its calls wait outside, without a "
+                "thread; for a lock they wait inside, and one thread more would wait there too"
+            )
+        else:
+            busy = f"all threads were busy, one with {culprit}"
         return Explanation(
             f"{subject} waited {duration(found.lasted)}: {busy}{often(found.count)}",
             "its group would have let it in, but a callback also needs a thread to run on",
-            f"spin with {one_thread_more(timeline)}, or keep {culprit} short",
+            cure,
             place_of(found.culprit, timeline) or place_of(found.subject, timeline),
         )
 
@@ -93,7 +103,7 @@ class NodeNeverSpins(Rule):
             yield Finding(self, since, look.end, wait.entity, about=name, size=look.end - since)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Tell whether it ever was spun."""
+        """Tell whether it ever was spun, and whether there is an executor that could."""
         subject = who(found.subject, timeline)
         node = timeline.entities[found.subject].node
         ever = any(
@@ -102,7 +112,10 @@ class NodeNeverSpins(Rule):
         )
         what = "nobody spins its node any more" if ever else "nobody ever spun its node"
         cure = "call rclpy.spin(node), or add the node to an executor and spin that"
-        if ever:
+        if timeline.executors and not ever:
+            what = "no executor that spins has its node"
+            cure = "add the node to an executor, and call spin() on that: one that is only made runs nothing"
+        elif ever:
             cure = (
                 "keep spinning the node: spin() has returned, or spin_until_future_complete() "
                 "took the node away from its executor"

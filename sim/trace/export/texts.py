@@ -4,13 +4,17 @@ import re
 
 from sim.trace.model import Nanoseconds
 
-_UNPRINTABLE = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
+_CONTROLS = "\x00-\x08\x0b-\x1f\x7f-\x9f"
+_DECEIVERS = "\u200b\u200e\u200f\u202a-\u202e\u2060\u2066-\u2069\ufeff"
+"""What turns other text round, or stands in it unseen."""
+_NO_TEXT = "\ud800-\udfff\ufffe\uffff"
+_UNPRINTABLE = re.compile(f"[{_CONTROLS}{_DECEIVERS}{_NO_TEXT}]")
 _FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r", "\n")
 _MARKDOWN = re.compile(r"([\\`*\[\]#|~<>&$]|(?<![^\W_])_|_(?![^\W_]))")
 
 
 def printable(text: str) -> str:
-    """The text with what neither XML nor UTF-8 can hold (control characters, halves of pairs) as ``�``."""
+    """The text with what XML or UTF-8 cannot hold, a terminal obeys or a reader is deceived by as ``�``."""
     return _UNPRINTABLE.sub("\N{REPLACEMENT CHARACTER}", text)
 
 
@@ -26,7 +30,7 @@ def cell(text: str) -> str:
     Source: OWASP, "CSV Injection".
     """
     clean = printable(text)
-    return f"'{clean}" if clean.lstrip(" ").startswith(_FORMULA_STARTS) else clean
+    return f"'{clean}" if text.lstrip(" ").startswith(_FORMULA_STARTS) else clean
 
 
 def markdown(text: str) -> str:

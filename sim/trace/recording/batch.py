@@ -57,5 +57,5 @@ def unpack_batch(data: bytes) -> list[AnyEvent]:
         raise BatchError("wrong length")
     try:
         return decode(data[_HEAD.size :])
-    except (msgspec.DecodeError, RecursionError) as error:
+    except msgspec.DecodeError as error:
         raise BatchError(str(error)) from None

@@ -272,7 +272,10 @@ class Recording:
 _OUTLINED = frozenset(
     {Opcode.HEADER, Opcode.SCHEMA, Opcode.CHANNEL, Opcode.METADATA, Opcode.ATTACHMENT},
 )
-_UNREADABLE = (struct.error, ValueError, McapError, MemoryError, batch.BatchError, batch.NewerFormatError)
+_UNREADABLE = (
+    *(struct.error, OverflowError, ValueError, McapError, MemoryError),
+    *(batch.BatchError, batch.NewerFormatError),
+)
 """What the mcap library raises where a record's content is not what it should be."""
 
 

@@ -1,0 +1,30 @@
+"""The rule on what the trace itself lacks."""
+
+from collections.abc import Iterator
+
+from sim.diagnosis.look import Look
+from sim.diagnosis.rule import Explanation, Finding, Rule, Weight
+from sim.trace.timeline import Timeline
+
+
+class GapsInTrace(Rule):
+    """Events were thrown away, so other rules may have missed a start, an end or a reply."""
+
+    id = "gaps-in-trace"
+    summary = "events are missing, and other findings may be wrong"
+    weight = Weight.REMARK
+
+    def check(self, look: Look) -> Iterator[Finding]:
+        """Tell how many are missing so far."""
+        if look.timeline.lost:
+            yield Finding(self, 0, look.end, size=look.timeline.lost)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Tell what to make of the other findings."""
+        missing = "1 event is" if found.size == 1 else f"{found.size:,} events are"
+        return Explanation(
+            f"{missing} missing from the trace: what is found about calls, waits and queues may be wrong",
+            "the program did more at once than could be sent; a start, an end or a reply may be among it",
+            "let the program do less at once, or run it on virtual time, where no event is lost",
+            None,
+        )
