@@ -46,6 +46,11 @@ def find(lesson_id: str) -> Lesson:
     )
 
 
+def comes_along(lesson: Lesson) -> bool:
+    """Tell whether a lesson is one of the package's own; others run nothing before somebody opens them."""
+    return lesson.folder.is_relative_to(ROOT)
+
+
 def lessons_in(folder: Path) -> tuple[Lesson, ...]:
     """Return the lessons that lie in a folder, or in folders in it, by their numbers; the folder may be one.
 
@@ -83,18 +88,31 @@ def _elsewhere(folders: str) -> Iterator[tuple[str, Path]]:
 
 def _announced() -> Iterator[tuple[str, Path]]:
     from importlib.metadata import entry_points
-    from importlib.util import find_spec
 
     for point in entry_points(group=ENTRY_POINTS):
         source = f"the entry point {point.name!r} of {ENTRY_POINTS}"
-        try:
-            spec = find_spec(point.value)
-        except (ImportError, ValueError):  # a package around it is missing, or the name is none
-            spec = None
-        if spec is None or not spec.submodule_search_locations:
+        locations = _locations(point.value)
+        if not locations:
             raise BadLesson(f"{source}: there is no package {point.value!r}")
-        for location in spec.submodule_search_locations:
+        for location in locations:
             yield source, Path(location)
+
+
+def _locations(package: str) -> list[str]:
+    """The folders of a package, none if there is no such package; nothing of it or around it is imported."""
+    from importlib.machinery import PathFinder
+    from importlib.util import find_spec
+
+    first, *others = package.split(".")
+    try:
+        spec = find_spec(first) if first else None
+        for depth in range(len(others)):
+            above = spec and spec.submodule_search_locations
+            # importlib's own way to a package in another one imports the outer one.
+            spec = PathFinder.find_spec(".".join([first, *others[: depth + 1]]), above) if above else None
+    except (ImportError, ValueError):  # the name is none, or a module's that was made by hand
+        return []
+    return list((spec and spec.submodule_search_locations) or ())
 
 
 def _check_ids(every: list[Lesson]) -> None:

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from itertools import pairwise
-from typing import Annotated
+from typing import Annotated, Literal
 
 import msgspec
 from msgspec import Meta, Struct
@@ -29,6 +29,9 @@ class Setup(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """Command line of the node, without the program's name."""
     threads_argument: Text | None = None
     """The argument that carries the number of threads; None when the node fixes its executor itself."""
+    clock: Literal["virtual", "real"] = "virtual"
+    """Which time the node runs on. On virtual time computing takes none; what is about that needs the real
+    clock, with checks and answers that come out alike on a machine that is busy otherwise."""
 
     def __post_init__(self) -> None:
         if self.arguments and self.arguments[-1] == self.threads_argument:
@@ -87,7 +90,7 @@ class Prediction(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
 
 
 class Run(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
-    """The run on virtual time that predictions, checks and declared diagnoses are about. Times in seconds."""
+    """The run that predictions, checks and declared diagnoses are about. Times in seconds of its clock."""
 
     seconds: Seconds = 30.0
     calls: tuple[Moment, ...] = ()

@@ -42,7 +42,11 @@ class Judge:
 
     def verdicts(self, run: Timeline) -> list[Judged]:
         """Judge a run that is over by every check, in their order."""
-        return [Judged(check, _verdict(check, run)) for check in self.checks]
+        return [self.judge(check, run) for check in self.checks]
+
+    def judge(self, check: Check, run: Timeline) -> Judged:
+        """Judge a run that is over by one of the checks; one that stumbles over the run has not passed."""
+        return Judged(check, _verdict(check, run))
 
     def true_answer(self, prediction: Prediction, run: Timeline) -> int:
         """Return which answer of a prediction a run shows to be true, from 0.

@@ -114,7 +114,9 @@ def _table(path: Path) -> dict[str, Any]:
             return tomllib.load(file)
     except OSError as error:
         raise BadLesson(f"{path}: cannot be read: {error.strerror}") from error
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except RecursionError as error:
+        raise BadLesson(f"{path}: is not valid TOML: it is nested too deeply") from error
+    except ValueError as error:  # of the parser itself, and of what it makes numbers and texts with
         raise BadLesson(f"{path}: is not valid TOML: {error}") from error
 
 

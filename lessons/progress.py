@@ -43,6 +43,16 @@ def usual_path() -> Path:
     return platformdirs.user_state_path("cbtui", appauthor=False) / FILE_NAME
 
 
+def faulty_line(path: Path) -> int | None:
+    """Return the number of the first line of a progress file that is none, None if all are; changes nothing.
+
+    Raises:
+        OSError: the file cannot be read.
+    """
+    lines = enumerate(path.read_bytes().splitlines(), start=1)
+    return next((number for number, line in lines if _entry_in(line) is None), None)
+
+
 class Progress:
     """The progress in all lessons: a file of JSON lines, one for each lesson.
 

@@ -1,4 +1,4 @@
-"""Checks over a run on virtual time, and what a lesson's own checks and answers are made of."""
+"""Checks over a run, and what a lesson's own checks and answers are made of."""
 
 from lessons.checks.callbacks import (
     exclusive_groups_hold,

@@ -19,7 +19,7 @@ class Verdict:
 
 @dataclass(frozen=True, slots=True)
 class Check:
-    """Something that a run on virtual time must show.
+    """Something that a run must show.
 
     ``asks`` says what, in a few words that go on neither with a full stop nor with a number; ``judge``
     looks at a whole run. It must take any run, also one in which the callbacks it looks for are missing.

@@ -2,6 +2,7 @@
 
 from lessons.checks.check import Check, Verdict
 from lessons.checks.reading import SECOND, requests_of, seconds
+from sim.trace.events import EntityKind
 from sim.trace.timeline import Timeline
 
 
@@ -29,7 +30,7 @@ def replies_within(service: str, limit: float) -> Check:
 
 
 def every_call_answered() -> Check:
-    """Every service call of the run gets its answer; there is at least one."""
+    """Every service call of the run gets its answer, and its caller takes it; there is at least one."""
     expected = "an answer to each"
 
     def judge(run: Timeline) -> Verdict:
@@ -40,9 +41,22 @@ def every_call_answered() -> Check:
         if open_:
             seen = f"{len(open_)} of {len(calls)} without one, the first of {open_[0].service}"
             return Verdict(False, expected, seen, open_[0].sent)
+        unread = _not_taken(run)
+        left = [call for call in calls if call.id in unread]
+        if left:
+            seen = f"{len(left)} of {len(calls)} not taken by the caller, the first of {left[0].service}"
+            return Verdict(False, expected, seen, left[0].sent)
         return Verdict(True, expected, f"{len(calls)} of {len(calls)} answered")
 
     return Check("every service call is answered", judge)
+
+
+def _not_taken(run: Timeline) -> set[int]:
+    """The calls whose replies lie in a client's queue when a run is over, or wait for a thread."""
+    last = run.moment(run.end)
+    clients = (entity for entity in last.queues if run.entities[entity].kind is EntityKind.CLIENT)
+    queued = {message.id for client in clients for message in last.queues[client].messages}
+    return queued | {blocked.call for blocked in last.blocked.values()}
 
 
 def log_says(text: str, at_least: int = 1) -> Check:

@@ -39,6 +39,7 @@ def test_the_lessons_stand_in_teaching_order() -> None:
         "lost-exceptions",
         "nodes-in-one-executor",
         "two-executors",
+        "two-threads-no-faster",
     ]
 
 

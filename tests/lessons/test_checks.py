@@ -29,7 +29,7 @@ from lessons.checks import (
     turns,
     uses_threads,
 )
-from sim.trace.events import RequestLost
+from sim.trace.events import CallbackStarted, EntityReady, RequestLost
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
@@ -100,6 +100,31 @@ def called(*calls: tuple[float, float | None], lost: bool = False) -> Timeline:
         call = run.call("/stop", sent, replied)
         if lost:
             run.add(RequestLost(ns(sent), call, "/stop"))
+    run.over(10.0)
+    return timeline(run)
+
+
+def answered(*, taken: bool) -> Timeline:
+    """A call of /stop that is answered; the answer is taken by the client, or stays in its queue."""
+    run = Run()
+    group = run.exclusive(run.node("/node"))
+    client = run.client(group, "/stop")
+    call = run.call("/stop", 2.0, 3.0)
+    run.add(EntityReady(ns(3.0), client, 1, call))
+    if taken:
+        run.add(CallbackStarted(ns(3.0), client, run.thread("MainThread"), call, 0, 0))
+    run.over(10.0)
+    return timeline(run)
+
+
+def answered_and_waited_for(*, until: float | None) -> Timeline:
+    """A call of /stop that is answered, while its caller stands still until a time, or for ever."""
+    run = Run()
+    timer = run.timer(run.exclusive(run.node("/node")), "tick", 1.0)
+    worker = run.thread("ThreadPoolExecutor-0_0")
+    run.start(timer, worker, 2.0)
+    call = run.call("/stop", 2.0, 3.0, entity=timer)
+    run.blocked(call, "/stop", worker, timer, 2.0, until)
     run.over(10.0)
     return timeline(run)
 
@@ -176,6 +201,20 @@ def said(*texts: str) -> Timeline:
             called((1.0, 1.5), (2.0, 9.0)),
             called((1.0, 1.5), (2.0, None)),
             "1 of 2 without one, the first of /stop",
+            2.0,
+        ),
+        (
+            every_call_answered(),
+            answered(taken=True),
+            answered(taken=False),
+            "1 of 1 not taken by the caller, the first of /stop",
+            2.0,
+        ),
+        (
+            every_call_answered(),
+            answered_and_waited_for(until=3.0),
+            answered_and_waited_for(until=None),
+            "1 of 1 not taken by the caller, the first of /stop",
             2.0,
         ),
         (log_says("TICK", at_least=2), said("TICK", "TACK", "TICK"), said("TICK", "TACK"), "1", 1.0),

@@ -5,7 +5,10 @@ from pathlib import Path
 
 import pytest
 
+from cbtui.checking import setup_to_judge
+from cbtui.lesson_setup import setup_for
 from lessons.lesson import BadLesson, Lesson, Setting, Try, number_after, read_lesson
+from sim.engine.setup import RobotUse
 
 WHOLE = """\
 id = "two-cooks"
@@ -249,6 +252,23 @@ def test_a_lesson_without_all_that_has_a_run_and_nothing_to_mend(kitchen: Kitche
         "",
     )
     assert lesson.run.seconds == 30
+
+
+def test_a_lesson_runs_on_virtual_time(kitchen: Kitchen) -> None:
+    lesson = read_lesson(kitchen(WHOLE))
+    for setup in (setup_for(lesson), setup_to_judge(lesson), setup_to_judge(lesson, Path("own.py"))):
+        assert (setup.clock, setup.robot) == ("virtual", RobotUse.ALWAYS)
+
+
+def test_a_lesson_that_names_the_real_clock_runs_on_that(kitchen: Kitchen) -> None:
+    lesson = read_lesson(kitchen(WHOLE.replace("[setup]", '[setup]\nclock = "real"')))
+    for setup in (setup_for(lesson), setup_to_judge(lesson), setup_to_judge(lesson, Path("own.py"))):
+        assert (setup.clock, setup.robot) == ("real", RobotUse.WHEN_USED)
+
+
+def test_a_clock_that_does_not_exist_is_refused(kitchen: Kitchen) -> None:
+    sentence = sentence_about(kitchen(WHOLE.replace("[setup]", '[setup]\nclock = "wall"')))
+    assert sentence == "the field 'setup.clock' is wrong: invalid enum value 'wall'"
 
 
 def test_what_is_for_after_the_run_lies_beside_the_guide(kitchen: Kitchen) -> None:

@@ -1,13 +1,16 @@
 """What lint-lesson finds wrong in a lesson, each fault in one sentence."""
 
 import shutil
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
-from cbtui.lesson_lint import faults_in_texts, faults_of
+from cbtui import lesson_lint
+from cbtui.lesson_lint import faults_in_runs, faults_in_texts, faults_of
 from cbtui.lesson_scaffold import TEMPLATE
-from lessons.lesson import read_lesson
+from lessons.judge import Judge
+from lessons.lesson import Lesson, read_lesson
 
 
 @pytest.fixture
@@ -133,7 +136,8 @@ def test_a_rule_that_does_not_exist_is_named(folder: Path) -> None:
 def test_a_node_that_ends_its_process_is_told_once(folder: Path) -> None:
     (folder / "node.py").write_text("import os\nos._exit(3)\n")
     assert list(faults_of(folder)) == [
-        f"{folder}/node.py: node.py ended its whole process at 0.000 s: the engine ended with exit code 3"
+        f"{folder}/node.py: node.py ended its whole process at 0.000 s: "
+        "the engine ended with exit code 3 (node.py:2, in <module>)"
     ]
 
 
@@ -144,3 +148,23 @@ def test_a_lesson_without_a_question_is_incomplete(folder: Path) -> None:
     assert list(faults_in_texts(read_lesson(folder))) == [
         f"{folder}/lesson.toml: there is no [[prediction]]; a lesson asks one or two"
     ]
+
+
+def test_on_the_real_clock_a_fault_counts_only_if_longer_runs_have_it_too(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    change(folder / "lesson.toml", "[setup]", '[setup]\nclock = "real"')
+    lesson = read_lesson(folder)
+    lengths: list[float] = []
+
+    def faults(lesson: Lesson, _judge: Judge, _limit: float) -> Iterator[str]:
+        lengths.append(lesson.run.seconds)
+        if lesson.run.seconds < enough:
+            yield "the computer was busy"
+
+    monkeypatch.setattr(lesson_lint, "_faults_in_runs", faults)
+    enough = 20.0
+    assert list(faults_in_runs(lesson, Judge(lesson), 60.0)) == []
+    enough = 50.0
+    assert list(faults_in_runs(lesson, Judge(lesson), 60.0)) == ["the computer was busy"]
+    assert lengths == [10, 30, 10, 30]

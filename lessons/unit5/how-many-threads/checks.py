@@ -20,8 +20,8 @@ SENSORS = ("/odom", "/scan")
 def _no_thread_too_many(run: Timeline) -> Verdict:
     most = max((each.threads for each in run.executors.values()), default=0)
     needed = Concurrency(run).peak(run.end)
-    expected = f"no more than the {needed} that were needed at once"
-    return Verdict(0 < most <= needed, expected, f"threads: {most}")
+    expected = f"no more than were ever needed at once: {needed}"
+    return Verdict(0 < most <= needed, expected, f"{most}")
 
 
 CHECKS = (
