@@ -16,15 +16,21 @@ def main() -> None:
     """Measure what was asked for."""
     options = _parse()
     known = records.read()
-    print(f"Python {platform.python_version()}, {os.cpu_count()} cores, u = {unit() * 1e9:.0f} ns")
+    machine = f"Python {platform.python_version()}, {platform.machine()}, {os.cpu_count()} cores"
+    print(f"{machine}, load {os.getloadavg()[0]:.1f}, u = {unit() * 1e9:.0f} ns")
+    if known.machine:
+        print(f"recorded: {known.machine}")
     print(_COLUMNS.format("", "unit", "goal", "rclpy", "before", "last", "now", "change"))
     measured: dict[str, float] = {}
+    load: dict[str, float] = {}
     for figure in FIGURES:
         if all(word in figure.name for word in options.words):
+            load[figure.name] = os.getloadavg()[0]
             measured[figure.name] = figure.median_of(options.rounds)
             print(row(figure, known, measured[figure.name]), flush=True)
     if options.record:
-        records.write(replace(known, last={**known.last, **measured}))
+        last, load = {**known.last, **measured}, {**known.load, **load}
+        records.write(replace(known, last=last, load=load, machine=machine))
 
 
 def row(figure: Figure, known: records.Records, now: float) -> str:

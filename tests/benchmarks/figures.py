@@ -8,11 +8,25 @@ import time
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from statistics import median
 from typing import Any
 
 from sim.ros.interfaces import message
-from tests.benchmarks import exporting, memory, recording, scenes, seeking, terminal
+from tests.benchmarks import (
+    drawing,
+    exporting,
+    growing,
+    keys,
+    looking,
+    memory,
+    recording,
+    scenes,
+    seeking,
+    starting,
+    terminal,
+    virtual,
+)
 from tests.benchmarks.scenes import MakeExecutor, Scene, multi, pinned, single
 
 NUMBER: Any = message("std_msgs", "Int32")(data=7)
@@ -21,6 +35,7 @@ ODOMETRY: Any = message("nav_msgs", "Odometry")()
 CALLS = 5_000
 FEW_CALLS = 1_000
 MANY_EVENTS = 200_000
+PRESSES = 200
 
 
 def unit() -> float:
@@ -54,6 +69,24 @@ class Figure:
         """Measure several times, after one run that nobody counts."""
         self.measure(self.calls // 10)
         return median(self.measure(self.calls) for _ in range(rounds))
+
+
+class DearFigure(Figure):
+    """One that takes a console or half a minute to measure: it is measured once, whatever the rounds."""
+
+    def median_of(self, rounds: int) -> float:
+        """Measure once."""
+        return self.measure(self.calls)
+
+
+def _shares_of(waits: Callable[[int], list[float]]) -> Callable[[float], Callable[[int], float]]:
+    """What gives the milliseconds that a share of waits stays within; measured once for all shares."""
+    kept = lru_cache(maxsize=1)(waits)
+    return lambda share: lambda presses: keys.percentile(kept(presses), share) * 1e3
+
+
+_in_a_lesson = _shares_of(keys.in_a_lesson)
+_beside_a_busy_node = _shares_of(keys.beside_a_busy_node)
 
 
 def _in_units(scene: Scene, make_executor: MakeExecutor) -> Callable[[int], float]:
@@ -141,4 +174,25 @@ FIGURES = (
     Figure("export to chrome", "s a million", 15, "", exporting.chrome, MANY_EVENTS),
     Figure("export to csv", "s a million", 15, "", exporting.csv, MANY_EVENTS),
     Figure("export of picture and report", "s a million", 15, "", exporting.pages, MANY_EVENTS),
+    Figure("a frame as zoomed-out lanes fill", "ms", 8, "", lambda n: drawing.filling_frame(n) * 1e3, 3600),
+    Figure(
+        "a frame of zoomed-out lanes after", "ms", 8, "", lambda n: 1e3 * drawing.following_frame(n), 3600
+    ),
+    Figure(
+        "longest look of the rules, 10 min read", "ms", 30, "", lambda n: looking.longest_look(n) * 1e3, 600
+    ),
+    Figure("cbtui --help", "ms", 150, "", lambda n: starting.command_help(n) * 1e3),
+    DearFigure("the robot's virtual second", "ms", 20, "", lambda n: virtual.robot(n) * 1e3, 60),
+    DearFigure("20 s of every lesson", "s", 60, "", virtual.all_lessons, 20),
+    DearFigure("menu on screen", "ms", 800, "", lambda n: starting.menu(n) * 1e3),
+    DearFigure("first callbacks of a lesson on screen", "ms", 800, "", lambda n: starting.lesson(n) * 1e3),
+    DearFigure("key to screen, half within", "ms", 30, "", _in_a_lesson(0.5), PRESSES),
+    DearFigure("key to screen, 99 % within", "ms", 60, "", _in_a_lesson(0.99), PRESSES),
+    DearFigure("key beside a busy node, half within", "ms", 30, "", _beside_a_busy_node(0.5), PRESSES),
+    DearFigure("key beside a busy node, 99 % within", "ms", 60, "", _beside_a_busy_node(0.99), PRESSES),
+    DearFigure("console that draws a lesson", "% of a core", 15, "", lambda n: drawing.live(n) * 1e2, 20),
+    DearFigure(
+        "and the camera's pictures", "% of a core", 25, "", lambda n: drawing.with_camera(n) * 1e2, 20
+    ),
+    DearFigure("memory of a console in half an hour", "MB", 10, "", growing.added, 1800),
 )

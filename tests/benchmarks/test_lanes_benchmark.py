@@ -6,48 +6,17 @@ import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
 from cbtui.widgets.lanes import Painter
-from sim.trace import events as ev
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
+from tests.benchmarks.drawing import FRAME, long_run
 from tests.support.runs import ns
 
 HOUR = 3600
-FRAME = ns(1 / 30)
 
 
 @pytest.fixture(scope="module")
 def hour() -> Timeline:
-    """Eight threads and eight groups of one: six at 20 Hz, two nearly always busy; one hour."""
-    timeline = Timeline()
-    timeline.extend([ev.RunStarted(0, "hour", "virtual", 0), ev.NodeAppeared(0, 1, "/node")])
-    told_events: list[ev.AnyEvent] = []
-    for lane in range(1, 9):
-        timeline.extend(
-            [
-                ev.ThreadAppeared(0, lane, f"ThreadPoolExecutor-0_{lane - 1}"),
-                ev.GroupAppeared(0, lane, 1, ev.GroupKind.EXCLUSIVE, "MutuallyExclusiveCallbackGroup"),
-                ev.EntityAppeared(
-                    0,
-                    lane,
-                    1,
-                    lane,
-                    ev.EntityKind.SUBSCRIPTION,
-                    f"/t{lane}",
-                    f"t{lane}_callback",
-                    "n.py",
-                    1,
-                    2,
-                    10,
-                    0,
-                ),
-            ]
-        )
-        every, lasts = (0.05, 0.0004) if lane < 7 else (2.0, 1.5)
-        for start in range(ns(lane / 1000), ns(HOUR), ns(every)):
-            told_events.append(ev.CallbackStarted(start, lane, lane, 0, 1000, 0))
-            told_events.append(ev.CallbackEnded(start + ns(lasts), lane, lane))
-    timeline.extend(sorted(told_events, key=lambda event: event.t))
-    return timeline
+    return long_run(HOUR)
 
 
 @pytest.mark.parametrize("seconds", [1, 10, 60, 600])

@@ -1,0 +1,102 @@
+"""Follows every message of a trace to its end: published, then delivered, dropped, or still in a queue."""
+
+from collections import defaultdict
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+
+from sim.trace.events import (
+    AnyEvent,
+    CallbackStarted,
+    EntityAppeared,
+    EntityGone,
+    EntityId,
+    EntityKind,
+    EntityReady,
+    MessageDropped,
+    MessageId,
+    Published,
+    QosMismatched,
+)
+
+
+@dataclass
+class _Subscription:
+    """What came to a subscription, and what became of it. ``queue`` is in order of arrival."""
+
+    name: str
+    published: int = 0
+    arrived: int = 0
+    delivered: int = 0
+    dropped: int = 0
+    queue: dict[MessageId, None] = field(default_factory=dict)
+
+
+class MessageCounts:
+    """Takes the events of a run in order; ``troubles`` are sentences on what does not add up."""
+
+    def __init__(self) -> None:
+        self.troubles: list[str] = []
+        self.messages = 0
+        self._all: dict[EntityId, _Subscription] = {}
+        self._of_topic: dict[str, dict[EntityId, _Subscription]] = defaultdict(dict)
+
+    def take(self, events: Iterable[AnyEvent]) -> None:
+        """Go on with the run."""
+        for event in events:
+            match event:
+                case Published(topic=topic):
+                    self.messages += 1
+                    for subscription in self._of_topic[topic].values():
+                        subscription.published += 1
+                case EntityReady(entity=entity) if entity in self._all:
+                    self._arrive(event, self._all[entity])
+                case CallbackStarted(entity=entity) if entity in self._all:
+                    self._all[entity].delivered += 1
+                    self._leave(event, self._all[entity])
+                case MessageDropped(entity=entity) if entity in self._all:
+                    self._all[entity].dropped += 1
+                    self._leave(event, self._all[entity])
+                case EntityAppeared(entity=entity, kind=EntityKind.SUBSCRIPTION, name=name):
+                    self._all[entity] = self._of_topic[name][entity] = _Subscription(name)
+                case EntityGone(entity=entity) if entity in self._all:
+                    self._of_topic[self._all[entity].name].pop(entity, None)
+                case QosMismatched(entity=entity) if entity in self._all:
+                    self._of_topic[self._all[entity].name].pop(entity, None)
+
+    def finish(self) -> None:
+        """See whether all adds up, when no more events come."""
+        for entity, each in self._all.items():
+            followed = self._of_topic[each.name].get(entity) is each
+            if followed and each.published != each.arrived:
+                self._complain(each, f"{each.published} were published and {each.arrived} arrived")
+            if each.arrived != each.delivered + each.dropped + len(each.queue):
+                self._complain(
+                    each,
+                    f"{each.arrived} arrived, {each.delivered} were delivered, {each.dropped} dropped and "
+                    f"{len(each.queue)} wait",
+                )
+
+    def _arrive(self, event: EntityReady, subscription: _Subscription) -> None:
+        subscription.arrived += 1
+        if event.message in subscription.queue:
+            self._complain(subscription, f"message {event.message} arrived twice")
+        subscription.queue[event.message] = None
+        self._compare(event, subscription)
+
+    def _leave(self, event: CallbackStarted | MessageDropped, subscription: _Subscription) -> None:
+        if event.message not in subscription.queue:
+            self._complain(subscription, f"message {event.message} left and had not arrived")
+        subscription.queue.pop(event.message, None)
+        self._compare(event, subscription)
+
+    def _compare(
+        self, event: EntityReady | CallbackStarted | MessageDropped, subscription: _Subscription
+    ) -> None:
+        if event.depth != len(subscription.queue):
+            self._complain(
+                subscription, f"at {event.t} ns {event.depth} wait, and {len(subscription.queue)} by count"
+            )
+
+    def _complain(self, subscription: _Subscription, what: str) -> None:
+        if len(self.troubles) < 5:
+            self.troubles.append(f"{subscription.name}: {what}")

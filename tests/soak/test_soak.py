@@ -1,0 +1,115 @@
+"""The soak of the lessons finds what it looks for, and says what it came to, whenever it ends."""
+
+import signal
+import sys
+from collections import Counter
+from collections.abc import Callable
+
+import pytest
+
+from sim.trace.events import AnyEvent, CallbackStarted, EntityReady, MessageDropped, Published
+from tests.soak import keys, lessons
+from tests.soak.footprint import footprint, growth
+from tests.soak.lesson_runs import SECOND, Came, choose, run_twice
+from tests.soak.message_counts import MessageCounts
+from tests.soak.walks import Walk
+from tests.support.builder import Run
+
+
+def _counts(without: type | None = None) -> list[str]:
+    """What does not add up of a run in which a message goes its way, without events of a kind."""
+    run = Run("soak")
+    thread = run.thread("MainThread")
+    group = run.exclusive(run.node("/node"))
+    entity = run.subscription(group, "/odom", "odom_callback", lines=(1, 2))
+    counts = MessageCounts()
+    counts.take(run.events)
+    way: list[AnyEvent] = [
+        Published(t=1, message=1, topic="/odom", node=0, entity=0),
+        EntityReady(t=1, entity=entity, depth=1, message=1),
+        Published(t=2, message=2, topic="/odom", node=0, entity=0),
+        EntityReady(t=2, entity=entity, depth=2, message=2),
+        MessageDropped(t=2, entity=entity, depth=1, message=1),
+        CallbackStarted(t=3, entity=entity, thread=thread, message=2, age=1, depth=0),
+    ]
+    counts.take(event for event in way if without is None or not isinstance(event, without))
+    counts.finish()
+    return counts.troubles
+
+
+def test_a_message_that_goes_its_way_adds_up() -> None:
+    assert _counts() == []
+
+
+@pytest.mark.parametrize("kind", [Published, EntityReady, MessageDropped])
+def test_a_message_that_goes_astray_is_found(kind: type) -> None:
+    assert _counts(without=kind)
+
+
+def test_growth_is_told_from_warming_up() -> None:
+    assert growth([1, 5, 9, 10, 10, 10, 10, 10, 10]) == 0
+    assert growth([1, 2, 3, 4, 5, 6, 7, 8, 9]) == 3
+    assert growth([1, 2]) == 0
+
+
+def test_a_process_has_a_footprint_until_it_ends() -> None:
+    here = footprint()
+    assert here is not None
+    assert here.memory > 1_000_000
+    assert here.threads >= 1
+    assert here.files >= 3
+    assert footprint("no-such-process") is None
+
+
+def test_a_run_of_the_soak_is_the_same_twice_and_its_messages_add_up() -> None:
+    came = run_twice(choose(seed=7, number=2, longest=2.0))
+    assert came.troubles == []
+    assert came.title == "split-groups"
+    assert came.messages > 0
+    assert len(came.digest) == 64
+
+
+def test_a_seed_and_a_number_choose_the_same_run() -> None:
+    assert choose(1, 5, 60.0) == choose(1, 5, 60.0)
+    assert choose(1, 5, 60.0) != choose(2, 5, 60.0)
+
+
+def _once(result: object) -> Callable[..., object]:
+    """What returns a result, and is told to end when it is called again."""
+    results = iter([result])
+
+    def go(*_: object) -> object:
+        for each in results:
+            return each
+        signal.raise_signal(signal.SIGTERM)
+        raise AssertionError("nobody heard the signal")
+
+    return go
+
+
+def test_a_soak_of_lessons_that_is_told_to_end_says_what_it_came_to(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    came = Came("a-lesson", length=72 * SECOND, events=10, messages=4, troubles=["it went astray"])
+    monkeypatch.setattr(lessons, "run_twice", _once(came))
+    monkeypatch.setattr(sys, "argv", ["soak", "--hours", "9", "--seed", "3"])
+    before = signal.getsignal(signal.SIGTERM)
+    assert lessons.main() == 1
+    out, err = capsys.readouterr()
+    assert out.startswith("interrupted: seed 3, 0.02 virtual h twice in 1 runs")
+    assert out.endswith("1 in trouble\n")
+    assert out.count("\n") == 1
+    assert "run 0 (a-lesson): it went astray" in err
+    assert signal.getsignal(signal.SIGTERM) is before
+
+
+def test_a_soak_of_keys_that_is_told_to_end_says_what_it_came_to(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    done = Walk("menu", steps=["a", "b"], reached=Counter(MenuScreen=2))
+    monkeypatch.setattr(keys, "walk", _once(done))
+    monkeypatch.setattr(sys, "argv", ["soak", "--steps", "9"])
+    assert keys.main() == 130
+    assert capsys.readouterr().out == (
+        "interrupted: 2 steps in 1 walks (seed 0), 0 broke something; begun at menu 1; reached MenuScreen 2\n"
+    )
