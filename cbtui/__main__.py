@@ -1,8 +1,25 @@
-"""``python -m cbtui`` is the ``cbtui`` command."""
+"""``python -m cbtui`` and the ``cbtui`` command: whatever moment Ctrl-C comes at, 130 and not a word."""
 
 import sys
 
-from cbtui.cli import main
+_INTERRUPTED = 130
+
+
+def command() -> int:
+    """Carry out the command line of this process; returns the exit code."""
+    try:
+        from cbtui import interrupts
+
+        interrupts.install()
+        from cbtui.cli import main
+
+        try:
+            return main()
+        finally:
+            interrupts.ignore()
+    except KeyboardInterrupt:
+        return _INTERRUPTED
+
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(command())

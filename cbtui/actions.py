@@ -30,11 +30,16 @@ class Scope(StrEnum):
     LOG = "Log"
     FILTER = "Filter of the log"
     CODE = "Code"
+    CHECKS = "Checks of an exercise"
     PROMPT = "Prompt"
     THREADS = "Choice of threads"
     GROUP = "Choice of a group"
+    EXPORT = "Choice of a format"
     SETUP = "Set-up"
     DIAGNOSES = "Diagnoses"
+    PREDICTION = "Prediction"
+    SOLUTION = "Solution"
+    ASKING = "Question"
     NUMBER = "Choice of a number"
     MOMENT = "Choice of a moment"
     HELP = "Help"
@@ -67,17 +72,23 @@ _ALONE = (
     Scope.PROMPT,
     Scope.THREADS,
     Scope.GROUP,
+    Scope.EXPORT,
     Scope.SETUP,
     Scope.DIAGNOSES,
+    Scope.PREDICTION,
+    Scope.SOLUTION,
+    Scope.ASKING,
     Scope.NUMBER,
     Scope.MOMENT,
     Scope.HELP,
 )
-_ON_A_PANE = (Scope.LOG, Scope.CODE)
+_ON_A_PANE = (Scope.LOG, Scope.CODE, Scope.CHECKS)
 """Scopes of a pane of a lesson, whose actions work there beside the lesson's."""
 
 PANES = ("guide", "code", "factory", "robot", "log", "shell")
 """The panes of a lesson, in the order of their keys."""
+CHECKS = "checks"
+"""The pane that an exercise has beside them; its key comes after theirs."""
 
 ACTIONS = (
     Action("open", "enter", "open", "Open the highlighted lesson or file", Scope.MENU),
@@ -133,10 +144,16 @@ ACTIONS = (
     Action("open_here", "o", "editor", "Open the file at the line in $EDITOR", Scope.CODE),
     Action("copy", "y", "copy", "Copy the callback at the line", Scope.CODE),
     Action("let_go", "escape", "let go", "Pick no line, and go to what runs again", Scope.CODE),
+    Action("check_above", "up", "check", "Go to the check above", Scope.CHECKS, "Go to another check"),
+    Action("check_below", "down", "check", "Go to the check below", Scope.CHECKS, "Go to another check"),
+    Action("look_there", "enter", "look there", "Go to the moment that the check speaks of", Scope.CHECKS),
     Action("call_service", "s", "service", "Call the lesson's SetBool service with true", Scope.LESSON),
     Action("call_service_off", "S", "false", "Call the lesson's SetBool service with false", Scope.LESSON),
     Action("pause", "space", "pause", "Stop time for every thread", Scope.LESSON),
     Action("resume", "space", "go on", "Let time go on", Scope.LESSON),
+    Action("live", "0", "live", "Go back to the present", Scope.LESSON),
+    Action("predict", "P", "predict", "Say what you expect of the run; a given answer stays", Scope.LESSON),
+    Action("explain", "a", "explain", "Tell what the run shows to be true, and why", Scope.LESSON),
     Action(
         "step",
         "full_stop",
@@ -144,13 +161,25 @@ ACTIONS = (
         "Go on by one decision, in a pause; looking back, by one event",
         Scope.LESSON,
     ),
+    Action("run_again", "r", "run again", "Run again, when the run is over", Scope.LESSON),
     Action(
         "threads", "t", "threads", "Choose how many threads the executor gets, and run again", Scope.LESSON
     ),
+    Action(
+        "exercise",
+        "e",
+        "exercise",
+        "Do the exercise, in a file of your own in the current folder",
+        Scope.LESSON,
+    ),
+    Action("watch", "w", "watch", "Run your file again at the pace of real time", Scope.LESSON),
+    Action("hint", "h", "hint", "Take the next hint for the exercise", Scope.LESSON),
+    Action("lesson", "e", "lesson", "Go from the exercise back to its lesson", Scope.LESSON),
+    Action("next_lesson", "n", "next", "Open the next lesson", Scope.LESSON),
+    Action("solution", "H", "solution", "Look at the solution of the exercise", Scope.LESSON),
     Action("group", "g", "group", "Give the selected callback another group, and run again", Scope.LESSON),
     Action("set_up", "p", "set-up", "Change timers' periods and all else of the set-up", Scope.LESSON),
     Action("reset_world", "r", "reset", "Put the robot back to its start", Scope.LESSON),
-    Action("run_again", "r", "run again", "Run again, when the run is over", Scope.LESSON),
     Action("compare", "C", "compare", "Compare this run with the one before", Scope.LESSON),
     Action(
         "diagnoses",
@@ -159,8 +188,6 @@ ACTIONS = (
         "List what goes wrong in this run, why, and what to do about it",
         Scope.LESSON,
     ),
-    Action("next_lesson", "n", "next", "Open the next lesson", Scope.LESSON),
-    Action("live", "0", "live", "Go back to the present", Scope.LESSON),
     *(
         Action(
             f"show_pane('{name}')",
@@ -172,12 +199,27 @@ ACTIONS = (
         )
         for number, name in enumerate(PANES, start=1)
     ),
+    Action(
+        f"show_pane('{CHECKS}')",
+        str(len(PANES) + 1),
+        "pane",
+        "Go to the checks of an exercise",
+        Scope.LESSON,
+    ),
     Action("prompt", "colon", "ros2", "Type a ros2 line; tab completes, up brings lines back", Scope.LESSON),
     Action("filter_log", "/", "filter", "Go to the log, and filter it", Scope.LESSON),
     Action("open_source", "o", "editor", "Open the code in $EDITOR", Scope.LESSON),
     Action(
         "record", "R", "record", "Begin a recording of the run in the current folder, or end it", Scope.LESSON
     ),
+    Action(
+        "export",
+        "x",
+        "export",
+        "Make a picture, a report, a table or a trace of the run so far",
+        Scope.LESSON,
+    ),
+    Action("start_over", "ctrl+r", "start over", "End this run, and run again, at any time", Scope.LESSON),
     Action("go_to_time", "G", "go to", "Look back at a moment, or run on until it has come", Scope.LESSON),
     Action(
         "cycle_camera", "c", "camera", "Show the robot's map, the camera's picture, or both", Scope.LESSON
@@ -240,6 +282,13 @@ ACTIONS = (
         "Go to the selected lane's bar before or after the cursor",
     ),
     Action("deselect", "escape", "deselect", "Leave the lanes, and select nothing", Scope.LESSON),
+    Action(
+        "copy_details",
+        "y",
+        "copy",
+        "Copy the selected bar's details, or else the moment's, as text",
+        Scope.LESSON,
+    ),
     Action("next_pane", "tab", "next pane", "Go to the next pane", Scope.LESSON),
     Action("maximise", "z", "enlarge", "Let one pane fill the screen; press again to go back", Scope.LESSON),
     Action("leave", "q", "menu", "End the run and go back to the menu", Scope.LESSON),
@@ -269,6 +318,23 @@ ACTIONS = (
         Scope.COMPARE,
         "Show an earlier or later stretch, and leave the cursor",
     ),
+    Action(
+        "previous_event",
+        "left_curly_bracket",
+        "bar",
+        "Go back to the lane's bar before",
+        Scope.COMPARE,
+        "Go to the clicked lane's bar before or after the cursor",
+    ),
+    Action(
+        "next_event",
+        "right_curly_bracket",
+        "bar",
+        "Go on to the lane's next bar",
+        Scope.COMPARE,
+        "Go to the clicked lane's bar before or after the cursor",
+    ),
+    Action("deselect", "escape", "deselect", "Select nothing", Scope.COMPARE),
     Action("zoom_out", "less_than_sign", "zoom", "Show a longer stretch of time", Scope.COMPARE),
     Action("zoom_in", "greater_than_sign", "zoom", "Show a shorter stretch of time", Scope.COMPARE),
     Action("go_to_time", "G", "go to", "Go to a moment", Scope.COMPARE),
@@ -304,6 +370,18 @@ ACTIONS = (
     ),
     Action("choose('')", "p", "the program's", "Give it the group that the program says", Scope.GROUP),
     Action("close", "escape,q", "close", "Close the window, and leave everything as it is", Scope.GROUP),
+    *(
+        Action(f"choose('{name}')", key, "format", f"Export {what}", Scope.EXPORT)
+        for key, name, what in (
+            ("p", "picture", "a picture of the stretch on screen"),
+            ("w", "whole", "a picture of the whole run"),
+            ("r", "report", "a report"),
+            ("t", "table", "a table of the calls"),
+            ("u", "perfetto", "a trace for ui.perfetto.dev"),
+            ("c", "chrome", "a trace for chrome://tracing and Speedscope"),
+        )
+    ),
+    Action("close", "escape,q", "close", "Close the window, and export nothing", Scope.EXPORT),
     Action("change", "enter", "change", "Change what is highlighted", Scope.SETUP),
     Action("run", "r", "run with it", "Run again with what is changed", Scope.SETUP),
     Action("undo_all", "u", "undo all", "Have everything as the program says", Scope.SETUP),
@@ -312,6 +390,29 @@ ACTIONS = (
     Action("next", "down", "choose", "Highlight what is below", Scope.DIAGNOSES, "Highlight another"),
     Action("go", "enter", "go there", "Go to the moment and to the code", Scope.DIAGNOSES),
     Action("close", "escape,q", "close", "Close the window, and stay where you are", Scope.DIAGNOSES),
+    *(
+        Action(
+            f"choose({number})",
+            str(number),
+            "choose",
+            f"Highlight answer {number}",
+            Scope.PREDICTION,
+            "Highlight the answer with this number",
+        )
+        for number in range(1, 6)
+    ),
+    Action("previous", "up", "choose", "Highlight what is above", Scope.PREDICTION, "Highlight another"),
+    Action("next", "down", "choose", "Highlight what is below", Scope.PREDICTION, "Highlight another"),
+    Action("take", "enter", "answer", "Give the highlighted answer, for good", Scope.PREDICTION),
+    Action("skip", "escape", "without predicting", "Go on without an answer", Scope.PREDICTION),
+    Action("page_up", "pageup", "scroll", "Scroll the text up", Scope.PREDICTION),
+    Action("page_down", "pagedown", "scroll", "Scroll the text down", Scope.PREDICTION),
+    Action("close", "q", "back", "Go back to where you came from", Scope.PREDICTION),
+    Action("show_whole", "d", "whole file", "Show the whole solution", Scope.SOLUTION),
+    Action("show_difference", "d", "what differs", "Show only what differs", Scope.SOLUTION),
+    Action("close", "escape,q", "close", "Close the window", Scope.SOLUTION),
+    Action("take", "enter", "look at it", "Look at the solution", Scope.ASKING),
+    Action("close", "escape,q", "not yet", "Close the window, and look at nothing", Scope.ASKING),
     Action("go", "enter", "take", "Take the number", Scope.NUMBER),
     Action("close", "escape", "close", "Close the window, and leave the number as it is", Scope.NUMBER),
     Action("go", "enter", "go", "Go to the moment", Scope.MOMENT),
@@ -345,6 +446,7 @@ _PLACES = {
     Scope.LOG: "focused",
     Scope.FILTER: "focused",
     Scope.CODE: "focused",
+    Scope.CHECKS: "focused",
     Scope.PROMPT: "focused",
 }
 """What implements the actions of a scope, where it is not the screen."""

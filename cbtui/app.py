@@ -1,7 +1,9 @@
 """The application: opens the menu and the lessons, and knows what the terminal can show."""
 
+import asyncio
 import sys
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from time import time
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -15,19 +17,26 @@ from textual.types import CSSPathType
 from cbtui.actions import Scope, bindings_of
 from cbtui.ascii_filter import AsciiFilter
 from cbtui.colour_themes import STANDARD, THEMES
+from cbtui.commands.output import shown
+from cbtui.harmless_filter import HarmlessFilter
+from cbtui.interrupts import ENDING
 from cbtui.keymap import Keymap
+from cbtui.outcome import observe_engine
 from cbtui.recent import Kind, Opened, Recents
 from cbtui.screens.menu import MenuScreen
 from cbtui.theme import Charset
 from lessons.catalogue import find, lessons
 from lessons.lesson import Lesson
+from lessons.progress import Progress
 
 if TYPE_CHECKING:
     from textual.command import Provider
+    from textual.driver import Driver
 
     from cbtui.changes import Changes
     from cbtui.contenders import Contender, Terms
     from cbtui.live_run import Deliver, Ended, OpenSession, Session
+    from cbtui.outcome import Observe
     from cbtui.subject import Subject
     from sim.engine.setup import RunSetup
     from sim.trace.recording import Recording
@@ -54,11 +63,13 @@ def _engine_session(setup: "RunSetup", deliver: "Deliver", ended: "Ended") -> "S
 class CbtuiApp(App[None]):
     """The console.
 
-    ``start_lesson`` is the id of a lesson to open at once, ``start_file`` a program file, its arguments and
+    ``start_lesson`` is the id of a lesson to open at once, ``start_exercise`` of one whose exercise to open,
+    ``start_file`` a program file, its arguments and
     its clock, ``start_changes`` what is changed about either, ``start_recording`` a recording to show,
     ``start_comparison`` two runs to compare;
     ``theme`` is the name of a colour theme, ``keys`` the keys in force, and ``complaints`` are sentences to
-    begin with; ``open_session`` starts engines in place of the real ones.
+    begin with; ``open_session`` starts engines in place of the real ones, ``observe`` runs one to its end
+    beside the screen.
     """
 
     TITLE = "cbtui"
@@ -76,6 +87,7 @@ class CbtuiApp(App[None]):
         self,
         charset: str = Charset.BRAILLE,
         start_lesson: str | None = None,
+        start_exercise: str | None = None,
         start_file: tuple[Path, Sequence[str], str] | None = None,
         start_changes: "Changes | None" = None,
         start_recording: "Recording | None" = None,
@@ -84,10 +96,12 @@ class CbtuiApp(App[None]):
         keys: Keymap | None = None,
         complaints: Sequence[str] = (),
         open_session: "OpenSession | None" = None,
+        observe: "Observe" = observe_engine,
     ) -> None:
         super().__init__()
         self.charset = Charset(charset)
         self._start_lesson = start_lesson
+        self._start_exercise = start_exercise
         self._start_file = start_file
         self._start_changes = start_changes
         self._start_recording = start_recording
@@ -96,20 +110,43 @@ class CbtuiApp(App[None]):
         self._open_session = open_session or _engine_session
         self._open_preview = open_session or _unheard_session
         self._recents = Recents()
+        self.progress = Progress()
+        """How far the learner has come."""
+        self.observe = observe
         for each in THEMES:
             self.register_theme(each)
         self.theme = theme
         self.keys = keys or Keymap()
         self.set_keymap(self.keys.for_textual())
         self._ascii = AsciiFilter()
+        self._harmless = HarmlessFilter()
         self.saved: list[str] = []
         """Sentences on what was saved as screens were left."""
 
     def run(self, *args: Any, **options: Any) -> Any:
         """Run the console to its end, and say then what was saved as its screens were left."""
         result = super().run(*args, **options)
-        sys.stderr.writelines(f"{sentence}\n" for sentence in self.saved)
+        sys.stderr.writelines(shown(f"{sentence}\n") for sentence in self.saved)
         return result
+
+    async def run_async(self, *args: Any, **options: Any) -> Any:
+        """Run the console in a terminal, which gets back what it lent when the console is told to end.
+
+        It is by ``kill``, and by the terminal itself when its window is closed.
+        """
+        with suppress(NotImplementedError):  # Windows has no such signals
+            for number in ENDING:
+                asyncio.get_running_loop().add_signal_handler(number, self.exit, None, 128 + number)
+        return await super().run_async(*args, **options)
+
+    def get_driver_class(self) -> "type[Driver]":
+        """Return what keys are read from and all is drawn to."""
+        driver = super().get_driver_class()
+        if driver.__name__ == "LinuxDriver":
+            from cbtui.terminal_driver import TerminalDriver
+
+            return TerminalDriver
+        return driver
 
     def tell_saved(self, sentence: str) -> None:
         """Say what was saved when a screen was left: now, and once more when the terminal is as it was."""
@@ -118,7 +155,7 @@ class CbtuiApp(App[None]):
 
     def get_default_screen(self) -> Screen[Any]:
         """Begin with the menu."""
-        return MenuScreen(lessons(), self._recents, self._open_preview, self.charset)
+        return MenuScreen(lessons(), self._recents, self.progress, self._open_preview, self.charset)
 
     def on_mount(self) -> None:
         """Open the lesson that was asked for."""
@@ -126,6 +163,8 @@ class CbtuiApp(App[None]):
             self.notify(sentence, severity="warning", timeout=12, markup=False)
         if self._start_lesson is not None:
             self.open_lesson(find(self._start_lesson), self._start_changes)
+        elif self._start_exercise is not None:
+            self.open_exercise(find(self._start_exercise))
         elif self._start_file is not None:
             path, arguments, clock = self._start_file
             self._run_file(path, arguments, clock, self._start_changes)
@@ -142,6 +181,24 @@ class CbtuiApp(App[None]):
 
         self._show(of_lesson(lesson, lessons()), changes)
         self._note(Kind.LESSON, lesson.id)
+
+    def open_exercise(self, lesson: Lesson) -> None:
+        """Run and check the file for a lesson's exercise in the current folder; put it there if need be."""
+        from cbtui.exercise_files import CannotPlaceError, own_file
+        from cbtui.screens.exercise import ExerciseScreen
+        from lessons.lesson import BadLesson
+
+        try:
+            file = own_file(lesson, Path().absolute())
+            screen = ExerciseScreen(lesson, lessons(), file.path, self._open_session, self.charset)
+        except FileNotFoundError:
+            self.notify("The current folder is gone; start the console in another one.", severity="error")
+            return
+        except (CannotPlaceError, BadLesson) as error:
+            self.notify(str(error), severity="error", markup=False)
+            return
+        self._put(screen)
+        self.notify(file.sentence, markup=False)
 
     def open_file(self, entry: Opened) -> None:
         """Run a program or show a recording, in place of the window that asked for it.
@@ -202,5 +259,5 @@ class CbtuiApp(App[None]):
 
     def get_line_filters(self) -> Sequence[LineFilter]:
         """Return what every line passes on its way to the terminal."""
-        filters = super().get_line_filters()
+        filters = [*super().get_line_filters(), self._harmless]
         return [*filters, self._ascii] if self.charset is Charset.ASCII else filters

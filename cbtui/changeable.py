@@ -6,7 +6,7 @@ from cbtui.changes import Place, short
 from cbtui.quantities import USUAL_SENSOR_RATE, Quantity
 from cbtui.subject import Subject
 from cbtui.widgets.diagnosis import executor_label
-from cbtui.widgets.lanes.rows import HOUSEKEEPING
+from cbtui.widgets.lanes.roster import HOUSEKEEPING
 from lessons.lesson import number_after
 from sim.engine.setup import RobotUse, RunSetup
 from sim.trace.events import EntityKind

@@ -28,7 +28,7 @@ class Changes:
     """Other values than the program's; None, and what is not named, leave the program's.
 
     ``groups`` are some of ``WISHES``, ``periods`` nanoseconds, ``settings`` numbers by the argument of the
-    program that carries them, ``sensor_rate`` is in Hz.
+    program that carries them, ``sensor_rate`` is in Hz, ``seed`` chooses the order of threads.
     """
 
     threads: int | None = None
@@ -36,6 +36,7 @@ class Changes:
     periods: Mapping[Place, int] = field(default_factory=dict)
     settings: Mapping[str, float] = field(default_factory=dict)
     sensor_rate: float | None = None
+    seed: int | None = None
 
     def with_group(self, place: Place, wish: str | None) -> Changes:
         """The same with another group for a callback."""
@@ -66,6 +67,7 @@ class Changes:
             _beyond(self.periods, others.periods),
             _beyond(self.settings, others.settings),
             None if self.sensor_rate == others.sensor_rate else self.sensor_rate,
+            None if self.seed == others.seed else self.seed,
         )
 
     def applied(self, setup: RunSetup) -> RunSetup:
@@ -75,6 +77,7 @@ class Changes:
             threads=setup.threads if self.threads is None else self.threads,
             programs=tuple(self._with_settings(program) for program in setup.programs),
             sensor_rate=setup.sensor_rate if self.sensor_rate is None else self.sensor_rate,
+            seed=setup.seed if self.seed is None else self.seed,
             groups=(
                 *setup.groups,
                 *(GroupChange(*place, wish) for place, wish in self.groups.items()),
@@ -104,6 +107,8 @@ class Changes:
             said.append(f"sensors {self.sensor_rate:g} Hz")
         if self.threads is not None:
             said.append(f"{self.threads} thread{'s'[: self.threads - 1]}")
+        if self.seed is not None:
+            said.append(f"seed {self.seed}")
         return ", ".join(said)
 
 
@@ -114,6 +119,7 @@ def changes_in(setup: RunSetup) -> Changes:
         {(each.node, each.callback): each.wish for each in setup.groups},
         {(each.node, each.callback): each.period for each in setup.periods},
         sensor_rate=setup.sensor_rate,
+        seed=setup.seed,
     )
 
 

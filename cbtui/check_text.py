@@ -8,6 +8,7 @@ from lessons.checks import problems
 from lessons.judge import Judged
 from sim.diagnosis.text import WIDTH
 from sim.trace.model import Nanoseconds
+from sim.trace.timeline import Timeline
 
 PASSED, FAILED = "✓", "✗"
 _TIME_UP = "its time was up"
@@ -39,10 +40,14 @@ def _lines(checked: Checked) -> Iterator[str]:
     yield f"{checked.passed} of {checked.total} checks passed"
     if checked.good:
         return
-    timeline = checked.run.timeline
+    for fault in faults(checked.run.timeline):
+        yield fill(fault, WIDTH, initial_indent="  ! ", subsequent_indent="    ", break_on_hyphens=False)
+
+
+def faults(timeline: Timeline) -> Iterator[str]:
+    """Yield what is wrong with a run beside its checks: that it was over too soon, what was diagnosed."""
     ended = timeline.ended
     if ended is not None and not ended.reason.startswith(_TIME_UP):
-        yield f"  ! the run was over at {ended.t / _SECOND:.3f} s: {ended.reason}"
+        yield f"the run was over at {ended.t / _SECOND:.3f} s: {' '.join(ended.reason.split())}"
     for found in problems(timeline):
-        what = found.rule.explain(found, timeline).what
-        yield fill(what, WIDTH, initial_indent="  ! ", subsequent_indent="    ", break_on_hyphens=False)
+        yield found.rule.explain(found, timeline).what

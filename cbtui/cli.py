@@ -4,17 +4,19 @@ Whatever a command needs is imported when it runs: ``cbtui --help`` must answer 
 """
 
 import argparse
-import os
 import sys
 from collections.abc import Callable, Sequence
 from typing import NoReturn
 
+from cbtui import streams
 from cbtui.commands import (
     appearance,
     check,
     compare,
     console,
+    doctor,
     eject,
+    explore,
     export,
     grade,
     info,
@@ -28,8 +30,10 @@ from cbtui.commands import (
     serve,
     start,
 )
+from cbtui.commands.output import shown
 from cbtui.commands.ros2 import ros2
 from cbtui.commands.targets import refuse
+from cbtui.warden import BadCeilingError, ceiling
 
 
 class _Parser(argparse.ArgumentParser):
@@ -37,7 +41,7 @@ class _Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Say what was wrong and where to read more, and exit with 2."""
-        self.exit(2, f"{self.prog}: {message} (see {self.prog} --help)\n")
+        self.exit(2, shown(f"{self.prog}: {message} (see {self.prog} --help)\n"))
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -45,25 +49,49 @@ def main(argv: Sequence[str] | None = None) -> int:
 
     0 is well, 1 the run failed, 2 the command was wrong, 130 it was interrupted.
     """
-    words = list(sys.argv[1:] if argv is None else argv)
+    streams.make_whole()
+    try:
+        code = _carried_out(list(sys.argv[1:] if argv is None else argv))
+    except OSError as error:
+        trouble = streams.unwritable()
+        if trouble is None and not isinstance(error, BrokenPipeError):
+            raise
+        return _say_unwritable(trouble or error)
+    trouble = streams.unwritable()
+    return code if trouble is None else _say_unwritable(trouble)
+
+
+def _say_unwritable(trouble: OSError) -> int:
+    """Say that standard output takes no more, unless who read it has just read enough; the exit code."""
+    if not isinstance(trouble, BrokenPipeError):
+        sys.stderr.write(f"cbtui: what it says cannot be written: {trouble.strerror}\n")
+    return 1
+
+
+def _carried_out(words: list[str]) -> int:
     if words[:1] == ["ros2"]:
         return ros2(words[1:])
     split = words.index("--") if "--" in words else len(words)
     options = _parser().parse_args(words[:split])
     options.arguments = words[split + 1 :]
+    _check_ceiling()
     action: Callable[[argparse.Namespace], int] = options.action
     with more_lessons.brought_in(options):
         try:
             return action(options)
         except KeyboardInterrupt:
             return 130
-        except BrokenPipeError:
-            # Who read the output has read enough; Python would try to flush the rest as it ends.
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-            return 1
         except ValueError as error:
             _refuse_bad_lesson(error)
             raise
+
+
+def _check_ceiling() -> None:
+    """End the program with one line and 2, if what nodes may use of the memory is set to no number."""
+    try:
+        ceiling()
+    except BadCeilingError as error:
+        refuse(str(error))
 
 
 def _refuse_bad_lesson(error: ValueError) -> None:
@@ -80,11 +108,11 @@ def _parser() -> argparse.ArgumentParser:
         description="A terminal teaching console for ROS 2 callback groups and executors.",
         epilog="Without a command the console opens on its menu of lessons.",
     )
-    parser.add_argument("--version", action="version", version=f"cbtui {_version()}")
+    parser.add_argument("--version", action=_TellVersion, nargs=0, help="show the version and exit")
     appearance.add_options(parser)
     appearance.set_defaults(parser)
     more_lessons.add_option(parser)
-    parser.set_defaults(action=console.open_console, target=None, clock="real")
+    parser.set_defaults(action=console.open_console, target=None)
     commands = parser.add_subparsers(title="commands", metavar="COMMAND")
 
     listing_parser = commands.add_parser("list", help="list the lessons")
@@ -110,6 +138,18 @@ def _parser() -> argparse.ArgumentParser:
     run.add_options(running)
     more_lessons.add_option(running)
     running.set_defaults(action=run.run)
+
+    exploring = commands.add_parser(
+        "explore",
+        help="look for an order of threads in which a program fails",
+        usage="%(prog)s [options] FILE.py|LESSON [-- ARGUMENTS of the file]",
+        description="Run a program headless many times, each time in another order of its threads that a "
+        "machine could come to: which of those that can run goes on, who gets a lock, where one is left for "
+        "another. Ends with 0 if all went well, with 1 if some failed. Each order has a seed, and run, check "
+        "and open show it again with --seed.",
+    )
+    explore.add_options(exploring)
+    exploring.set_defaults(action=explore.explore)
 
     _add_exercises(commands)
 
@@ -166,6 +206,15 @@ def _parser() -> argparse.ArgumentParser:
     naming.set_defaults(action=keys.print_keys)
 
     _add_authoring(commands)
+    examining = commands.add_parser(
+        "doctor",
+        help="look whether this machine has what cbtui needs",
+        description="Look at Python, PyBullet, the terminal, folders and files, and run an engine for a "
+        "moment; nothing is changed. Ends with 0 if nothing is wrong, with 1 if something is.",
+    )
+    doctor.add_options(examining)
+    more_lessons.add_option(examining)
+    examining.set_defaults(action=doctor.examine)
     commands.add_parser("ros2", help="carry out a ros2 line in the run that is going on", add_help=False)
     return parser
 
@@ -211,6 +260,14 @@ def _add_authoring(commands: "argparse._SubParsersAction[_Parser]") -> None:
     )
     lint_lesson.add_options(linting)
     linting.set_defaults(action=lint_lesson.lint_lesson)
+
+
+class _TellVersion(argparse.Action):
+    """Tells the version and ends; looks it up only then, which takes as long as the rest of the help."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
+        sys.stdout.write(f"cbtui {_version()}\n")
+        parser.exit()
 
 
 def _version() -> str:

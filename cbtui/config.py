@@ -62,6 +62,10 @@ def read_text(text: str, name: str) -> Reading:
         document = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         return Reading(Config(), [f"{name}:{_fault(error, text)}"])
+    except RecursionError:
+        return Reading(Config(), [f"{name}: it is nested too deeply"])
+    except ValueError as error:  # numbers that Python does not read
+        return Reading(Config(), [f"{name}: {error}"])
     complaints: list[tuple[int, str]] = []
     lines = _lines_of(text)
 

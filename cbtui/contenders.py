@@ -1,6 +1,5 @@
 """Two runs that are compared, each a recording, a lesson or a file: read or run, until both are there."""
 
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import TypeAlias
 import msgspec
 
 from cbtui.changes import Changes
+from cbtui.commands.output import complain, say
 from cbtui.live_run import LiveRun
 from cbtui.repeat import CannotRepeatError, repeated
 from cbtui.session import Session
@@ -135,15 +135,15 @@ def compare_runs(first: Contender, second: Contender, terms: Terms) -> int:
     try:
         found = gather(first, second, terms, tell=lambda _: None, given_up=Event())
     except CannotCompareError as error:
-        sys.stderr.write(f"cbtui: {error}\n")
+        complain(str(error))
         return 2
     one, other = found.first, found.second
     compared = compare(one.timeline, other.timeline, found.window)
-    sys.stdout.write(comparison_text(compared, one.name, other.name))
+    say(comparison_text(compared, one.name, other.name))
     failures = [side.failure for side in (one, other) if side.failure is not None]
     for sentence in [*(side.damage for side in (one, other)), *failures]:
         if sentence is not None:
-            sys.stderr.write(f"cbtui: {sentence}\n")
+            complain(sentence)
     return 1 if failures else 0
 
 
@@ -206,9 +206,10 @@ def _recorded(name: str, path: Path, tell: Tell, given_up: Event) -> Side:
 
 
 def _prepared(contender: Contender, terms: Terms, until: Nanoseconds) -> RunSetup:
-    """A set-up for virtual time, as fast as it goes."""
+    """A set-up for the contender's own clock, as fast as it goes; for virtual time, if it gets inputs."""
     assert isinstance(contender.what, RunSetup)
-    program = msgspec.structs.replace(contender.what, clock="virtual", speed=None)
+    clock = contender.what.clock if terms.inputs is None else "virtual"
+    program = msgspec.structs.replace(contender.what, clock=clock, speed=None)
     if terms.inputs is not None:
         try:
             return repeated(terms.inputs, program, seconds=until / _SECOND, threads=None)
@@ -227,8 +228,8 @@ def _run(contender: Contender, setup: RunSetup, tell: Tell, given_up: Event) -> 
     news: Queue[list[AnyEvent] | str | None] = Queue(_BATCHES)
     session = Session(setup, news.put, news.put)
     timeline = Timeline()
-    session.start()
     try:
+        session.start()
         while isinstance(batch := _next(news, given_up), list):
             timeline.extend(batch)
             tell(Progress(name, "running", timeline.end, setup.until))

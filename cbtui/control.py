@@ -151,7 +151,8 @@ class ControlServer:
 
     def _listen(self, connection: Connection, line: LineId) -> None:
         """Interrupt the line when its client says so or goes away."""
-        with suppress(OSError, EOFError, msgspec.DecodeError):
+        # A connection that is closed while it is read from has no descriptor any more: a TypeError.
+        with suppress(OSError, EOFError, TypeError, msgspec.DecodeError):
             _decode_question(connection.recv_bytes())
         self._send(InterruptLine(line))
 

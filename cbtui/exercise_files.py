@@ -1,5 +1,6 @@
 """A learner's own file for an exercise: put where they work, and never over what they have written."""
 
+from dataclasses import dataclass
 from enum import Enum
 from pathlib import Path
 
@@ -18,6 +19,34 @@ class Placed(Enum):
 
 class CannotPlaceError(Exception):
     """A starter that cannot be put somewhere; the text is a sentence."""
+
+
+@dataclass(frozen=True)
+class OwnFile:
+    """A learner's file, and a sentence on where it is and what became of it."""
+
+    path: Path
+    sentence: str
+
+
+_SENTENCES = {
+    Placed.NEW: "{name} is in {folder} now, and is yours: it is checked whenever you save it.",
+    Placed.THERE_ALREADY: "{name} is in {folder} already, unchanged: it is checked whenever you save it.",
+    Placed.CHANGED: "Your {name} in {folder} is kept as it is: it is checked whenever you save it.",
+}
+
+
+def own_file(lesson: Lesson, folder: Path) -> OwnFile:
+    """Return a learner's file for a lesson's exercise in a folder: what is there, or else the starter.
+
+    Raises:
+        CannotPlaceError: as ``place_starter``, or what is there is not a file.
+    """
+    path = folder / lesson.file_name
+    placed = place_starter(lesson, folder)
+    if not path.is_file():
+        raise CannotPlaceError(f"{path} is there already, and is not a file")
+    return OwnFile(path, _SENTENCES[placed].format(name=path.name, folder=folder))
 
 
 def place_starter(lesson: Lesson, folder: Path) -> Placed:

@@ -12,6 +12,9 @@ _EVERY = 1.0
 """Seconds between two looks, at least."""
 _SHARE = 0.01
 """The part of all time that looking may take: after a dear look the next one comes later."""
+_MOST_AT_ONCE: Nanoseconds = 20_000_000_000
+"""Growth after which a look is not put off: a recording grows by minutes while it is read, and what is saved
+up of that would keep keys waiting when it is all looked at together."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,10 +64,15 @@ class Watch:
         self._diagnoses = diagnoses or Diagnoses()
         self._clock = clock
         self._due = 0.0
+        self._looked_to: Nanoseconds = 0
 
     def look_when_due(self) -> bool:
-        """Look if enough time has passed since the last look; tell whether that found something else."""
-        if self._clock() < self._due:
+        """Look if enough time has passed since the last look, or the run has grown by much.
+
+        Tells whether that found something else.
+        """
+        grown = self._timeline.end - self._looked_to
+        if self._clock() < self._due and grown < _MOST_AT_ONCE:
             return False
         before = self.told
         self.look()
@@ -74,6 +82,7 @@ class Watch:
         """Look now, whenever the last look was."""
         began = self._clock()
         timeline = self._timeline
+        self._looked_to = timeline.end
         self.told = tuple(_told(found, timeline) for found in self._diagnoses.update(timeline))
         ended = self._clock()
         self._due = max(began + _EVERY, ended + (ended - began) / _SHARE)

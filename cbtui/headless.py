@@ -1,15 +1,18 @@
 """Runs a program without the console: log to stderr, summary and diagnosis to stdout, events to files."""
 
-import sys
+import time
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack
 from operator import itemgetter
 from pathlib import Path
-from queue import Queue
+from queue import Empty, Queue
+from signal import Signals
 from typing import BinaryIO, TypeAlias
 
 import msgspec
 
+from cbtui.commands.output import complain, say
+from cbtui.interrupts import heard, whole
 from cbtui.listening import ListeningSession
 from cbtui.program_log import ProgramLog
 from cbtui.record import CannotRecordError, start_recording
@@ -24,6 +27,10 @@ from sim.trace.summary_text import plain_text
 from sim.trace.timeline import Timeline
 
 _SECOND = 1_000_000_000
+_LOOK = 0.1
+"""Real seconds between two looks whether an engine that was told to end still has not."""
+_LAST_NEWS = 2.0
+"""Real seconds that it gets."""
 _BATCHES = 64
 """Batches that may wait for this process; a full queue holds the engine up, and nothing is lost."""
 
@@ -42,6 +49,9 @@ def run_headless(
     replace_recording: bool = False,
 ) -> int:
     """Run a program to its end; returns the exit code: 0 well, 1 it failed, 2 a file cannot be written.
+
+    Ctrl-C, ``kill`` and a terminal that is closed end the run early, and what it came to is told and recorded
+    all the same; the exit code then is 128 and the signal's number.
 
     ``seconds`` is how long the run lasts in its own time, ``calls`` when its SetBool service is called,
     ``lines`` which ``ros2`` lines are carried out when. A recording replaces another one only with
@@ -67,20 +77,21 @@ def run_set_up(
         try:
             file = None if events_path is None else files.enter_context(Path(events_path).open("wb"))
         except OSError as error:
-            sys.stderr.write(f"cbtui: cannot write events to {events_path}: {error.strerror}\n")
+            complain(f"cannot write events to {events_path}: {error.strerror}")
             return 2
         recorder: Recorder | None = None
         if recording_path is not None:
             try:
-                recorder = start_recording(Path(recording_path), setup, replace=replace_recording)
+                with whole():
+                    recorder = start_recording(Path(recording_path), setup, replace=replace_recording)
+                    files.callback(_close, recorder)
             except CannotRecordError as error:
-                sys.stderr.write(f"cbtui: {error}\n")
+                complain(str(error))
                 return 2
-            files.callback(recorder.close)
         try:
             return _Headless(setup, file, recorder).run()
         except OSError as error:
-            sys.stderr.write(f"cbtui: the run was cut short: {error.strerror}\n")
+            complain(f"the run was cut short: {error.strerror}")
             return 1
 
 
@@ -95,48 +106,63 @@ class _Headless:
         self._recorder = recorder
         self._lines = JsonLines()
         self._log = ProgramLog()
+        self._told: Signals | None = None
+        self._patient_until = 0.0
 
     def run(self) -> int:
         """Run to the end, whatever ends it, and print the summary and what the rules found."""
-        self._session.start()
-        interrupted = False
         try:
-            loss = self._follow()
-        except KeyboardInterrupt:
-            interrupted = True
-            self._session.send(Stop())
-            loss = self._follow()
+            with heard(self._end_early):
+                self._session.start()
+                loss = self._follow()
         finally:
             self._session.stop()
-        sys.stdout.write(plain_text(summarise(self._timeline)))
+        say(plain_text(summarise(self._timeline)))
         found = findings_text(diagnose(self._timeline), self._timeline)
-        sys.stdout.write(f"\n{found}" if found else "")
-        sys.stdout.flush()
-        return 130 if interrupted else self._verdict(loss)
+        say(f"\n{found}" if found else "")
+        return self._verdict(loss) if self._told is None else 128 + self._told
+
+    def _end_early(self, told: Signals) -> None:
+        """Have the engine end, which it tells of as of everything else."""
+        self._told = told
+        self._patient_until = time.monotonic() + _LAST_NEWS
+        self._session.send(Stop())
 
     def _follow(self) -> str | None:
         """Take news until the last; what was lost, if the engine was."""
         for events in iter(self._batches()):
-            if self._recorder is not None:
-                self._recorder.take(events)
-            self._timeline.extend(events)
+            with whole():
+                self._keep(events)
             self._log.print(events)
-            if self._file is not None:
-                self._file.writelines(self._lines.lines(events))
         return self._loss
 
+    def _keep(self, events: list[AnyEvent]) -> None:
+        if self._recorder is not None:
+            self._recorder.take(events)
+        self._timeline.extend(events)
+        if self._file is not None:
+            self._file.writelines(self._lines.lines(events))
+
     def _batches(self) -> Iterator[list[AnyEvent]]:
-        while isinstance(news := self._news.get(), list):
+        while isinstance(news := self._next(), list):
             yield news
         self._loss = news
 
+    def _next(self) -> News:
+        while self._told is None or time.monotonic() < self._patient_until:
+            try:
+                return self._news.get(timeout=_LOOK)
+            except Empty:
+                continue
+        return None
+
     def _verdict(self, loss: str | None) -> int:
         if loss is not None:
-            sys.stderr.write(f"cbtui: {loss} at {self._timeline.end / _SECOND:.3f} s; run it again\n")
+            complain(f"{loss} at {self._timeline.end / _SECOND:.3f} s; run it again")
             return 1
         ended = self._timeline.ended
         if ended is not None and ended.failed:
-            sys.stderr.write(f"cbtui: {ended.reason}\n")
+            complain(ended.reason)
             return 1
         return self._recording_verdict()
 
@@ -144,12 +170,18 @@ class _Headless:
         if self._recorder is None:
             return 0
         if self._timeline.contents_lost:
-            sys.stderr.write(
-                f"cbtui: {self._timeline.contents_lost} messages came faster than they could be recorded; "
-                "the recording tells that they were sent, not what they held\n"
+            complain(
+                f"{self._timeline.contents_lost} messages came faster than they could be recorded; "
+                "the recording tells that they were sent, not what they held"
             )
-        self._recorder.close()
+        _close(self._recorder)
         if self._recorder.failure is not None:
-            sys.stderr.write(f"cbtui: the recording is not whole: {self._recorder.failure}\n")
+            complain(f"the recording is not whole: {self._recorder.failure}")
             return 1
         return 0
+
+
+def _close(recorder: Recorder) -> None:
+    """Write a recording to its end, however often the person presses Ctrl-C."""
+    with whole():
+        recorder.close()

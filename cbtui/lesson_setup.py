@@ -12,16 +12,20 @@ _LESSON_PACKAGES = tuple(str(path) for path in sorted(ROOT.glob("unit*")))
 
 
 def setup_for(lesson: Lesson, *, threads: int | None = None, speed: float | None = 1.0) -> RunSetup:
-    """Return what an engine needs to run a lesson in virtual time.
+    """Return what an engine needs to run a lesson, on the clock that it names.
 
-    ``threads`` None leaves the lesson's own number; ``speed`` is virtual seconds per real second, None for
-    as fast as it can.
+    ``threads`` None leaves the lesson's own number; ``speed`` is seconds of the run per real second, None for
+    as fast as it can: on the real clock that is 1. There the robot is only made for a lesson that uses it, as
+    its physics would compute beside the node.
     """
+    clock = lesson.setup.clock
     return RunSetup(
         title=lesson.id,
         programs=(ProgramSetup(str(lesson.node_path), tuple(lesson.arguments_with(threads))),),
         service=ServiceChoice(lesson.service.name, lesson.service.type),
+        clock=clock,
         packages=_LESSON_PACKAGES,
+        robot=RobotUse.ALWAYS if clock == "virtual" else RobotUse.WHEN_USED,
         speed=speed,
         threads=threads,
     )

@@ -5,7 +5,9 @@ from enum import Enum, auto
 from itertools import count
 from typing import Protocol, TypeAlias
 
-from cbtui.live_recording import LiveRecording
+from cbtui.live_export import Material
+from cbtui.live_recording import Finish, LiveRecording
+from cbtui.silence import SILENT
 from sim.engine.commands import (
     CallService,
     Command,
@@ -22,13 +24,17 @@ from sim.engine.commands import (
     Step,
 )
 from sim.engine.setup import RunSetup
-from sim.trace.events import AnyEvent, EntityId, TimeHalted
+from sim.trace.events import AnyEvent, CommandGiven, EntityId, Notice, TimeHalted
 from sim.trace.model import Nanoseconds
+from sim.trace.tape import Tape
 from sim.trace.timeline import Timeline
 from sim.trace.words import name_of
 
 SPEEDS: tuple[float | None, ...] = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, None)
 """Seconds of a run per real second that can be chosen; None, virtual only, is as fast as the engine can."""
+
+_LETS_GO = ("resume", "run until ")
+"""What the trace says of commands that let time go on: a halt before those was that of an earlier command."""
 
 Deliver: TypeAlias = Callable[[list[AnyEvent]], None]
 Ended: TypeAlias = Callable[[str | None], None]
@@ -56,6 +62,7 @@ class State(Enum):
     STARTING = auto()
     LIVE = auto()
     PAUSED = auto()
+    SILENT = auto()
     ENDED = auto()
     LOST = auto()
     REPLAY_STANDS = auto()
@@ -69,9 +76,12 @@ class LiveRun:
         self.setup = setup
         self.timeline = Timeline()
         self._recording = LiveRecording(setup)
+        self._tape = Tape()
         self.speed = setup.speed if self.virtual else setup.speed or 1.0
         self.loss: str | None = None
         self.paused = False
+        self._silent = False
+        self._goes_on = True
         self._over = False
         self._numbers = count(len(setup.lines) + 1)
         self._line = 0
@@ -87,12 +97,14 @@ class LiveRun:
             return State.ENDED
         if self.timeline.started is None:
             return State.STARTING
+        if self._silent:
+            return State.SILENT
         return State.PAUSED if self.paused else State.LIVE
 
     @property
     def alive(self) -> bool:
         """Whether the engine can still be told something."""
-        return self.state in (State.STARTING, State.LIVE, State.PAUSED)
+        return self.state in (State.STARTING, State.LIVE, State.PAUSED, State.SILENT)
 
     @property
     def virtual(self) -> bool:
@@ -115,21 +127,26 @@ class LiveRun:
     def take(self, events: list[AnyEvent]) -> str | None:
         """Add what the session delivered; a sentence if it could not be recorded as it should."""
         self.timeline.extend(events)
-        if any(isinstance(event, TimeHalted) for event in events):
-            self.paused = True
+        self._tape.take(events)
+        self._silent = any(isinstance(event, Notice) and event.text.startswith(SILENT) for event in events)
+        for event in events:
+            if isinstance(event, TimeHalted):
+                self.paused = True
+            elif isinstance(event, CommandGiven) and self._goes_on and event.text.startswith(_LETS_GO):
+                self.paused = False
         failure = self._recording.take(events)
         if failure is not None:
             self._session.send(KeepContents(wanted=False))
         return failure
 
-    def over(self, loss: str | None) -> str | None:
+    def over(self, loss: str | None) -> Finish | None:
         """Note that the engine is gone; ``loss`` says how, if it should not be.
 
-        Returns a sentence on what was recorded until then, if anything was.
+        Returns what finishes a recording and tells of it, None if there is none.
         """
         self._over = True
         self.loss = loss
-        return self._recording.end()
+        return self._recording.part()
 
     def stop(self) -> str | None:
         """End the engine and a recording, and say what that holds.
@@ -150,20 +167,24 @@ class LiveRun:
         """How many events came too fast to be recorded."""
         return self._recording.lost
 
-    def record(self) -> str:
-        """Begin a recording in the current folder, and say so.
+    def record(self, key: str = "R") -> str:
+        """Begin a recording in the current folder, and say so; ``key`` is what ends it.
 
         Raises:
             CannotRecordError: it cannot be made.
         """
-        sentence = self._recording.begin()
+        sentence = self._recording.begin(key)
         self._session.send(KeepContents(wanted=True))
         return sentence
 
-    def end_recording(self) -> str | None:
-        """Finish the recording, and say what it holds; None if there is none."""
+    def end_recording(self) -> Finish | None:
+        """Record no more; return what finishes the recording and tells of it, None if there is none."""
         self._session.send(KeepContents(wanted=False))
-        return self._recording.end()
+        return self._recording.part()
+
+    def material(self) -> Material:
+        """What there is to export of the run so far."""
+        return Material(self.setup.title, self._tape, self.timeline.end, self._tape.missing)
 
     def call(self, data: bool) -> None:
         """Call the SetBool service that the run was set up with, or else the program's first."""
@@ -185,12 +206,12 @@ class LiveRun:
 
     def pause(self) -> None:
         """Stop time."""
-        self.paused = True
+        self.paused, self._goes_on = True, False
         self._session.send(Pause())
 
     def resume(self) -> None:
         """Let time go on."""
-        self.paused = False
+        self.paused, self._goes_on = False, True
         self._session.send(Resume())
 
     def step(self) -> None:
@@ -199,12 +220,12 @@ class LiveRun:
 
     def run_until(self, moment: Nanoseconds) -> None:
         """Go on to a moment that has not come yet; time stands again there."""
-        self.paused = False
+        self.paused, self._goes_on = False, True
         self._session.send(RunUntil(moment))
 
     def run_until_callback(self, entity: EntityId) -> None:
         """Go on to the next event of an entity; time stands again there."""
-        self.paused = False
+        self.paused, self._goes_on = False, True
         self._session.send(RunUntilCallback(entity, name_of(entity, self.timeline)))
 
     def reset_world(self) -> None:

@@ -8,7 +8,7 @@ class Palette:
     """Colours for one background. Groups beyond ``groups`` get ``other`` and are told by their letter.
 
     ``words`` and ``shapes`` are the contrasts (WCAG 2, 1 to 21) that text and drawn things have with what is
-    behind them at least.
+    behind them at least; ``textures`` is that of a group's texture with its colour: quieter than its label.
     """
 
     groups: tuple[str, ...]
@@ -26,6 +26,7 @@ class Palette:
     seen_scan: str
     words: float = 4.5
     shapes: float = 3.0
+    textures: float = 2.2
 
 
 DARK = Palette(
@@ -74,6 +75,7 @@ HIGH_CONTRAST = Palette(
     seen_scan="#FFB000",
     words=7.0,
     shapes=4.5,
+    textures=3.0,
 )
 HIGH_CONTRAST_LIGHT = Palette(
     groups=("#040457", "#570404", "#005A5A", "#7A10A8", "#8F2A00"),
@@ -91,4 +93,5 @@ HIGH_CONTRAST_LIGHT = Palette(
     seen_scan="#8F2A00",
     words=7.0,
     shapes=4.5,
+    textures=3.0,
 )

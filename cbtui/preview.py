@@ -5,6 +5,7 @@ from threading import Event
 from time import monotonic
 from typing import TYPE_CHECKING, TypeAlias
 
+from lessons.catalogue import comes_along
 from lessons.lesson import Lesson
 
 if TYPE_CHECKING:
@@ -32,6 +33,15 @@ class GivenUpError(Exception):
     """Nobody wants the run any more."""
 
 
+def why_not(lesson: Lesson) -> str | None:
+    """Return why a lesson is not run before it is opened; None if it can be."""
+    if not comes_along(lesson):
+        return "it comes from somebody else, and is only run once you open it"
+    if lesson.setup.clock == "real":
+        return f"on the real clock that would take {LENGTH / _SECOND:g} s of computing"
+    return None
+
+
 class PreviewRun:
     """One such run. ``run`` blocks a thread of its own, ``give_up`` may be called from any other."""
 
@@ -55,7 +65,8 @@ class PreviewRun:
         """Run the lesson; its engine has ended when this comes back, whatever way.
 
         Raises:
-            CannotPreviewError: the run did not come to its end.
+            CannotPreviewError: the run did not come to its end, or its lesson runs on the real clock or is
+                none of the package's own.
             GivenUpError: ``give_up`` was called.
         """
         try:
@@ -64,6 +75,9 @@ class PreviewRun:
             self._ended.set()
 
     def _run(self) -> "Timeline":
+        reason = why_not(self._lesson)
+        if reason is not None:
+            raise CannotPreviewError(reason)
         from sim.trace.timeline import Timeline  # numpy and all: on this thread, not on the screen's
 
         timeline = Timeline()

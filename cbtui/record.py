@@ -14,17 +14,22 @@ class CannotRecordError(Exception):
     """A recording that cannot be begun; the text is a sentence that says why and what to do."""
 
 
+class NameTakenError(CannotRecordError):
+    """A recording that would have to replace a file."""
+
+
 def start_recording(path: Path, setup: RunSetup, *, replace: bool = False) -> Recorder:
     """Begin to record a run of ``setup``; an existing file is only overwritten with ``replace``.
 
     Raises:
-        CannotRecordError: there is such a file, or it cannot be made.
+        NameTakenError: there is such a file.
+        CannotRecordError: it cannot be made.
     """
     try:
         recorder = Recorder(path, about(setup), replace=replace)
     except FileExistsError:
         sentence = f"there is a file {path} already; give another name, or --force to replace it"
-        raise CannotRecordError(sentence) from None
+        raise NameTakenError(sentence) from None
     except OSError as error:
         raise CannotRecordError(f"cannot record to {path}: {error.strerror}") from None
     if recorder.failure is not None:

@@ -1,12 +1,12 @@
 """What is in a recording, as plain text."""
 
-import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 
 from cbtui.changes import changes_in
+from cbtui.commands.output import complain, say, shown
 from cbtui.record import setup_of
 from sim.trace.events import AnyEvent, ContentsLost, EventsLost, RunEnded, RunStarted
 from sim.trace.recording import Recording, RecordingError, Topic, read
@@ -23,14 +23,14 @@ def tell(path: Path) -> int:
         topics = recording.topics()
         size = path.stat().st_size
     except RecordingError as error:
-        sys.stderr.write(f"cbtui: {error}\n")
+        complain(str(error))
         return 2
     except OSError as error:
-        sys.stderr.write(f"cbtui: {path} cannot be read to its end: {error.strerror}\n")
+        complain(f"{path} cannot be read to its end: {error.strerror}")
         return 2
-    sys.stdout.writelines(_lines(recording, tally, topics, size))
+    say("".join(_lines(recording, tally, topics, size)))
     if recording.damage is not None:
-        sys.stderr.write(f"cbtui: {recording.damage}\n")
+        complain(recording.damage)
         return 1
     return 0
 
@@ -119,5 +119,4 @@ def _topic_lines(topics: list[Topic]) -> Iterator[str]:
 
 
 def _line(label: str, text: str) -> str:
-    printable = "".join(character if character.isprintable() else "?" for character in text)
-    return _LABEL.format(label, printable)
+    return _LABEL.format(label, shown(text.replace("\n", " ")))

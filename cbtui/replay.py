@@ -1,10 +1,14 @@
 """A recording as the console shows it: its subject, the session that reads it, and the run it tells of."""
 
 import threading
+from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
 
+from cbtui.live_export import Material
+from cbtui.live_recording import Finish
 from cbtui.live_run import SPEEDS, Deliver, Ended, LiveRun, State
+from cbtui.own_files import PROGRAMS
 from cbtui.playhead import Playhead
 from cbtui.record import setup_of
 from cbtui.subject import Subject
@@ -12,7 +16,7 @@ from sim.engine.commands import Command
 from sim.engine.setup import RunSetup
 from sim.trace.events import AnyEvent
 from sim.trace.model import Nanoseconds
-from sim.trace.recording import About, Recording, RecordingError
+from sim.trace.recording import About, Recording, RecordingError, read
 
 _SECOND = 1_000_000_000
 _DELIVERED = 2000
@@ -20,6 +24,8 @@ _DELIVERED = 2000
 _GRACE = 0.4
 """Seconds that a reader gets to notice that it is to stop."""
 
+_LONGEST_SOURCE = 500_000
+"""Bytes of a program that is shown; recordings take no longer ones along either."""
 _GUIDE = """# Recording of {title}
 
 {facts}
@@ -27,8 +33,8 @@ _GUIDE = """# Recording of {title}
 Every pane shows the moment that the status line tells.
 
 - `space` plays it from here, from its beginning at its end; `+` and `-` change how fast.
-- `[` and `]` go back and on, `,` and `.` by one event, `g` to a moment, `0` to the end.
-- The left and right arrow keys show another stretch of time, and leave that moment.
+- `[` and `]` go back and on, `,` and `.` by one event, `G` to a moment, `0` to the end.
+- `left` and `right` show another stretch of time, and leave that moment.
 """
 
 
@@ -87,6 +93,22 @@ class ReplaySession:
             self._deliver(waiting)
 
 
+class _ReadAgain:
+    """The events of a recording, read anew by whoever asks for them."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+
+    def batches(self) -> Iterator[list[AnyEvent]]:
+        """The events, batch after batch.
+
+        Raises:
+            RecordingError: nothing of the recording is left.
+            OSError: it cannot be read to its end.
+        """
+        yield from read(self._path).batches()
+
+
 class ReplayRun(LiveRun):
     """A recorded run. It is played by moving the moment on screen, never by an engine.
 
@@ -97,6 +119,7 @@ class ReplayRun(LiveRun):
         super().__init__(
             setup, lambda _, deliver, ended: ReplaySession(recording, deliver, ended), deliver, ended
         )
+        self._path = recording.path
         self.speed = 1.0
         self.paused = True
         self.damage: str | None = None
@@ -121,11 +144,15 @@ class ReplayRun(LiveRun):
         self.timeline.extend(events)
         return None
 
-    def over(self, loss: str | None) -> str | None:
-        """Note that it has been read to its end; the sentence on what cannot be read, if there is one."""
+    def material(self) -> Material:
+        """What there is to export: all of the recording, however much of it has been read."""
+        return Material(self.setup.title, _ReadAgain(self._path), self.timeline.end)
+
+    def over(self, loss: str | None) -> Finish | None:
+        """Note that it has been read to its end; what tells of what cannot be read, if there is such."""
         super().over(None)
         self.damage = loss
-        return loss
+        return None if loss is None else lambda: loss
 
     def pause(self) -> None:
         """Let the moment on screen stand."""
@@ -174,10 +201,17 @@ def _source_of(recording: Recording) -> tuple[Path, str]:
     path = Path(_plain(name) or recording.path.name)
     if name in recording.sources:
         return path, recording.sources[name]
+    return path, _program_text(path) or _NO_SOURCE
+
+
+def _program_text(path: Path) -> str:
+    """A program that a recording names, if this machine has it; any file may be named, of any size."""
     try:
-        return path, path.read_text(encoding="utf-8", errors="replace") if path.is_file() else _NO_SOURCE
-    except OSError:
-        return path, _NO_SOURCE
+        if path.suffix not in PROGRAMS or not path.is_file() or path.stat().st_size > _LONGEST_SOURCE:
+            return ""
+        return path.read_text(encoding="utf-8", errors="replace")
+    except (OSError, ValueError):
+        return ""
 
 
 _NO_SOURCE = "# The recording holds no source of this program, and this machine has none.\n"

@@ -1,12 +1,12 @@
 """``cbtui ros2 …``: carries out a ros2 line in the run that is going on, or in an engine made for it."""
 
 import shlex
-import sys
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from queue import Queue
 from typing import TypeVar
 
+from cbtui.commands.output import complain
 from cbtui.control import Done, NoEngine, RemoteLine, Said, connect
 from cbtui.lesson_setup import setup_for_line
 from cbtui.listening import ListeningSession
@@ -33,7 +33,7 @@ def run_line(words: Sequence[str], process: int | None) -> int:
         connection = connect(process)
     except NoEngine as error:
         if process is not None:
-            sys.stderr.write(f"cbtui: {error}\n")
+            complain(str(error))
             return 2
         return _AloneLine(text).run()
     return _follow_elsewhere(RemoteLine(connection, text))
@@ -45,7 +45,7 @@ def _follow_elsewhere(line: RemoteLine) -> int:
             case Said(text=said, error=error):
                 write_line(without_tabs(said), error=error)
             case Done(status=None):
-                sys.stderr.write("cbtui: the run ended before the line did\n")
+                complain("the run ended before the line did")
                 return _CUT_OFF
             case Done(status=int() as status):
                 return status
@@ -71,7 +71,7 @@ class _AloneLine:
                     break
                 self._take(news)
             if news is not None:
-                sys.stderr.write(f"cbtui: {news}\n")
+                complain(str(news))
         except KeyboardInterrupt:
             self._session.send(Stop())
         finally:
@@ -91,7 +91,7 @@ class _AloneLine:
                 case LineEnded(status=status):
                     self._status = status
                 case RunEnded(failed=True, reason=reason):
-                    sys.stderr.write(f"cbtui: {reason}\n")
+                    complain(reason)
                 case _:
                     self._log.print([event])
 

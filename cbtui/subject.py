@@ -1,12 +1,13 @@
 """What a lesson screen runs and shows: a lesson of the catalogue, or a file of the learner's own."""
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TypeAlias
 
 import msgspec
 
+from cbtui.checking import setup_to_judge
 from cbtui.lesson_setup import setup_for, setup_for_files
 from lessons.lesson import Lesson
 from sim.engine.setup import RunSetup
@@ -61,6 +62,22 @@ def of_lesson(lesson: Lesson, lessons: Sequence[Lesson]) -> Subject:
         set_up=lambda threads, speed: setup_for(lesson, threads=threads, speed=speed),
         lesson=lesson,
         following=lessons[place + 1] if place + 1 < len(lessons) else None,
+    )
+
+
+def of_exercise(lesson: Lesson, lessons: Sequence[Lesson], file: Path) -> Subject:
+    """Return a learner's file for a lesson's exercise as a subject; it runs as it is judged."""
+    subject = of_lesson(lesson, lessons)
+
+    def set_up(threads: int | None, speed: float | None) -> RunSetup:
+        return msgspec.structs.replace(setup_to_judge(lesson, file), threads=threads, speed=speed)
+
+    return replace(
+        subject,
+        heading=f"{subject.heading}: exercise",
+        node_path=file,
+        executor="as your file says",
+        set_up=set_up,
     )
 
 

@@ -30,6 +30,7 @@ class Role(Enum):
     STRONG = auto()
     LETTER = auto()
     BAR = auto()
+    TEXTURE = auto()
     LABEL = auto()
     LINE = auto()
     HATCH = auto()
@@ -71,7 +72,11 @@ TRAIL_STEPS = 4
 
 @dataclass(frozen=True)
 class Glyphs:
-    """The signs of one charset. ``left`` and ``right`` are a column filled from that side, by eighths."""
+    """The signs of one charset. ``left`` and ``right`` are a column filled from that side, by eighths.
+
+    ``textures`` are what whole columns of callback groups are filled with, A's first; they are drawn in the
+    role ``textured``, which may lay them on the group's colour.
+    """
 
     left: str
     right: str
@@ -91,6 +96,8 @@ class Glyphs:
     lost: str
     blocked: str
     between: str
+    textures: str
+    textured: Role
 
 
 _BLOCKS = Glyphs(
@@ -116,6 +123,8 @@ _BLOCKS = Glyphs(
     lost="×",
     blocked="░",
     between="·",
+    textures="█·═║┼○",
+    textured=Role.TEXTURE,
 )
 _PLAIN = Glyphs(
     left=" ||||####",
@@ -136,8 +145,19 @@ _PLAIN = Glyphs(
     lost="*",
     blocked="%",
     between="-",
+    textures="#+=o@&",
+    textured=Role.BAR,
 )
 GLYPHS = {Charset.BRAILLE: _BLOCKS, Charset.BLOCK: _BLOCKS, Charset.ASCII: _PLAIN}
+
+
+def texture_of(number: int, glyphs: Glyphs) -> Run:
+    """Return what fills a column of the group at a place in the order of letters (0 for A).
+
+    Neighbours differ; groups beyond the textures begin them again.
+    """
+    glyph = glyphs.textures[number % len(glyphs.textures)]
+    return Run(glyph, Ink(Role.BAR if glyph == glyphs.left[8] else glyphs.textured, number))
 
 
 def group_colour(number: int, palette: Palette) -> str:
@@ -161,6 +181,9 @@ def style_of(ink: Ink, palette: Palette, background: str) -> Style:
         bright = _triplet(palette.text)
         ground = blend_rgb(ground, bright, 0.25)
         colour = legible(blend_rgb(colour, bright, 0.45), ground, least)
+    if ink.role is Role.TEXTURE:
+        drawn = legible(colour, colour, palette.textures)
+        return Style(color=Color.from_triplet(drawn), bgcolor=Color.from_triplet(colour))
     if ink.role is Role.LABEL:
         return Style(color=Color.from_triplet(readable_on(colour)), bgcolor=Color.from_triplet(colour))
     return Style(
@@ -174,9 +197,10 @@ _LATER = 2 / 3
 """How much of their contrast words keep at least that lie after the cursor."""
 
 _BOLD = {Role.STRONG, Role.LETTER, Role.WARN, Role.MARK, Role.NOW, Role.ROBOT}
-_OF_A_GROUP = {Role.LETTER, Role.BAR, Role.LABEL, Role.LINE, Role.HATCH}
+_OF_A_GROUP = {Role.LETTER, Role.BAR, Role.TEXTURE, Role.LABEL, Role.LINE, Role.HATCH}
 _SHAPES = {
     Role.BAR,
+    Role.TEXTURE,
     Role.LABEL,
     Role.WALL,
     Role.SPHERE,
@@ -185,7 +209,7 @@ _SHAPES = {
     Role.TRUE_SCAN,
     Role.SEEN_SCAN,
 }
-"""What is drawn rather than written; a label's own contrast is with its bar."""
+"""What is drawn rather than written; a label's and a texture's own contrast is with their bar."""
 
 
 def _colour(ink: Ink, palette: Palette) -> str:

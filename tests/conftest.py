@@ -15,3 +15,10 @@ def state_of_nobody(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_STATE_HOME", str(tmp_path_factory.mktemp("state")))
         yield
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Let somebody who is going to look at them have the pictures of ``tests/app/goldens`` drawn anew."""
+    parser.addoption(
+        "--accept-pictures", action="store_true", help="draw tests/app/goldens anew; look at them"
+    )

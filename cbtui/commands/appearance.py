@@ -84,7 +84,9 @@ def appearance(options: argparse.Namespace) -> Appearance:
         refuse(unknown("theme", options.theme))
     config = reading.config
     configured = options.charset or config.charset or AUTO
-    charset = charset_of(os.environ, bool(sys.flags.utf8_mode)) if configured == AUTO else configured
+    charset = configured
+    if configured == AUTO:
+        charset = charset_of(os.environ, bool(sys.flags.utf8_mode), sys.stderr.encoding or "utf-8")
     theme = options.theme or config.theme or colour_themes.STANDARD
     return Appearance(charset, configured, theme, config.keymap, reading.complaints)
 

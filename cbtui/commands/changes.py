@@ -4,6 +4,7 @@ import argparse
 from typing import TYPE_CHECKING
 
 from cbtui.commands import values
+from cbtui.commands.seeds import add_seed
 
 if TYPE_CHECKING:
     from cbtui.changes import Changes
@@ -42,6 +43,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         type=values.sensor_rate,
         help="how often a second the robot's sensors measure (20)",
     )
+    add_seed(parser)
 
 
 def changes_of(options: argparse.Namespace) -> "Changes":
@@ -49,5 +51,9 @@ def changes_of(options: argparse.Namespace) -> "Changes":
     from cbtui.changes import Changes
 
     return Changes(
-        options.threads, dict(options.groups), dict(options.periods), sensor_rate=options.sensor_rate
+        options.threads,
+        dict(options.groups),
+        dict(options.periods),
+        sensor_rate=options.sensor_rate,
+        seed=options.seed,
     )

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from cbtui.commands import more_lessons, values
 from cbtui.commands.output import complain, say
+from cbtui.commands.seeds import add_seed, check_seed
 from cbtui.commands.targets import file_of, lesson_of, refuse
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         "file", metavar="FILE.py", nargs="?", help="the file to check (what cbtui start has put here)"
     )
     add_limit(parser, 60)
+    add_seed(parser)
     more_lessons.add_option(parser)
 
 
@@ -36,12 +38,13 @@ def add_limit(parser: argparse.ArgumentParser, usual: float) -> None:
 def check(options: argparse.Namespace) -> int:
     """Check a file; returns the exit code: 0 it passes every check, 1 it does not."""
     lesson = exercise_of(options.lesson)
+    check_seed(options.seed, lesson.setup.clock)
     file = _file(lesson, options.file)
     from cbtui.check_text import checked_text
     from cbtui.checking import check as run_and_judge
     from lessons.judge import Judge
 
-    checked = run_and_judge(lesson, Judge(lesson), file, options.limit)
+    checked = run_and_judge(lesson, Judge(lesson), file, options.limit, options.seed)
     say(checked_text(checked))
     if checked.run.trouble is not None:
         complain(checked.run.trouble)

@@ -114,6 +114,8 @@ def _is_recording(name: str) -> bool:
 
 
 def _contender(name: str, threads: int | None, arguments: list[str]) -> "Contender":
+    import msgspec
+
     from cbtui.contenders import Contender
     from cbtui.lesson_setup import setup_for, setup_for_files
 
@@ -121,7 +123,8 @@ def _contender(name: str, threads: int | None, arguments: list[str]) -> "Contend
         return Contender(name, _readable(Path(name)))
     called = name if threads is None else f"{name}, {threads} thread{'s'[: threads - 1]}"
     if is_file_name(name):
-        return Contender(called, setup_for_files([file_of(name)], arguments, threads=threads))
+        setup = setup_for_files([file_of(name)], arguments, threads=threads)
+        return Contender(called, msgspec.structs.replace(setup, clock="virtual"))
     return Contender(called, setup_for(lesson_of(name), threads=threads))
 
 

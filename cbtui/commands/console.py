@@ -5,6 +5,8 @@ from pathlib import Path
 
 from cbtui.commands import changes
 from cbtui.commands.appearance import add_options, appearance, console_of
+from cbtui.commands.check import exercise_of
+from cbtui.commands.seeds import check_seed
 from cbtui.commands.targets import file_of, is_file_name, lesson_of, need_terminal, refuse
 
 
@@ -14,7 +16,12 @@ def add_open_options(parser: argparse.ArgumentParser) -> None:
     add_options(parser)
     changes.add_options(parser)
     parser.add_argument(
-        "--clock", choices=("virtual", "real"), default="real", help="which time a file runs on (%(default)s)"
+        "--exercise",
+        action="store_true",
+        help="open the lesson's exercise: your file in the current folder, checked whenever it is saved",
+    )
+    parser.add_argument(
+        "--clock", choices=("virtual", "real"), help="which time a file runs on (real; with --seed virtual)"
     )
 
 
@@ -25,19 +32,37 @@ def add_replay_options(parser: argparse.ArgumentParser) -> None:
 
 
 def open_console(options: argparse.Namespace) -> int:
-    """Open the console on its menu, a lesson or a file; returns the exit code."""
+    """Open the console on its menu, a lesson, its exercise or a file; returns the exit code."""
     target: str | None = options.target
+    if target is not None and options.exercise:
+        return _open_exercise(options)
     start_file, lesson = None, None
     if target is not None and is_file_name(target):
-        start_file = (file_of(target), options.arguments, options.clock)
+        check_seed(options.seed, options.clock)
+        clock = options.clock or ("real" if options.seed is None else "virtual")
+        start_file = (file_of(target), options.arguments, clock)
     elif target is not None:
-        lesson = lesson_of(target).id
+        opened = lesson_of(target)
+        check_seed(options.seed, opened.setup.clock)
+        lesson = opened.id
     look = appearance(options)
     need_terminal("cbtui run")
     _read_lessons()
     changed = None if target is None else changes.changes_of(options)
-    console_of(look, start_lesson=lesson, start_file=start_file, start_changes=changed).run()
-    return 0
+    app = console_of(look, start_lesson=lesson, start_file=start_file, start_changes=changed)
+    app.run()
+    return app.return_code or 0
+
+
+def _open_exercise(options: argparse.Namespace) -> int:
+    lesson = exercise_of(options.target)
+    if changes.changes_of(options).words:
+        refuse("an exercise is run as your file says: change that, and leave the options on threads and such")
+    look = appearance(options)
+    need_terminal("cbtui check")
+    app = console_of(look, start_exercise=lesson.id)
+    app.run()
+    return app.return_code or 0
 
 
 def _read_lessons() -> None:
@@ -57,5 +82,6 @@ def replay(options: argparse.Namespace) -> int:
         refuse(str(error))
     look = appearance(options)
     need_terminal("cbtui info")
-    console_of(look, start_recording=recording).run()
-    return 0
+    app = console_of(look, start_recording=recording)
+    app.run()
+    return app.return_code or 0

@@ -1,10 +1,11 @@
 """``cbtui eject``: writes the lessons' nodes as packages that ``colcon build`` takes."""
 
 import argparse
-import sys
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from cbtui.commands.output import complain, say
 
 if TYPE_CHECKING:
     from cbtui.ament_package import AmentPackage
@@ -42,14 +43,14 @@ def eject(options: argparse.Namespace) -> int:
         for package in packages:
             _write(package, folder, files[package.name])
     except (EjectError, BadLesson) as error:
-        sys.stderr.write(f"cbtui: {error}\n")
+        complain(str(error))
         return 2
     except OSError as error:
         place = error.filename2 or error.filename or folder
-        sys.stderr.write(f"cbtui: cannot write {place}: {error.strerror}\n")
+        complain(f"cannot write {place}: {error.strerror}")
         return 2
     selected = " ".join(package.name for package in packages)
-    sys.stdout.write(f"In the workspace, on a ROS 2 machine: colcon build --packages-select {selected}\n")
+    say(f"In the workspace, on a ROS 2 machine: colcon build --packages-select {selected}\n")
     return 0
 
 
@@ -91,7 +92,7 @@ def _write(package: "AmentPackage", folder: Path, files: Mapping[Path, bytes]) -
     written = write_files(files)
     kept = f", {len(files) - written} were there" if written < len(files) else ""
     told = f"{_counted(len(package.programs), 'lesson')}, {_counted(written, 'file')} written{kept}"
-    sys.stdout.write(f"{folder / package.name}: {told}\n")
+    say(f"{folder / package.name}: {told}\n")
 
 
 def _counted(number: int, what: str) -> str:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from cbtui.commands import more_lessons
 from cbtui.commands.check import add_limit, exercise_of
-from cbtui.commands.output import complain, say
+from cbtui.commands.output import complain, hand_over, say
 from cbtui.commands.targets import refuse
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ def grade(options: argparse.Namespace) -> int:
         if options.csv != _STANDARD_OUTPUT:
             say(f"{line(each)}\n")
     if options.csv == _STANDARD_OUTPUT:
-        say(table(graded))
+        hand_over(table(graded))
     elif options.csv is not None:
         try:
             Path(options.csv).write_text(table(graded), encoding="utf-8")

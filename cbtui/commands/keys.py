@@ -2,11 +2,11 @@
 
 import argparse
 import json
-import sys
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from cbtui.commands import appearance
+from cbtui.commands.output import say
 
 if TYPE_CHECKING:
     from cbtui.actions import Action
@@ -27,7 +27,7 @@ def print_keys(options: argparse.Namespace) -> int:
     """Print the keys in force; returns the exit code."""
     from cbtui.config import standard_path
 
-    sys.stdout.write("\n".join(_lines(str(standard_path()), appearance.appearance(options))))
+    say("\n".join(_lines(str(standard_path()), appearance.appearance(options))))
     return 0
 
 

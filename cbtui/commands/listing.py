@@ -1,7 +1,8 @@
 """``cbtui list``: the lessons."""
 
 import argparse
-import sys
+
+from cbtui.commands.output import say
 
 
 def list_lessons(_options: argparse.Namespace) -> int:
@@ -11,5 +12,6 @@ def list_lessons(_options: argparse.Namespace) -> int:
     known = lessons()
     width = max(len(lesson.id) for lesson in known)
     for lesson in known:
-        sys.stdout.write(f"{lesson.number}  {lesson.id:{width}}  {lesson.title}: {lesson.executor}\n")
+        exercise = ", with an exercise" if lesson.exercise is not None else ""
+        say(f"{lesson.number:2}  {lesson.id:{width}}  {lesson.title}: {lesson.executor}{exercise}\n")
     return 0

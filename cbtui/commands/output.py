@@ -1,4 +1,4 @@
-"""What commands write: text that any terminal can show, and complaints of one line."""
+"""What commands write: text that any terminal can show and none obeys, and complaints of one line."""
 
 import sys
 from typing import TextIO
@@ -6,12 +6,30 @@ from typing import TextIO
 
 def say(text: str) -> None:
     """Write to standard output, in plain characters where it takes no others."""
-    _write(sys.stdout, text)
+    _write(sys.stdout, shown(text))
+
+
+def hand_over(data: str) -> None:
+    """Write what another program reads to standard output, as it is but for what a terminal would obey."""
+    from sim.trace.export.texts import printable
+
+    _write(sys.stdout, printable(data))
 
 
 def complain(sentence: str) -> None:
     """Write one line to standard error."""
-    _write(sys.stderr, f"cbtui: {sentence}\n")
+    _write(sys.stderr, shown(f"cbtui: {sentence}\n"))
+
+
+def shown(text: str) -> str:
+    """Return text with control characters, and others that cannot be seen, as signs; lines stay lines."""
+    lines = text.split("\n")
+    if all(map(str.isprintable, lines)):
+        return text
+    from cbtui.theme import Charset
+    from cbtui.widgets.cells import visible
+
+    return "\n".join(visible(line, Charset.BRAILLE) for line in lines)
 
 
 def _write(stream: TextIO, text: str) -> None:

@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 
 from cbtui.commands import changes, values
+from cbtui.commands.seeds import check_seed
 from cbtui.commands.targets import file_of, is_file_name, lesson_of, refuse, setup_of_targets
 
 DEFAULT_SECONDS = 60.0
@@ -54,7 +55,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--no-robot", dest="robot", action="store_false", help="leave out the lessons' robot")
     parser.add_argument(
-        "--clock", choices=("virtual", "real"), help="which time it runs on (virtual; a file: real)"
+        "--clock",
+        choices=("virtual", "real"),
+        help="which time it runs on (a lesson's own, mostly virtual; a file: real)",
     )
     parser.add_argument(
         "--speed",
@@ -82,10 +85,10 @@ def run(options: argparse.Namespace) -> int:
         refuse("run needs a LESSON or a FILE.py; cbtui list lists the lessons")
     options.seconds = options.seconds or DEFAULT_SECONDS
     is_file = is_file_name(options.targets[0])
-    clock = options.clock or ("real" if is_file else "virtual")
     _check_run(options, is_file=is_file)
     paths = [file_of(name) for name in options.targets] if is_file else []
     lesson = None if is_file else lesson_of(options.targets[0])
+    check_seed(options.seed, options.clock or (None if lesson is None else lesson.setup.clock))
 
     import msgspec
 
@@ -99,6 +102,7 @@ def run(options: argparse.Namespace) -> int:
     else:
         program = setup_for_files(paths, options.arguments, threads=options.threads, speed=speed)
     robot = program.robot if options.robot else RobotUse.NEVER
+    clock = options.clock or (program.clock if options.seed is None else "virtual")
     return run_headless(
         changes.changes_of(options).applied(msgspec.structs.replace(program, clock=clock, robot=robot)),
         seconds=options.seconds,

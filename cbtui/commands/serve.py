@@ -1,7 +1,6 @@
 """``cbtui serve``: the console in a browser."""
 
 import argparse
-import asyncio
 import errno
 import sys
 from importlib.util import find_spec
@@ -42,6 +41,8 @@ def serve(options: argparse.Namespace) -> int:
         refuse("the browser needs textual-serve; install it with: pip install 'cbtui[serve]'")
     appearance.appearance(options)
     command = [sys.executable, "-m", "cbtui", *appearance.given(options), *_opened(options.arguments)]
+    import asyncio  # no other command waits for it
+
     from cbtui.web.guard import is_loopback
     from cbtui.web.server import ConsoleServer
 

@@ -36,6 +36,9 @@ def start(options: argparse.Namespace) -> int:
         return 1
     assert lesson.exercise is not None, "there is a starter"
     known = "is there already, unchanged" if placed is Placed.THERE_ALREADY else "is yours now"
+    say(f"{path} {known}.\n{fill(lesson.exercise.asks.strip(), 79)}\n")
+    if folder == Path():
+        say(f"In the console: cbtui open {lesson.id} --exercise\n")
     where = "" if folder == Path() else f" {path}"
-    say(f"{path} {known}.\n{fill(lesson.exercise.asks.strip(), 79)}\nThen: cbtui check {lesson.id}{where}\n")
+    say(f"Then: cbtui check {lesson.id}{where}\n")
     return 0

@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, NoReturn
 
+from cbtui.commands.output import complain
 from cbtui.terminal import is_browser, is_dumb
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ def lesson_of(name: str) -> "Lesson":
 
 def refuse(sentence: str) -> NoReturn:
     """End the program with one line and 2."""
-    sys.stderr.write(f"cbtui: {sentence}\n")
+    complain(sentence)
     raise SystemExit(2)
 
 
@@ -35,6 +36,8 @@ def need_terminal(instead: str) -> None:
         return
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
         refuse(f"the console needs a terminal; use {instead} where there is none")
+    if not sys.stderr.isatty():
+        refuse("the console draws on standard error; leave that to the terminal, without 2>")
     if is_dumb(os.environ):
         refuse(f"this terminal (TERM={os.environ['TERM']}) cannot place its cursor; use {instead}")
 

@@ -52,6 +52,29 @@ def threads(text: str) -> int:
     return number
 
 
+def count(text: str) -> int:
+    """Read how many of something are wanted."""
+    number = _whole(text)
+    if number < 1:
+        raise argparse.ArgumentTypeError(f"{text} are too few; give 1 or more")
+    return number
+
+
+def seed(text: str) -> int:
+    """Read which order of threads is meant."""
+    number = _whole(text)
+    if number < 0:
+        raise argparse.ArgumentTypeError(f"a seed cannot be {text}; give 0, the usual order, or more")
+    return number
+
+
+def _whole(text: str) -> int:
+    try:
+        return int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number; give one such as 17") from None
+
+
 def speed(text: str) -> float:
     """Read how many seconds of a run pass per real second; infinite for ``max``."""
     if text == "max":

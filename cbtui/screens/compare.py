@@ -1,5 +1,6 @@
 """Two runs on screen, one above the other on a common time axis, and a table of what differs."""
 
+import asyncio
 from time import monotonic
 from typing import ClassVar
 
@@ -9,6 +10,7 @@ from textual.binding import BindingType
 
 from cbtui.actions import Scope, bindings_of
 from cbtui.contenders import Side
+from cbtui.keymap import keymap_of
 from cbtui.playhead import SPANS, Playhead
 from cbtui.screens.layout import Layout
 from cbtui.screens.lesson import FRAMES_A_SECOND
@@ -19,16 +21,24 @@ from cbtui.widgets.comparison import ComparisonHeadings, ComparisonTable, Words
 from cbtui.widgets.diagnosis import executor_label
 from cbtui.widgets.durations import duration
 from cbtui.widgets.key_bar import KeyBar
-from cbtui.widgets.lanes import Lanes
-from sim.trace.comparison import compare
+from cbtui.widgets.lanes import Lanes, Selection, start_of
+from cbtui.widgets.lanes.keys import lane_keys
+from sim.trace.comparison import compare_in_slices
 from sim.trace.comparison_rows import RUNS, Section, extent, sections, stretch
 from sim.trace.model import Nanoseconds, Window
+from sim.trace.slices import Slices
 
 _PLAIN = Ink(Role.TEXT)
 _STRONG = Ink(Role.STRONG)
 _FAINT = Ink(Role.FAINT)
 _REST = 9
 """How many times as long as a comparison took the next one is put off: it may take a tenth of the time."""
+_SLICE = 0.008
+"""Seconds for which a comparison goes on before the keys have their turn."""
+_BREATH = 0.002
+"""Seconds that they have at least."""
+_SOON = 0.5
+"""Seconds after which it is told that a comparison is being made."""
 _ROWS_A_KEY = 3
 
 
@@ -55,6 +65,7 @@ class CompareScreen(SizedScreen[None]):
         self._playhead = Playhead() if bounds is None else _at_the_end_of(bounds, self._end)
         self._drawn: tuple[object, ...] = ()
         self._compared: Window | None = None
+        self._comparing = False
         self._rest_until = 0.0
 
     def compose(self) -> ComposeResult:
@@ -73,6 +84,7 @@ class CompareScreen(SizedScreen[None]):
         for number, side in enumerate(self._sides):
             lanes = self._lanes(number)
             lanes.charset, lanes.service, lanes.can_focus = self._charset, side.service, False
+            lanes.keys = lane_keys(keymap_of(self.app), Scope.COMPARE, self._charset)
             for sentence in (side.damage, side.failure):
                 if sentence is not None:
                     self.notify(sentence, severity="warning", markup=False)
@@ -113,23 +125,54 @@ class CompareScreen(SizedScreen[None]):
     def _draw_table(self) -> None:
         """Compare anew if there is something new, but never so often that the keys have to wait."""
         asked = self._common(self._asked)
-        if asked == self._compared or monotonic() < self._rest_until:
+        if asked == self._compared or self._comparing or monotonic() < self._rest_until:
             return
-        began = monotonic()
         self._compared = asked
-        words, shown = self._figures(asked)
-        self.query_one("#window", Words).words = (Run(f" {words} ", _STRONG),)
-        self.query_one(ComparisonTable).show(shown)
-        self._rest_until = monotonic() + _REST * (monotonic() - began)
+        self._comparing = True
+        self.run_worker(self._compare(asked), group="comparison", exclusive=True)
 
-    def _figures(self, asked: Window) -> tuple[str, tuple[Section, ...]]:
+    async def _compare(self, asked: Window) -> None:
+        """Compare bit by bit, here where timelines are read, and show what comes of it."""
+        began = turn = monotonic()
+        worked = 0.0
+        work = self._figures(asked)
+        while True:
+            try:
+                next(work)
+            except StopIteration as over:
+                words, shown = over.value
+                break
+            now = monotonic()
+            if now - turn >= _SLICE:
+                worked += now - turn
+                if now - began >= _SOON:
+                    self._title(f"Comparing, {now - began:.0f} s so far")
+                await asyncio.sleep(_BREATH)
+                turn = monotonic()
+        self._title(words)
+        self.query_one(ComparisonTable).show(shown)
+        self._comparing = False
+        self._rest_until = monotonic() + _REST * (worked + monotonic() - turn)
+
+    def _title(self, words: str) -> None:
+        """Say above the table what it is about."""
+        self.query_one("#window", Words).words = (Run(f" {words} ", _STRONG),)
+
+    def _forget_comparison(self) -> None:
+        """Begin anew: something else is asked for."""
+        self.workers.cancel_group(self, "comparison")
+        self._comparing = False
+        self._compared = None
+        self._rest_until = 0.0
+
+    def _figures(self, asked: Window) -> Slices[tuple[str, tuple[Section, ...]]]:
         first, second = self._sides
         what = "Whole runs" if self._whole else "On screen"
         if self._whole and self._bounds is not None:
             what = "As asked"
         if asked.length <= 0:
             return f"{what}: nothing that both runs have; {_shorter(first, second)}", ()
-        compared = compare(first.timeline, second.timeline, asked)
+        compared = yield from compare_in_slices(first.timeline, second.timeline, asked)
         if self._whole:
             return f"{what}, {extent(compared)}", sections(compared)
         cut = asked.end < min(self._asked.end, self._end)
@@ -163,6 +206,7 @@ class CompareScreen(SizedScreen[None]):
         playhead = self._playhead
         meaningless = {
             "live": playhead.follows,
+            "deselect": self._selected is None,
             "later": playhead.at is None,
             "step": playhead.at is None,
             "earlier": playhead.now(self._end) == 0,
@@ -230,7 +274,37 @@ class CompareScreen(SizedScreen[None]):
 
     @on(Lanes.Picked)
     def _pick_moment(self, message: Lanes.Picked) -> None:
+        self._select(message.control, message.selection)
         self._move(self._playhead.sought(message.at, self._end))
+
+    # what is selected: a bar of either run
+
+    @property
+    def _selected(self) -> Lanes | None:
+        return next((lanes for lanes in self.query(Lanes) if lanes.selection is not None), None)
+
+    def _select(self, chosen: Lanes, selection: Selection | None) -> None:
+        for lanes in self.query(Lanes):
+            lanes.selection = selection if lanes is chosen else None
+
+    def action_previous_event(self) -> None:
+        """Go back to the bar before the cursor, on the selected lane."""
+        self._go_to_bar(-1)
+
+    def action_next_event(self) -> None:
+        """Go on to the selected lane's next bar."""
+        self._go_to_bar(1)
+
+    def _go_to_bar(self, step: int) -> None:
+        lanes = self._selected or self._lanes(0)
+        found = lanes.bar_beside(step)
+        if found is not None and found.bar is not None:
+            self._select(lanes, found)
+            self._move(self._playhead.sought(start_of(found.bar), self._end))
+
+    def action_deselect(self) -> None:
+        """Select nothing."""
+        self._select(self._lanes(0), None)
 
     @on(Lanes.Turned)
     def _turn(self, message: Lanes.Turned) -> None:
@@ -238,13 +312,14 @@ class CompareScreen(SizedScreen[None]):
 
     def _move(self, playhead: Playhead) -> None:
         self._playhead = playhead
+        if self._comparing and not self._whole:
+            self._forget_comparison()
         self.draw()
 
     def action_window(self) -> None:
         """Let the table tell of all that both runs have, or of the stretch on screen."""
         self._whole = not self._whole
-        self._compared = None
-        self._rest_until = 0.0
+        self._forget_comparison()
         self.draw()
 
     def action_scroll_table_up(self) -> None:

@@ -18,6 +18,7 @@ from cbtui.keymap import keymap_of
 from cbtui.screens.sized import SizedModal
 from cbtui.theme import Charset
 from cbtui.widgets.key_bar import KeyBar
+from cbtui.widgets.options import Options
 
 UNCHANGED = ""
 """What the screen gives for the group that the program says."""
@@ -52,7 +53,7 @@ class GroupScreen(SizedModal[str]):
             now = f"In this run: group {self._callback.group}."
             question = f"Which callback group does {self._callback.name} get?"
             yield Static(f"{question} The run starts again.\n{now}", markup=False)
-            yield OptionList(*(self._option(choice) for choice in self._choices))
+            yield Options(*(self._option(choice) for choice in self._choices))
             yield Static(classes="code")
             yield KeyBar(Scope.GROUP, self._charset)
 

@@ -17,6 +17,7 @@ from cbtui.widgets.key_bar import KeyBar
 
 _SHOWN = (
     Scope.LESSON,
+    Scope.CHECKS,
     Scope.CODE,
     Scope.LOG,
     Scope.FILTER,

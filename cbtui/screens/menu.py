@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from time import time
 from typing import TYPE_CHECKING, ClassVar, cast
 
+from rich.text import Text
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import BindingType
@@ -16,10 +17,12 @@ from textual.widgets import Input, OptionList
 
 from cbtui.actions import Scope, bindings_of
 from cbtui.keymap import keymap_of
-from cbtui.preview import CALLS, LENGTH, CannotPreviewError, GivenUpError, PreviewRun
+from cbtui.lesson_page import in_short
+from cbtui.preview import CALLS, LENGTH, CannotPreviewError, GivenUpError, PreviewRun, why_not
 from cbtui.recent import Opened, Recents
 from cbtui.screens.layout import Layout
 from cbtui.screens.sized import SizedScreen
+from cbtui.stage import Stage, in_words, stage_of
 from cbtui.theme import Charset
 from cbtui.widgets.about import About, Description, of_file, of_lesson
 from cbtui.widgets.banner import Banner
@@ -28,6 +31,7 @@ from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.menu_search import MenuSearch
 from cbtui.widgets.miniature import Miniature, Subject
 from lessons.lesson import Lesson
+from lessons.progress import Progress
 
 if TYPE_CHECKING:
     from cbtui.app import CbtuiApp
@@ -38,7 +42,8 @@ _REST = 0.3
 _PATIENCE = 1.0
 """Seconds that the console waits at its end for an engine that draws; it is killed before."""
 _CALLED = " and ".join(f"{at / 1e9:g}" for at in CALLS)
-_TITLE = f"first {LENGTH / 1e9:g} s, s pressed at {_CALLED} s"
+_TITLE = f"first {LENGTH / 1e9:g} s, {{key}} pressed at {_CALLED} s"
+_NO_PICTURE = "no picture"
 _WAIT = f"Rest on a lesson, and {LENGTH / 1e9:g} s of it are run and drawn here."
 
 
@@ -64,6 +69,7 @@ class MenuScreen(SizedScreen[None]):
         self,
         lessons: Sequence[Lesson],
         recents: Recents,
+        progress: Progress,
         open_session: "OpenSession",
         charset: Charset,
         now: Callable[[], float] = time,
@@ -71,6 +77,7 @@ class MenuScreen(SizedScreen[None]):
         super().__init__()
         self._lessons = lessons
         self._recents = recents
+        self._progress = progress
         self._open_session = open_session
         self._charset = charset
         self._now = now
@@ -94,7 +101,8 @@ class MenuScreen(SizedScreen[None]):
         self._list.focus()
 
     def on_screen_resume(self) -> None:
-        """Show what was opened meanwhile, and draw again."""
+        """Show what was opened and learnt meanwhile, here and in other consoles, and draw again."""
+        self._progress.refresh()
         if self._filled_with == self._contents:
             self._describe()
         else:
@@ -122,18 +130,28 @@ class MenuScreen(SizedScreen[None]):
     @property
     def _contents(self) -> object:
         """What the list depends on beside the search."""
-        return self.layout_now, self._recents.entries
+        return self.layout_now, self._recents.entries, self._stages
+
+    @property
+    def _stages(self) -> dict[str, Stage]:
+        """How far the learner is in each lesson, by its id."""
+        opened = self._recents.lessons
+        return {
+            lesson.id: stage_of(lesson, self._progress.of(lesson.id), opened=lesson.id in opened)
+            for lesson in self._lessons
+        }
 
     def _fill(self) -> None:
         self._filled_with = self._contents
-        rows = (WideRows if self.layout_now is Layout.GRID else Rows)(self._recents.lessons, self._now())
+        kind = WideRows if self.layout_now is Layout.GRID else Rows
+        rows = kind(self._lessons, self._stages, self._now())
         wanted = with_words(self._words)
         self._list.show(filter(wanted, self._lessons), filter(wanted, self._recents.files), rows)
         self._tell_troubles()
         self._describe()
 
     def _tell_troubles(self) -> None:
-        for sentence in self._recents.troubles():
+        for sentence in (*self._recents.troubles(), *self._progress.troubles()):
             self.notify(sentence, severity="warning", markup=False)
 
     def _describe(self) -> None:
@@ -143,7 +161,11 @@ class MenuScreen(SizedScreen[None]):
         about.description = self._description
         about.set_class(not isinstance(chosen, Lesson), "-alone")
         self._miniature.display = isinstance(chosen, Lesson)
-        self._miniature.border_title = _TITLE
+        key = keymap_of(self.app).sign(Scope.LESSON, "call_service", self._charset)
+        reason = why_not(chosen) if isinstance(chosen, Lesson) else None
+        self._miniature.border_title = Text(_TITLE.format(key=key) if reason is None else _NO_PICTURE)
+        if isinstance(chosen, Lesson) and reason is not None:
+            self._subjects[chosen.id] = f"It is not run for its picture: {reason}."
         self._show_drawn()
         if self._rest is not None:
             self._rest.stop()
@@ -155,7 +177,10 @@ class MenuScreen(SizedScreen[None]):
     def _description(self) -> Description:
         chosen = self._list.chosen
         if isinstance(chosen, Lesson):
-            return of_lesson(chosen, self._recents.lessons.get(chosen.id), self._now())
+            text = in_short(chosen, self._progress.of(chosen.id))
+            opened = self._recents.lessons.get(chosen.id)
+            so_far = in_words(self._stages[chosen.id])
+            return of_lesson(chosen, text, opened, self._now(), so_far, keymap_of(self.app))
         if chosen is not None:
             forget = keymap_of(self.app).sign(Scope.MENU, "forget", self._charset)
             return of_file(chosen, self._now(), forget)
@@ -194,7 +219,8 @@ class MenuScreen(SizedScreen[None]):
         else:
             from cbtui.widgets.lanes import Painter  # on this thread: the screen must not stand still for it
 
-            subject = Subject(timeline, Painter(self._charset, lesson.service.name))
+            key = keymap_of(self.app).sign(Scope.LESSON, "call_service", self._charset)
+            subject = Subject(timeline, Painter(self._charset, lesson.service.name, call_key=key))
         self.post_message(self.Drawn(lesson, subject))
 
     @on(Drawn)

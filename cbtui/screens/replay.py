@@ -1,11 +1,7 @@
 """A recording on screen: what a lesson shows, with a moment that can be played but a run that is over."""
 
-import threading
 from time import monotonic_ns
 from typing import NoReturn
-
-from textual import on
-from textual.message import Message
 
 from cbtui.changes import Changes, changes_in
 from cbtui.live_run import Deliver, Ended, LiveRun
@@ -16,10 +12,6 @@ from cbtui.theme import Charset
 from cbtui.widgets.shell import Prompt
 from sim.trace.recording import Recording
 
-_AHEAD = 2
-"""Deliveries that may wait for the screen: more would keep it from drawing."""
-_PATIENCE = 0.5
-"""Seconds after which the reader goes on although the screen has taken nothing: it may be gone."""
 _REFUSED = frozenset(
     {
         "call_service",
@@ -27,6 +19,7 @@ _REFUSED = frozenset(
         "prompt",
         "reset_world",
         "run_again",
+        "start_over",
         "threads",
         "group",
         "set_up",
@@ -41,7 +34,6 @@ class ReplayScreen(LessonScreen):
 
     def __init__(self, recording: Recording, charset: Charset) -> None:
         self._recording = recording
-        self._room = threading.Semaphore(_AHEAD)
         self._played_at = 0
         recorded = setup_of(recording.about)
         changes = Changes() if recorded is None else changes_in(recorded)
@@ -62,21 +54,6 @@ class ReplayScreen(LessonScreen):
         """The run on screen."""
         assert isinstance(self._run, ReplayRun)
         return self._run
-
-    # reading
-
-    def _hand_over(self, message: Message) -> None:
-        """Hold the reader up while the screen has enough to do."""
-        self._room.acquire(timeout=_PATIENCE)
-        super()._hand_over(message)
-
-    @on(LessonScreen.Delivered)
-    def _make_room(self) -> None:
-        self._room.release()
-
-    @on(LessonScreen.Over)
-    def _make_room_again(self) -> None:
-        self._room.release()
 
     # playing
 

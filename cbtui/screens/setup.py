@@ -21,6 +21,7 @@ from cbtui.screens.sized import SizedModal
 from cbtui.theme import Charset
 from cbtui.widgets.cells import fit
 from cbtui.widgets.key_bar import KeyBar
+from cbtui.widgets.options import Options
 
 _COLUMNS = (19, 7, 30, 12)
 """Of a row: what it is about, which aspect of it, how it is, what it was changed to."""
@@ -51,7 +52,7 @@ class SetupScreen(SizedModal[Changes]):
         with Container(classes="window") as window:
             window.border_title = "Set-up"
             yield Static(Content.styled(self._line("", "", "in this run", "changed to"), "$text-muted"))
-            yield OptionList()
+            yield Options()
             with VerticalScroll(can_focus=False):
                 yield Static(classes="code")
             yield KeyBar(Scope.SETUP, self._charset)

@@ -17,6 +17,7 @@ from cbtui.keymap import keymap_of
 from cbtui.screens.sized import SizedModal
 from cbtui.theme import Charset
 from cbtui.widgets.key_bar import KeyBar
+from cbtui.widgets.options import Options
 
 MOST = 8
 
@@ -39,7 +40,7 @@ class ThreadsScreen(SizedModal[int]):
         with Container(classes="window") as window:
             window.border_title = "Threads"
             yield Static("How many threads does the executor get?\nThe run starts again with them.")
-            yield OptionList(*self._options())
+            yield Options(*self._options())
             yield Static(classes="code")
             yield KeyBar(Scope.THREADS, self._charset)
 

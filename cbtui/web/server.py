@@ -116,7 +116,15 @@ class ConsoleServer(Server):
     async def _process_messages(self, websocket: web.WebSocketResponse, app_service: AppService) -> None:
         try:
             await super()._process_messages(websocket, app_service)
-        except (AssertionError, LookupError, TypeError, ValueError, AttributeError):
+        except (
+            AssertionError,
+            ArithmeticError,
+            AttributeError,
+            LookupError,
+            RecursionError,
+            TypeError,
+            ValueError,
+        ):
             await websocket.close(message=b"that is not what the page sends")
 
     @property

@@ -8,6 +8,8 @@ from textwrap import wrap
 from textual.geometry import Size
 from textual.reactive import reactive
 
+from cbtui.keymap import STANDARD, Keymap
+from cbtui.named_keys import key_in_force
 from cbtui.recent import Kind, Opened, ago
 from cbtui.theme import Charset, Ink, Role, Run
 from cbtui.widgets.cells import fit, visible
@@ -47,16 +49,28 @@ class About(Painted):
         self.changed()
 
 
-def of_lesson(lesson: Lesson, opened: int | None, now: float) -> Description:
-    """Describe a lesson that was opened at a moment, None for never; times are seconds since 1970."""
+def of_lesson(
+    lesson: Lesson,
+    text: str,
+    opened: int | None,
+    now: float,
+    so_far: str = "",
+    keymap: Keymap = STANDARD,
+) -> Description:
+    """Describe a lesson that was opened at a moment, None for never; times are seconds since 1970.
+
+    ``text`` is what there is to say of it, ``so_far`` how far the learner is in it.
+    """
     facts = (
         ("executor", lesson.executor),
         ("groups", lesson.groups),
         ("service", lesson.service.name),
+        *((("clock", "real: computing takes time"),) if lesson.setup.clock == "real" else ()),
         *(() if opened is None else (("opened", ago(opened, now)),)),
+        *((("so far", so_far),) if so_far else ()),
     )
-    keys = tuple((attempt.key, attempt.text) for attempt in lesson.tries)
-    return Description(lesson.title, lesson.teaches, facts, keys)
+    keys = tuple((key_in_force(attempt.key, keymap), attempt.text) for attempt in lesson.tries)
+    return Description(lesson.title, text, facts, keys)
 
 
 _WHAT = {

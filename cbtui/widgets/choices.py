@@ -9,6 +9,7 @@ from textual.widgets import OptionList
 from textual.widgets.option_list import Option
 
 from cbtui.recent import Kind, Opened, ago
+from cbtui.stage import Stage
 from cbtui.theme import Charset
 from cbtui.widgets.cells import fit, visible
 from lessons.lesson import Lesson
@@ -17,6 +18,9 @@ Choice: TypeAlias = Lesson | Opened
 
 _KINDS = {Kind.PROGRAM: "program", Kind.RECORDING: "recording"}
 RECENT = "Recent"
+
+_TITLE, _EXECUTOR, _GROUPS = 24, 17, 24
+"""Columns of what is told of a lesson; together with mark and number as many as the wide list has."""
 
 
 class Choices(OptionList, inherit_bindings=False):
@@ -42,7 +46,7 @@ class Choices(OptionList, inherit_bindings=False):
         options: list[Option] = []
         self._choices = {}
         for unit, members in groupby(lessons, key=lambda lesson: lesson.unit):
-            options.append(_heading(f"Unit {unit}"))
+            options.append(_heading(f"Unit {unit}{rows.total(unit)}"))
             options += [self._option(lesson.id, lesson, rows.lesson(lesson)) for lesson in members]
         listed = [self._option(":".join(entry.key), entry, rows.file(entry)) for entry in files]
         options += [_heading(RECENT), *listed] if listed else []
@@ -70,16 +74,22 @@ class Choices(OptionList, inherit_bindings=False):
 class Rows:
     """The lines of the list where it is narrow: what they are about; the rest is told beside the list."""
 
-    def __init__(self, opened: Mapping[str, int], now: float) -> None:
-        self._opened = opened
+    def __init__(self, lessons: Sequence[Lesson], stages: Mapping[str, Stage], now: float) -> None:
+        """Take all lessons, how far the learner is in each by its id, and seconds since 1970."""
+        self._lessons = lessons
+        self._stages = stages
         self._now = now
 
+    def total(self, unit: str) -> str:
+        """Return how many lessons of a unit are done."""
+        stages = [self._stages[lesson.id] for lesson in self._lessons if lesson.unit == unit]
+        return f" {stages.count(Stage.DONE)}/{len(stages)}"
+
     def lesson(self, lesson: Lesson) -> Content:
-        """Return a lesson's line: whether it was opened, its number, its title."""
-        mark = "✓" if lesson.id in self._opened else "·"
+        """Return a lesson's line: how far the learner is in it, its number, its title."""
         return Content.assemble(
-            f"{mark} {lesson.number:>2}  ",
-            (fit(lesson.title, 25, Charset.BRAILLE), "bold"),
+            f"{self._stages[lesson.id].value} {lesson.number:>2}  ",
+            (fit(lesson.title, _TITLE, Charset.BRAILLE), "bold"),
         )
 
     def file(self, entry: Opened) -> Content:
@@ -94,14 +104,19 @@ class WideRows(Rows):
         """Return a lesson's line with its executor and groups."""
         return Content.assemble(
             super().lesson(lesson),
-            f" {fit(lesson.executor, 25, Charset.BRAILLE)} ",
-            (fit(lesson.groups, 14, Charset.BRAILLE), "$text-muted"),
+            f" {fit(_briefly(lesson.executor), _EXECUTOR, Charset.BRAILLE)} ",
+            (fit(lesson.groups, _GROUPS, Charset.BRAILLE), "$text-muted"),
         )
 
     def file(self, entry: Opened) -> Content:
         """Return a file's line with when it was opened."""
-        rest = f"{fit(_KINDS[entry.kind], 25, Charset.BRAILLE)} {ago(entry.at, self._now)}"
-        return Content.assemble(f"      {_name(entry, 25)} ", (rest, "$text-muted"))
+        rest = f"{fit(_KINDS[entry.kind], _EXECUTOR, Charset.BRAILLE)} {ago(entry.at, self._now)}"
+        return Content.assemble(f"      {_name(entry, _TITLE)} ", (rest, "$text-muted"))
+
+
+def _briefly(executor: str) -> str:
+    """An executor without the word that all of them end with; About tells its whole name."""
+    return executor.replace("ThreadedExecutor", "Threaded")
 
 
 def _heading(text: str) -> Option:

@@ -1,12 +1,15 @@
 """What a moment of a run means, in one sentence: who waits longest and why, or that nothing waits."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 
+from cbtui.actions import Scope
 from cbtui.findings import Told
+from cbtui.keymap import STANDARD, Keymap
 from cbtui.live_run import LiveRun, State
 from cbtui.playhead import Playhead
+from cbtui.theme import Charset
 from cbtui.widgets.durations import duration
 from sim.trace.concurrency import Concurrency
 from sim.trace.events import Notice, Reason, Severity
@@ -20,6 +23,10 @@ WORTH_TELLING: Nanoseconds = 10_000_000
 _SERIOUS: Nanoseconds = 1_000_000_000
 _NOTICE_STAYS: Nanoseconds = 5_000_000_000
 _REPLY_STAYS: Nanoseconds = 5_000_000_000
+_FOR_EVER = " for ever: "
+"""What the rules on deadlocks say of callbacks that can never go on."""
+_HELD_UP = ("has not come back for", "does not come to a wait", "time stands still")
+"""What the engine's notices say of a callback with which a run may not go on."""
 
 
 class Weight(Enum):
@@ -44,25 +51,35 @@ class Diagnosis:
     at_length: str = ""
 
 
-def verdict(run: LiveRun, playhead: Playhead, concurrency: Concurrency) -> Diagnosis:
+def verdict(
+    run: LiveRun, playhead: Playhead, concurrency: Concurrency, keymap: Keymap = STANDARD
+) -> Diagnosis:
     """Return what to say of the moment on screen; at a run's end, how it ended and how to go on."""
     timeline = run.timeline
     if playhead.at is None:
         if run.loss is not None:
-            return Diagnosis(
-                f"engine lost: {run.loss.rstrip('.')}; press r to run again", Weight.TROUBLE, stays=True
-            )
+            return _of_a_loss(run.loss, _key("run_again", keymap))
+        if run.state is State.SILENT:
+            return _of_silence(timeline, _key("run_again", keymap))
         if run.state is State.ENDED:
-            return _of_the_end(timeline, "press r to run again")
+            return _of_the_end(timeline, f"press {_key('run_again', keymap)} to run again")
         if run.state is State.REPLAY_STANDS and timeline.ended is not None:
-            return _of_the_end(timeline, "space plays it from its beginning")
-    return diagnose(timeline, playhead.now(timeline.end), concurrency)
+            return _of_the_end(timeline, f"{_key('resume', keymap)} plays it from its beginning")
+    moment = diagnose(timeline, playhead.now(timeline.end), concurrency)
+    if playhead.at is None and run.alive and any(sign in moment.text for sign in _HELD_UP):
+        return replace(moment, text=f"{moment.text}; {_key('start_over', keymap)} starts over")
+    return moment
 
 
-def with_worst(moment: Diagnosis, told: Sequence[Told]) -> Diagnosis:
+def way_on(run: LiveRun, keymap: Keymap) -> str:
+    """Return how to go on with a run in which callbacks wait for ever; "" for one that is over."""
+    return f"{_key('start_over', keymap)} starts over" if run.alive else ""
+
+
+def with_worst(moment: Diagnosis, told: Sequence[Told], way_on: str = "") -> Diagnosis:
     """Return what to say where the rules have told of a run: its worst problem, if the moment has none.
 
-    What stays is said in any case.
+    What stays is said in any case; of what lasts for ever also the ``way_on``, where there is room.
     """
     worst = next((each for each in told if each.is_problem), None)
     if worst is None or moment.stays or moment.weight is not Weight.FINE:
@@ -71,7 +88,23 @@ def with_worst(moment: Diagnosis, told: Sequence[Told]) -> Diagnosis:
     if worst.at is None:
         return Diagnosis(what, Weight.TROUBLE, at_length=f"{worst.name}: {what}")
     text = f"at {worst.at / 1e9:.1f} s: {what}"
-    return Diagnosis(text, Weight.TROUBLE, at_length=f"{worst.name} {text}")
+    further = f"; {way_on}" if way_on and _FOR_EVER in what else ""
+    return Diagnosis(text, Weight.TROUBLE, at_length=f"{worst.name} {text}{further}")
+
+
+def _key(action: str, keymap: Keymap) -> str:
+    return keymap.sign(Scope.LESSON, action, Charset.ASCII)
+
+
+def _of_a_loss(loss: str, key: str) -> Diagnosis:
+    """Say it so briefly that one line of 80 columns has room for it and for the number of problems."""
+    how = loss.rstrip(".").removeprefix("the engine ").removeprefix("was ")
+    return Diagnosis(f"engine lost: {how}; {key} runs again", Weight.TROUBLE, stays=True)
+
+
+def _of_silence(timeline: Timeline, key: str) -> Diagnosis:
+    what = timeline.notices[-1].text.removeprefix("the ")
+    return Diagnosis(f"{what}; {key} runs again", Weight.TROUBLE, stays=True)
 
 
 def _of_the_end(timeline: Timeline, way_on: str) -> Diagnosis:

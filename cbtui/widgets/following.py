@@ -22,6 +22,10 @@ class Following(Inked):
         """Columns that every line takes beside its text."""
         return 0
 
+    def below(self) -> int:
+        """Rows that follow the last line."""
+        return 0
+
     def grow(self, count: int, widest: int) -> None:
         """Show ``count`` lines, the longest of them ``widest`` columns wide."""
         self._count, self._widest = count, widest
@@ -49,7 +53,7 @@ class Following(Inked):
 
     def _fit_size(self) -> None:
         self._fitting = True
-        size = Size(self._widest + self.beside(), self._count)
+        size = Size(self._widest + self.beside(), self._count + self.below())
         if size != self.virtual_size:
             # Assigning it would lay out the whole screen anew for every line.
             self.set_reactive(Following.virtual_size, size)

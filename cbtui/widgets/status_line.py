@@ -29,7 +29,8 @@ class Status:
     """What the line tells.
 
     ``back`` is how long before the end the moment on screen lies, 0 for live; ``recorded`` how many events
-    have been recorded, None if nothing is being recorded, ``unrecorded`` how many came too fast for that.
+    have been recorded, None if nothing is being recorded, ``unrecorded`` how many came too fast for that;
+    ``exported`` is how many per cent of an export are done, None if there is none.
     """
 
     title: str
@@ -42,9 +43,12 @@ class Status:
     lost: int
     recorded: int | None = None
     unrecorded: int = 0
+    exported: int | None = None
 
 
-def status_of(title: str, run: LiveRun, playhead: Playhead, usual_executor: str) -> Status:
+def status_of(
+    title: str, run: LiveRun, playhead: Playhead, usual_executor: str, exported: int | None = None
+) -> Status:
     """Return what the line tells of a run; until its executor appears, what the lesson says of it."""
     timeline = run.timeline
     at = playhead.now(timeline.end)
@@ -59,6 +63,7 @@ def status_of(title: str, run: LiveRun, playhead: Playhead, usual_executor: str)
         lost=timeline.lost,
         recorded=run.recorded,
         unrecorded=run.unrecorded,
+        exported=exported,
     )
 
 
@@ -90,7 +95,7 @@ def status_row(status: Status, width: int) -> list[Run]:
     time = Run(f"t {status.at / 1e9:.3f} s", _STRONG)
     executor = Run(status.executor, _PLAIN)
     losses = _losses(status)
-    recording = _recording(status)
+    recording = [*_export(status), *_recording(status)]
     whole = len(title.text) + 2
     for parts, least in (
         ([state, pace, _GAP, time, _GAP, executor, _GAP, *recording, *losses], whole),
@@ -105,7 +110,7 @@ def status_row(status: Status, width: int) -> list[Run]:
 
 
 def _state(status: Status) -> Run:
-    if status.back and status.state in (State.STARTING, State.LIVE, State.PAUSED, State.ENDED):
+    if status.back and status.state in (State.STARTING, State.LIVE, State.PAUSED, State.SILENT, State.ENDED):
         paused = ", paused" if status.state is State.PAUSED else ""
         return Run(f"◂ BACK {duration(status.back)}{paused}", _WARN)
     return _STATES[status.state]
@@ -115,11 +120,16 @@ _STATES = {
     State.STARTING: Run("○ STARTING", _FAINT),
     State.LIVE: Run("● LIVE", _STRONG),
     State.PAUSED: Run("‖ PAUSED", _WARN),
+    State.SILENT: Run("✗ SILENT", _WARN),
     State.ENDED: Run("■ ENDED", _STRONG),
     State.LOST: Run("✗ LOST", _WARN),
     State.REPLAY_STANDS: Run("‖ REPLAY", _STRONG),
     State.REPLAY_PLAYS: Run("▶ REPLAY", _STRONG),
 }
+
+
+def _export(status: Status) -> list[Run]:
+    return [] if status.exported is None else [Run(f"EXPORT {status.exported} %", _WARN), _GAP]
 
 
 def _recording(status: Status) -> list[Run]:

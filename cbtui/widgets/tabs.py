@@ -8,7 +8,7 @@ from textual.geometry import Size
 from textual.message import Message
 from textual.reactive import reactive
 
-from cbtui.actions import PANES
+from cbtui.actions import CHECKS, PANES
 from cbtui.theme import Charset, Ink, Role, Run
 from cbtui.widgets.cells import fit
 from cbtui.widgets.painted import Painted
@@ -20,6 +20,10 @@ _BETWEEN = " · "
 
 class Tabs(Painted):
     """Names the panes with their numbers, the one that is shown in brackets."""
+
+    def __init__(self, panes: Sequence[str] = PANES) -> None:
+        super().__init__()
+        self._panes = panes
 
     current: reactive[str] = reactive(PANES[0], repaint=False)
     note: reactive[str] = reactive("", repaint=False)
@@ -35,7 +39,7 @@ class Tabs(Painted):
     def rows(self, size: Size) -> Sequence[Sequence[Run]]:
         """Paint the line."""
         runs = [Run("─", _LINE)]
-        for pane, text in _labels(self.current):
+        for pane, text in self._labels():
             shown = pane == self.current
             runs.append(Run(text, Ink(Role.STRONG if shown else Role.TEXT)))
         room = max(0, size.width - sum(len(run.text) for run in runs))
@@ -53,10 +57,14 @@ class Tabs(Painted):
     def on_click(self, event: Click) -> None:
         """Tell which pane was clicked."""
         start = 1
-        for pane, text in _labels(self.current):
+        for pane, text in self._labels():
             if start <= event.x < start + len(text):
                 self.post_message(self.Picked(pane))
             start += len(text)
+
+    def _labels(self) -> Iterator[tuple[str, str]]:
+        for pane in self._panes:
+            yield pane, f"[{title_of(pane)}]" if pane == self.current else f" {title_of(pane)} "
 
 
 def _shortened(note: str, room: int) -> str:
@@ -70,9 +78,4 @@ def _shortened(note: str, room: int) -> str:
 
 def title_of(pane: str) -> str:
     """Return a pane's number and name."""
-    return f"{PANES.index(pane) + 1} {pane.capitalize()}"
-
-
-def _labels(current: str) -> Iterator[tuple[str, str]]:
-    for pane in PANES:
-        yield pane, f"[{title_of(pane)}]" if pane == current else f" {title_of(pane)} "
+    return f"{(*PANES, CHECKS).index(pane) + 1} {pane.capitalize()}"

@@ -7,6 +7,7 @@ from cbtui.actions import ACTIONS, Action, Scope, actions_of, bindings_of, metho
 from cbtui.app import CbtuiApp
 from cbtui.screens.compare import CompareScreen
 from cbtui.screens.diagnoses import DiagnosesScreen
+from cbtui.screens.export import ExportScreen
 from cbtui.screens.group import GroupScreen
 from cbtui.screens.help import HelpScreen
 from cbtui.screens.lesson import LessonScreen
@@ -14,9 +15,12 @@ from cbtui.screens.menu import MenuScreen
 from cbtui.screens.moment import MomentScreen
 from cbtui.screens.number import NumberScreen
 from cbtui.screens.opening import OpeningScreen
+from cbtui.screens.prediction import PredictionScreen
 from cbtui.screens.setup import SetupScreen
+from cbtui.screens.solution import AskingScreen, SolutionScreen
 from cbtui.screens.threads import ThreadsScreen
 from cbtui.theme import Charset
+from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.log import LogFilter, LogLines
 from cbtui.widgets.menu_search import MenuSearch
@@ -32,11 +36,16 @@ HOMES: dict[Scope, type[DOMNode]] = {
     Scope.LOG: LogLines,
     Scope.FILTER: LogFilter,
     Scope.CODE: CodeView,
+    Scope.CHECKS: ChecksView,
     Scope.PROMPT: Prompt,
     Scope.THREADS: ThreadsScreen,
     Scope.GROUP: GroupScreen,
+    Scope.EXPORT: ExportScreen,
     Scope.SETUP: SetupScreen,
     Scope.DIAGNOSES: DiagnosesScreen,
+    Scope.PREDICTION: PredictionScreen,
+    Scope.SOLUTION: SolutionScreen,
+    Scope.ASKING: AskingScreen,
     Scope.NUMBER: NumberScreen,
     Scope.MOMENT: MomentScreen,
     Scope.HELP: HelpScreen,
@@ -58,7 +67,7 @@ def test_no_key_is_one_that_terminals_keep_for_themselves(action: Action) -> Non
 def test_only_actions_that_rule_each_other_out_share_a_key() -> None:
     used = Counter((action.scope, key) for action in ACTIONS for key in action.key.split(","))
     shared = {key for (_, key), times in used.items() if times > 1}
-    assert shared == {"space", "r", "enter", "f"}
+    assert shared == {"space", "r", "enter", "f", "e", "d"}
 
 
 def test_ids_are_unique_within_a_scope() -> None:
@@ -81,7 +90,7 @@ def test_a_window_offers_only_its_own_actions() -> None:
 
 def test_neighbouring_keys_are_written_together() -> None:
     groups = {group[0].label: group for group in together(actions_of(Scope.LESSON), "label")}
-    assert signs_of(groups["pane"], Charset.BRAILLE) == "1-6"
+    assert signs_of(groups["pane"], Charset.BRAILLE) == "1-7"
     assert signs_of(groups["speed"], Charset.BRAILLE) == "- +"
 
 

@@ -281,3 +281,11 @@ def test_what_is_no_such_number_gets_a_sentence(quantity: Quantity, text: str, s
     with pytest.raises(BadQuantityError) as caught:
         quantity.read(text)
     assert str(caught.value) == sentence
+
+
+def test_a_seed_is_a_change_that_set_ups_keep_and_lanes_tell() -> None:
+    setup = Changes(seed=17).applied(setup_for(SERVER))
+    assert setup.seed == 17
+    assert Changes(threads=2).applied(setup).seed == 17
+    assert changes_in(setup).words == "seed 17"
+    assert Changes(seed=17).beyond(Changes(seed=17)) == Changes()

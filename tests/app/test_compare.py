@@ -8,9 +8,12 @@ from pathlib import Path
 import pytest
 from textual.pilot import Pilot
 
+from cbtui.actions import ACTIONS, Scope
 from cbtui.app import CbtuiApp
 from cbtui.contenders import Contender, Progress, Side, Terms
+from cbtui.keymap import keys_of
 from cbtui.lesson_setup import setup_for
+from cbtui.screens import compare
 from cbtui.screens.compare import CompareScreen
 from cbtui.screens.gathering import GatheringScreen, sentence_on
 from cbtui.screens.help import HelpScreen
@@ -19,7 +22,7 @@ from cbtui.screens.menu import MenuScreen
 from cbtui.screens.moment import MomentScreen
 from cbtui.theme import Charset
 from cbtui.widgets.comparison import ComparisonTable
-from cbtui.widgets.lanes import Lanes
+from cbtui.widgets.lanes import Lanes, start_of
 from lessons.catalogue import find
 from sim.trace.events import AnyEvent, RobotMoved, RunEnded
 from sim.trace.model import Window
@@ -75,6 +78,7 @@ async def drawn(app: ComparingConsole, pilot: Pilot[None]) -> None:
     await pilot.pause()
     app.comparison._rest_until = 0.0
     app.comparison.draw()
+    await app.workers.wait_for_complete()
     await pilot.pause()
 
 
@@ -121,6 +125,35 @@ async def test_the_axis_goes_as_far_as_the_longer_run_and_the_table_as_far_as_th
     async with compared(*sides()) as (app, _):
         assert lanes(app)[0].now == app.comparison._sides[0].timeline.end
         assert "Whole runs, 0 to 9.4 s; run A goes on to 14 s" in title(app)
+
+
+@pytest.mark.parametrize(
+    "key",
+    ["left", "right", "[", "]", "{", "}", ",", ".", "<", ">", "G", "0", "z", "escape"],
+)
+def test_a_key_that_moves_through_time_does_the_same_as_in_a_lesson(key: str) -> None:
+    here, there = (
+        {action.id for action in ACTIONS if action.scope is scope and key in keys_of(action)}
+        for scope in (Scope.COMPARE, Scope.LESSON)
+    )
+    assert here == there != set()
+
+
+async def test_the_cursor_goes_from_bar_to_bar_of_the_lane_that_was_clicked_on() -> None:
+    async with compared(*sides()) as (app, pilot):
+        lanes = app.comparison.query_one("#lanes1", Lanes)
+        await pilot.click(lanes, offset=(60, 1))
+        await pilot.pause()
+        assert lanes.selection is not None
+        assert app.comparison.query_one("#lanes0", Lanes).selection is None
+        await pilot.press("right_curly_bracket")
+        later = lanes.now
+        await pilot.press("left_curly_bracket", "left_curly_bracket")
+        assert lanes.now < later
+        assert lanes.selection.bar is not None
+        assert start_of(lanes.selection.bar) == lanes.now
+        await pilot.press("escape")
+        assert lanes.selection is None
 
 
 async def test_w_lets_the_table_tell_of_the_stretch_on_screen_and_back() -> None:
@@ -337,3 +370,37 @@ async def test_a_run_that_takes_long_can_be_given_up() -> None:
 )
 def test_progress_tells_how_far_a_run_has_come(progress: Progress, sentence: str) -> None:
     assert sentence_on(progress) == sentence
+
+
+async def test_keys_are_answered_while_a_comparison_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compare, "_SLICE", 0.0)
+    monkeypatch.setattr(compare, "_SOON", 0.0)
+    monkeypatch.setattr(compare, "_BREATH", 0.02)
+    app = ComparingConsole(*sides())
+    async with app.run_test(size=WIDE) as pilot:
+        await pilot.pause()
+        app.comparison.draw()
+        before = app.comparison._playhead
+        await pilot.press("left_square_bracket")
+        assert app.comparison._playhead != before
+        assert "Comparing, 0 s so far" in text_of(app)
+        assert app.comparison._comparing
+        monkeypatch.setattr(compare, "_SLICE", 10.0)
+        await app.workers.wait_for_complete()
+        await pilot.pause()
+        assert "Whole runs, 0 to 9.4 s" in title(app)
+
+
+async def test_asking_for_something_else_ends_a_comparison_that_goes_on(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(compare, "_SLICE", 0.0)
+    monkeypatch.setattr(compare, "_BREATH", 0.05)
+    app = ComparingConsole(*sides())
+    async with app.run_test(size=WIDE) as pilot:
+        await pilot.pause()
+        app.comparison.draw()
+        assert app.comparison._comparing
+        monkeypatch.setattr(compare, "_SLICE", 10.0)
+        await press(app, pilot, "w")
+        assert title(app).strip().startswith("On screen")

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from cbtui.findings import Watch, counted
 from sim.diagnosis import Diagnoses, Explanation, Finding, Look, Rule, Weight
 from sim.trace.timeline import Timeline
-from tests.support.builder import Run
+from tests.support.builder import Run, ns
 from tests.support.runs import shared_group_run, split_groups_run
 
 
@@ -70,6 +70,26 @@ def test_after_a_dear_look_the_rules_rest_a_hundred_times_as_long() -> None:
     assert at_frames(watch, clock, [100.0, 101.5, 104.9]) == [True, False, False]
     assert at_frames(watch, clock, [105.06]) == [True]
     assert rule.asked == 2
+
+
+def test_what_is_read_of_a_recording_between_two_frames_is_looked_at_before_it_is_minutes() -> None:
+    clock, starts = Clock(), []
+
+    class Noting(Counting):
+        def check(self, look: Look) -> Iterator[Finding]:
+            starts.append(look.window.length)
+            return iter(())
+
+    timeline = Timeline()
+    watch = Watch(timeline, Diagnoses([Noting(clock)]), clock)
+    run = Run("long")
+    for second in range(0, 600, 8):
+        run.log("here", float(second))
+        timeline.extend(run.events[-1:])
+        watch.look_when_due()
+    watch.look()
+    assert max(starts) < ns(30)
+    assert len(starts) < 40
 
 
 def test_looking_now_waits_for_nothing_and_puts_off_the_next_look() -> None:

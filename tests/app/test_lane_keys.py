@@ -6,14 +6,17 @@ from contextlib import asynccontextmanager
 import pytest
 from textual.pilot import Pilot
 
+from cbtui.keymap import Keymap
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.guide import Guide
 from cbtui.widgets.lanes import Lanes, start_of
+from cbtui.widgets.lanes.details import details_of_selection
 from cbtui.widgets.lanes.rows import MemberLane, ThreadLane
+from cbtui.widgets.lanes.selection import Selection
 from tests.app.pictures import lines_of, text_of
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
-from tests.support.runs import shared_group_run
+from tests.support.runs import shared_group_run, split_groups_run
 
 EVENTS = shared_group_run().events
 
@@ -174,3 +177,37 @@ async def test_lanes_without_anything_can_be_gone_to() -> None:
             pilot, "enter", "down", "up", "enter", "left_curly_bracket", "right_curly_bracket", "escape"
         )
         assert lanes_of(app).selection is None
+
+
+async def test_y_copies_what_is_known_of_the_selected_bar() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "enter", "down", "down", "y")
+        first, *facts = app.clipboard.splitlines()
+        assert first == "A odom_callback waits"
+        assert "  group A held by timer_callback" in facts
+        assert "copied A odom_callback waits" in [each.message for each in app._notifications]
+
+
+async def test_y_copies_what_the_moment_means_where_nothing_is_selected() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "y")
+        assert app.clipboard.splitlines()[:4] == [
+            "2/8 One shared group, t 12.900 s, SingleThreadedExecutor",
+            "odom_callback waits 8.9 s: group A is held by timer_callback",
+            "  timer_callback runs on MainThread for 8.9 s",
+            "  odom_callback waits 8.9 s: group A held by timer_callback",
+        ]
+
+
+async def test_lanes_name_the_keys_that_are_in_force() -> None:
+    keys = Keymap({"lesson.call_service": ("b",), "lesson.previous_event": ("f7",)})
+    app = RecordedConsole("split-groups", split_groups_run().events, 9.4, keys=keys)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        assert "▲b" in text_of(app)
+        lanes = app.lesson_screen.query_one(Lanes)
+        assert lanes.picture is not None
+        lanes.selection = Selection(lanes.picture.lanes[0])
+        await settle(pilot)
+        details = details_of_selection(lanes.timeline, lanes.selection, 0, lanes.keys)
+        assert details.facts[-1] == "f7 and } go to what came before and after"

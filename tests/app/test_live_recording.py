@@ -5,6 +5,7 @@ from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from itertools import count
 from pathlib import Path
+from threading import Event
 
 import pytest
 from mcap.writer import Writer
@@ -14,8 +15,9 @@ from textual.pilot import Pilot
 from cbtui import live_recording
 from cbtui.app import CbtuiApp
 from cbtui.live_recording import unused_name
+from cbtui.live_run import LiveRun
 from sim.engine.commands import KeepContents
-from sim.trace.recording import Recording, read
+from sim.trace.recording import BackgroundRecorder, Recording, read
 from sim.trace.timeline import Timeline
 from tests.app.pictures import lines_of, text_of
 from tests.support.builder import ns
@@ -85,6 +87,68 @@ async def test_a_stretch_is_recorded_with_all_that_was_there_when_it_began(folde
     assert replayed.moment(replayed.end).waiting == now.waiting
 
 
+class SlowDisk:
+    """Holds the end of every recording back until ``go_on`` is set."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
+        self.go_on = Event()
+        close = BackgroundRecorder.close
+
+        def held_back(recorder: BackgroundRecorder) -> None:
+            assert self.go_on.wait(10), "nobody but the test waits for the disk"
+            close(recorder)
+
+        monkeypatch.setattr(BackgroundRecorder, "close", held_back)
+
+
+async def test_the_console_goes_on_while_the_end_of_a_recording_is_written(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "R")
+        disk = SlowDisk(monkeypatch)
+        await press(pilot, "R", "2")
+        assert "REC " not in lines_of(app)[0]
+        assert not any(text.startswith("Recorded ") for text in messages(app))
+        disk.go_on.set()
+        while not any(text.startswith("Recorded ") for text in messages(app)):
+            await pilot.pause()
+        assert recorded(folder).damage is None
+
+
+async def test_it_goes_on_at_the_end_of_the_run_too(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "R")
+        disk = SlowDisk(monkeypatch)
+        app.engines.latest.end("the engine was killed")
+        await press(pilot, "2")
+        assert "✗ LOST" in lines_of(app)[0]
+        assert not any(text.startswith("Recorded ") for text in messages(app))
+        disk.go_on.set()
+        while not any(text.startswith("Recorded ") for text in messages(app)):
+            await pilot.pause()
+        assert recorded(folder).damage is None
+
+
+async def test_quitting_meanwhile_still_finishes_the_file(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "R")
+        disk = SlowDisk(monkeypatch)
+        await press(pilot, "R")
+        stop = LiveRun.stop
+
+        def stop_when_left(run: LiveRun) -> str | None:
+            disk.go_on.set()
+            return stop(run)
+
+        monkeypatch.setattr(LiveRun, "stop", stop_when_left)
+        await press(pilot, "ctrl+q")
+    assert recorded(folder).damage is None
+    assert app.saved[0].startswith("Recorded ")
+
+
 async def test_leaving_ends_the_recording_cleanly(folder: Path) -> None:
     async with console() as (app, pilot):
         await press(pilot, "R", "q")
@@ -119,6 +183,8 @@ async def test_the_end_of_the_run_ends_the_recording_and_says_so(folder: Path) -
         app.engines.latest.end("the engine was killed")
         await settle(pilot)
         assert "REC " not in lines_of(app)[0]
+        while not any(text.startswith("Recorded ") for text in messages(app)):
+            await pilot.pause()
         assert recorded(folder).damage is None
         await press(pilot, "R")
         assert "REC " not in lines_of(app)[0]

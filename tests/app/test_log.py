@@ -63,7 +63,9 @@ async def test_the_log_ends_at_the_moment_on_screen() -> None:
     async with app.run_test(size=(60, 10)) as pilot:
         app.view.show(long_log(100), 49_000_000)
         await pilot.pause()
-        assert shown(app)[-1] == "[INFO] [0.049] [n]: line 49"
+        *_, last, mark = shown(app)
+        assert last == "[INFO] [0.049] [n]: line 49"
+        assert mark.startswith("─ 0.049 s, 50 later lines ─")
 
 
 async def test_a_log_that_was_scrolled_away_from_its_end_stays_there() -> None:

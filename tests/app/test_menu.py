@@ -1,5 +1,6 @@
 import subprocess
 import sys
+from functools import partial
 from pathlib import Path
 
 import msgspec
@@ -13,6 +14,7 @@ from cbtui.widgets.choices import Choices
 from cbtui.widgets.key_bar import KeyBar
 from lessons.catalogue import lessons
 from lessons.lesson import Lesson
+from lessons.progress import Progress
 from tests.app.pictures import lines_of, text_of
 from tests.support.console import NARROW, TALL, WIDE
 from tests.support.fake_session import FakeEngines
@@ -25,7 +27,9 @@ def menu() -> CbtuiApp:
 
 
 def opened(app: CbtuiApp) -> str | None:
-    lesson = app.screen.lesson if isinstance(app.screen, LessonScreen) else None
+    """The lesson that lies over the menu, whatever lies over that."""
+    screens = [screen for screen in app.screen_stack if isinstance(screen, LessonScreen)]
+    lesson = screens[0].lesson if screens else None
     return None if lesson is None else lesson.id
 
 
@@ -44,14 +48,16 @@ async def test_a_wide_menu_shows_in_its_list_what_every_lesson_is_made_of() -> N
     async with app.run_test(size=WIDE):
         for lesson in lessons():
             (line,) = (line for line in lines_of(app) if f" {lesson.number}  {lesson.title} " in line)
-            assert lesson.executor in line
-            assert lesson.groups[:10] in line
+            assert lesson.executor.replace("ThreadedExecutor", "Threaded") in line
+            assert lesson.groups in line
 
 
 @pytest.mark.parametrize("size", [NARROW, WIDE])
 async def test_the_menu_tells_what_the_highlighted_lesson_teaches_and_is_made_of(
     size: tuple[int, int],
 ) -> None:
+    for lesson in lessons():
+        Progress().see(lesson.id)
     app = menu()
     async with app.run_test(size=size) as pilot:
         for lesson in lessons():
@@ -61,6 +67,14 @@ async def test_the_menu_tells_what_the_highlighted_lesson_teaches_and_is_made_of
             assert lesson.executor in text
             assert lesson.groups in text
             await pilot.press("down")
+
+
+async def test_what_a_lesson_teaches_is_not_told_before_it_was_watched() -> None:
+    app = menu()
+    async with app.run_test(size=WIDE):
+        text = text_of(app)
+        assert "The robot drives straight on." in text
+        assert "One long callback" not in text
 
 
 async def test_enter_opens_the_highlighted_lesson() -> None:
@@ -167,11 +181,11 @@ async def test_a_lesson_that_was_opened_has_a_mark_in_the_next_console_too() -> 
         assert f"·  1  {first.title}" in text_of(app)
         await pilot.press("1", "q")
         await pilot.pause()
-        assert f"✓  1  {first.title}" in text_of(app)
+        assert f"○  1  {first.title}" in text_of(app)
     app = menu()
     async with app.run_test(size=NARROW):
         text = text_of(app)
-        assert f"✓  1  {first.title}" in text
+        assert f"○  1  {first.title}" in text
         assert f"·  2  {second.title}" in text
         assert "opened    just now" in text
 
@@ -200,3 +214,42 @@ asyncio.run(main())
 """
     shown = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert HEAVY & set(shown.stdout.split()) == set()
+
+
+async def test_marks_tell_how_far_the_learner_is_in_each_lesson() -> None:
+    plain, exercised = lessons()[0], next(lesson for lesson in lessons() if lesson.exercise is not None)
+    app = menu()
+    progress = Progress()
+    async with app.run_test(size=WIDE) as pilot:
+        told = []
+        for change in (
+            partial(progress.answer, exercised.id, 0, 0),
+            partial(progress.see, exercised.id),
+            partial(progress.passes, exercised.id),
+        ):
+            change()
+            await pilot.press("question_mark", "escape")
+            await pilot.pause()
+            told.append(next(line for line in lines_of(app) if exercised.title in line).split()[1])
+        assert told == ["◐", "●", "✓"]
+        progress.see(plain.id)
+        await pilot.press("question_mark", "escape")
+        await pilot.pause()
+        assert "so far" in text_of(app)
+        assert "✓ done" in text_of(app)
+        unit = [lesson for lesson in lessons() if lesson.unit == plain.unit]
+        assert f"multithreading 2/{len(unit)}" in text_of(app)
+
+
+async def test_progress_that_cannot_be_read_is_told_of_in_the_menu(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    (tmp_path / "cbtui").mkdir()
+    (tmp_path / "cbtui" / "progress.jsonl").write_text("no progress\n")
+    monkeypatch.setattr(CbtuiApp, "NOTIFICATION_TIMEOUT", 600)
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.pause()
+        (note,) = app._notifications
+        assert "progress.jsonl:1 is no progress" in note.message

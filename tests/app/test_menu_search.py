@@ -10,7 +10,7 @@ from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
 from cbtui.widgets.menu_search import MenuSearch
 from tests.app.pictures import text_of
-from tests.support.console import NARROW, TALL
+from tests.support.console import NARROW, TALL, predict
 from tests.support.fake_session import FakeEngines
 
 
@@ -44,6 +44,7 @@ async def test_words_show_only_what_has_them_and_escape_shows_all(program: Path)
 
 async def test_digits_are_words_too_and_enter_opens_what_is_highlighted() -> None:
     app = menu()
+    predict(app, "reentrant-2-threads")
     async with app.run_test(size=NARROW) as pilot:
         await pilot.press("slash", *"2 threads", "down")
         await pilot.press("enter")

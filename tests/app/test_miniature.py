@@ -217,3 +217,11 @@ def test_an_engine_that_cannot_be_started_is_told_of_in_a_sentence() -> None:
 
     with pytest.raises(CannotPreviewError, match="Resource temporarily unavailable"):
         PreviewRun(lessons()[0], no_engines).run()
+
+
+def test_a_lesson_on_the_real_clock_is_not_run_for_its_picture() -> None:
+    computing = next(lesson for lesson in lessons() if lesson.setup.clock == "real")
+    engines = FakeEngines((), 0)
+    with pytest.raises(CannotPreviewError, match="on the real clock that would take 20 s"):
+        PreviewRun(computing, engines).run()
+    assert not any(session.started for session in engines.sessions)

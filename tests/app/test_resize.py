@@ -1,5 +1,6 @@
 import pytest
 from textual.geometry import Size
+from textual.widgets import OptionList
 
 from cbtui.app import CbtuiApp
 from cbtui.screens.layout import Layout, layout_for, too_small
@@ -89,3 +90,16 @@ async def test_lanes_diagnosis_and_keys_are_always_on_screen() -> None:
             assert "odom_callback waits 9.1 s" in lines_of(app)[-2]
             assert "? help" in lines_of(app)[-1]
             assert {len(line) for line in lines_of(app)} == {size[0]}
+
+
+@pytest.mark.parametrize("page", ["pageup", "pagedown"])
+@pytest.mark.parametrize("window", ["p", "t"], ids=["set-up", "threads"])
+async def test_a_window_that_opened_where_nothing_fits_has_no_pages(window: str, page: str) -> None:
+    app = RecordedConsole("shared-group", EVENTS, 13.15)
+    async with app.run_test(size=(20, 5)) as pilot:
+        await settle(pilot)
+        await pilot.press(window)
+        await pilot.press(page)
+        chosen = app.screen.query_one(OptionList).highlighted
+        await pilot.resize_terminal(*NARROW)
+        assert app.screen.query_one(OptionList).highlighted == chosen

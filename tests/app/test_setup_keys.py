@@ -17,7 +17,7 @@ from cbtui.screens.setup import SetupScreen
 from sim.engine.setup import GroupChange, PeriodChange
 from sim.trace.events import AnyEvent
 from tests.app.pictures import lines_of, text_of
-from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.console import NARROW, WIDE, RecordedConsole, predict, settle
 from tests.support.fake_session import FakeEngines, FakeSession
 from tests.support.runs import dummy_server_run, ns, shared_group_run
 
@@ -207,6 +207,7 @@ async def test_running_again_keeps_the_changes_and_another_lesson_drops_them() -
         await settle(pilot)
         await press(pilot, "r")
         assert app.lesson_screen.live_run.setup.groups == (ODOM_OWN,)
+        predict(app, "split-groups")
         await press(pilot, "n")
         assert not app.lesson_screen.live_run.setup.groups
 
@@ -244,6 +245,7 @@ async def test_the_console_can_be_opened_with_changes(tmp_path: Path) -> None:
 
 async def test_a_real_run_has_the_group_that_was_chosen() -> None:
     app = CbtuiApp(start_lesson="shared-group")
+    predict(app, "shared-group")
     async with app.run_test(size=WIDE) as pilot:
 
         async def groups() -> dict[str, int]:

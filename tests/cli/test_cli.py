@@ -9,6 +9,7 @@ import pytest
 
 from cbtui import cli
 from lessons.catalogue import lessons
+from sim.engine.setup import RunSetup
 
 
 def _cbtui(*arguments: str) -> subprocess.CompletedProcess[str]:
@@ -55,6 +56,31 @@ def test_a_wrong_command_is_refused_in_one_line(arguments: list[str], sentence: 
     assert done.stdout == ""
     assert len(done.stderr.splitlines()) == 1
     assert sentence in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "clock"),
+    [
+        (["single-thread"], "virtual"),
+        (["single-thread", "--clock", "real"], "real"),
+        (["two-threads-no-faster"], "real"),
+        (["two-threads-no-faster", "--clock", "virtual"], "virtual"),
+        ([__file__], "real"),
+        ([__file__, "--clock", "virtual"], "virtual"),
+    ],
+)
+def test_run_takes_the_clock_that_is_asked_for_or_the_lessons_own(
+    arguments: list[str], clock: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    clocks: list[str] = []
+
+    def run_headless(program: RunSetup, **_options: object) -> int:
+        clocks.append(program.clock)
+        return 0
+
+    monkeypatch.setattr("cbtui.headless.run_headless", run_headless)
+    assert cli.main(["run", *arguments]) == 0
+    assert clocks == [clock]
 
 
 def test_run_puts_the_log_on_stderr_as_ros_prints_it_and_a_summary_on_stdout() -> None:
@@ -140,7 +166,7 @@ def test_a_program_that_fails_gives_exit_code_1_and_one_sentence_after_its_trace
 
 
 def test_help_imports_nothing_heavy() -> None:
-    heavy = "{'textual', 'rich', 'numpy', 'pybullet', 'rosbags', 'attrs'}"
+    heavy = "{'textual', 'rich', 'numpy', 'pybullet', 'rosbags', 'attrs', 'asyncio', 'importlib.metadata'}"
     script = f"""
 import sys
 from cbtui.cli import main

@@ -61,7 +61,10 @@ def test_start_puts_the_starter_here_and_says_what_is_asked(
     assert (here / "split_groups.py").read_text() == STARTER
     lines = capsys.readouterr().out.splitlines()
     assert lines[0] == "split_groups.py is yours now."
-    assert lines[-1] == "Then: cbtui check split-groups"
+    assert lines[-2:] == [
+        "In the console: cbtui open split-groups --exercise",
+        "Then: cbtui check split-groups",
+    ]
     assert all(len(line) <= 79 for line in lines)
 
 
@@ -69,7 +72,18 @@ def test_start_puts_the_starter_into_a_folder(here: Path, capsys: pytest.Capture
     (here / "mine").mkdir()
     assert cli.main(["start", "split-groups", "mine"]) == 0
     assert (here / "mine" / "split_groups.py").read_text() == STARTER
-    assert "Then: cbtui check split-groups mine/split_groups.py" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "Then: cbtui check split-groups mine/split_groups.py" in said
+    assert "In the console" not in said
+
+
+def test_only_a_lesson_with_an_exercise_opens_on_it(refused: "Refused") -> None:
+    assert "the lesson single-thread has no exercise" in refused("open", "single-thread", "--exercise")
+
+
+def test_an_exercise_is_opened_as_the_file_says(refused: "Refused", here: Path) -> None:
+    assert "change that" in refused("open", "split-groups", "--exercise", "--threads", "2")
+    assert not list(here.iterdir())
 
 
 def test_start_leaves_an_unchanged_file_and_says_so(capsys: pytest.CaptureFixture[str]) -> None:

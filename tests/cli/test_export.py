@@ -10,7 +10,7 @@ import perfetto.protos.perfetto.trace.perfetto_trace_pb2 as pb
 import pytest
 
 from cbtui import cli
-from cbtui.commands.export import ExportError, Wish, export
+from cbtui.exporting import ExportError, Wish, export
 from sim.trace.events import AnyEvent, EntityAppeared, GroupAppeared, RunStarted, ThreadAppeared
 from sim.trace.recording import About, Recorder
 from tests.support.runs import shared_group_run

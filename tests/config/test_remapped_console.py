@@ -82,11 +82,11 @@ async def test_footer_help_and_palette_show_the_keys_in_force() -> None:
 
 
 async def test_a_letter_given_to_a_key_of_the_panes_can_still_be_typed() -> None:
-    app = console('lesson.pan_earlier = "h"', 'lesson.deselect = "x"')
+    app = console('lesson.pan_earlier = "j"', 'lesson.deselect = "k"')
     async with app.run_test(size=WIDE) as pilot:
         await settle(pilot)
-        await pilot.press("colon", "h", "x")
-        assert app.screen.query_one(Prompt).value == "hx"
+        await pilot.press("colon", "j", "k")
+        assert app.screen.query_one(Prompt).value == "jk"
 
 
 async def test_what_is_wrong_in_the_configuration_is_told_on_the_first_screen() -> None:

@@ -7,14 +7,20 @@ A snapshot of a lesson at a moment is::
 """
 
 from collections.abc import Sequence
+from threading import Event
 
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
+from cbtui.checking import Observed
 from cbtui.colour_themes import STANDARD
 from cbtui.keymap import Keymap
+from cbtui.outcome import Observe
 from cbtui.screens.lesson import LessonScreen
+from lessons.catalogue import find
+from sim.engine.setup import RunSetup
 from sim.trace.events import AnyEvent
+from sim.trace.timeline import Timeline
 from tests.support.builder import ns
 from tests.support.fake_session import FakeEngines
 
@@ -25,7 +31,11 @@ TALL = (80, 60)
 
 
 class RecordedConsole(CbtuiApp):
-    """The console with a lesson open whose engine has played ``events`` up to ``seconds``."""
+    """The console with a lesson open whose engine has played ``events`` up to ``seconds``.
+
+    Its predictions were answered before, rightly, so that the run begins at once; they are held against those
+    events too.
+    """
 
     def __init__(
         self,
@@ -38,15 +48,38 @@ class RecordedConsole(CbtuiApp):
     ) -> None:
         self.engines = FakeEngines(events, ns(seconds))
         super().__init__(
-            charset=charset, start_lesson=lesson, keys=keys, theme=theme, open_session=self.engines
+            charset=charset,
+            start_lesson=lesson,
+            keys=keys,
+            theme=theme,
+            open_session=self.engines,
+            observe=observed(events),
         )
         self.animation_level = "none"
+        predict(self, lesson)
 
     @property
     def lesson_screen(self) -> LessonScreen:
         """The lesson on screen; nothing else may lie over it."""
         assert isinstance(self.screen, LessonScreen)
         return self.screen
+
+
+def predict(app: CbtuiApp, lesson: str) -> None:
+    """Let a learner have answered a lesson's predictions rightly."""
+    for place, prediction in enumerate(find(lesson).predictions):
+        app.progress.answer(lesson, place, prediction.right)
+
+
+def observed(events: Sequence[AnyEvent]) -> Observe:
+    """Return what gives these events as a run that has come to its end, without an engine."""
+
+    def observe(_setup: RunSetup, _name: str, _given_up: Event) -> Observed:
+        timeline = Timeline()
+        timeline.extend(events)
+        return Observed(timeline)
+
+    return observe
 
 
 async def settle(pilot: Pilot[None]) -> None:

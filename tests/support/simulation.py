@@ -9,6 +9,7 @@ from typing import Any, NamedTuple, TypeVar
 
 import sim.ros
 from sim.clock import Clock, VirtualClock
+from sim.clock.schedule import Schedule
 from sim.ros import host as hosts
 from sim.ros.context import Context
 from sim.ros.executors import SingleThreadedExecutor
@@ -165,16 +166,17 @@ class Simulation:
 Program = Callable[[Simulation], Any]
 
 
-def simulate(program: Program, until: float = 60.0) -> Trace:
+def simulate(program: Program, until: float = 60.0, schedule: Schedule | None = None) -> Trace:
     """Run ``program`` on virtual time until it returns, at most until ``until`` seconds.
 
-    Raises what the program raises; AssertionError when the simulation is stuck or leaves a thread.
+    ``schedule`` chooses the order of threads; without one it is first come, first served. Raises what the
+    program raises; AssertionError when the simulation is stuck or leaves a thread.
     """
     trouble: list[BaseException] = []
     events: list[AnyEvent] = []
 
     def run() -> None:
-        clock = VirtualClock()
+        clock = VirtualClock(schedule=schedule)
         simulation = Simulation(clock)
         clock.before_jump = simulation.host.explain_waits
         clock.call_at(ns(until), clock.stop)

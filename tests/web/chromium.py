@@ -59,6 +59,12 @@ class Page:
         await self.call("Input.dispatchKeyEvent", type="keyDown", text=key, key=key)
         await self.call("Input.dispatchKeyEvent", type="keyUp", key=key)
 
+    async def press_escape(self) -> None:
+        """Press the key that types nothing and leads out."""
+        key = {"key": "Escape", "code": "Escape", "windowsVirtualKeyCode": 27}
+        await self.call("Input.dispatchKeyEvent", type="rawKeyDown", **key)
+        await self.call("Input.dispatchKeyEvent", type="keyUp", **key)
+
     async def value_of(self, expression: str) -> Any:
         """Return what an expression is in the page."""
         answer = await self.call("Runtime.evaluate", expression=expression, returnByValue=True)

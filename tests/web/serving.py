@@ -5,8 +5,9 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
 from tempfile import TemporaryDirectory
+
+from tests.support.processes import descendants
 
 
 class Serving:
@@ -20,11 +21,7 @@ class Serving:
 
     def descendants(self) -> list[int]:
         """The numbers of all processes that it started, and that those started."""
-        found = [self.process.pid]
-        for process in found:
-            for task in Path(f"/proc/{process}/task").glob("*/children"):
-                found += map(int, task.read_text().split())
-        return found[1:]
+        return descendants(self.process.pid)
 
 
 @contextmanager
@@ -45,12 +42,3 @@ def _environment(home: str) -> dict[str, str]:
     """Whoever runs the tests may have a configuration, and progress that is not to be touched."""
     folders = (f"XDG_{kind}_HOME" for kind in ("CONFIG", "DATA", "STATE", "CACHE"))
     return os.environ | {"HOME": home} | dict.fromkeys(folders, home)
-
-
-def alive(process: int) -> bool:
-    """Tell whether a process still does something."""
-    try:
-        state = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
-    except (FileNotFoundError, ProcessLookupError):
-        return False
-    return state not in "ZX"

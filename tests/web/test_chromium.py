@@ -21,6 +21,8 @@ async def test_a_lesson_is_run_paused_and_left_in_a_browser_that_asks_nobody_els
             await page.until_drawn("Split groups")
             await until(page, "document.body.classList.contains('-first-byte')")
             await page.press("3")
+            await page.until_drawn("What do you expect?")
+            await page.press_escape()
             await page.until_drawn("LIVE")
             await page.press("s")
             await page.until_drawn("/motor_power replied")

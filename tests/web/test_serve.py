@@ -11,12 +11,16 @@ import aiohttp
 import pytest
 
 from cbtui import cli
-from tests.web.serving import Serving, alive, serving
+from tests.support.processes import alive
+from tests.web.serving import Serving, serving
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc")
 
 Socket = aiohttp.ClientWebSocketResponse
+_NOT_OURS = "that is not what the page sends"
 ENGINE = b"multiprocessing.spawn"
+RUNNING = ("--", "split-groups", "--threads", "4")
+"""A lesson that asks nothing before it runs, since it is not as it is written."""
 
 
 async def read_until(websocket: Socket, text: str) -> None:
@@ -51,6 +55,8 @@ async def test_a_visitor_sees_the_menu_opens_a_lesson_and_leaves() -> None:
             async with session.ws_connect("/ws?width=140&height=40") as websocket:
                 await read_until(websocket, "Split groups")
                 await websocket.send_json(["stdin", "3"])
+                await read_until(websocket, "What do you expect?")
+                await websocket.send_json(["stdin", "\x1b"])
                 await read_until(websocket, "3/8 Split groups")
                 await until_an_engine_runs(server)
                 theirs = server.descendants()
@@ -64,7 +70,7 @@ async def test_a_visitor_sees_the_menu_opens_a_lesson_and_leaves() -> None:
 
 
 async def test_a_visitor_who_goes_takes_the_engine_along_and_makes_room() -> None:
-    with serving("--visitors", "1", "--", "split-groups") as server:
+    with serving("--visitors", "1", *RUNNING) as server:
         async with aiohttp.ClientSession(server.address) as session:
             websocket = await session.ws_connect("/ws")
             await until_an_engine_runs(server)
@@ -83,7 +89,7 @@ async def test_a_visitor_who_goes_takes_the_engine_along_and_makes_room() -> Non
 
 @pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 async def test_nothing_is_left_when_the_server_ends(by: signal.Signals) -> None:
-    with serving("--", "split-groups") as server:
+    with serving(*RUNNING) as server:
         async with aiohttp.ClientSession(server.address) as session, session.ws_connect("/ws"):
             await until_an_engine_runs(server)
             theirs = server.descendants()
@@ -94,7 +100,7 @@ async def test_nothing_is_left_when_the_server_ends(by: signal.Signals) -> None:
 
 
 async def test_a_console_that_hangs_is_killed_with_its_engine() -> None:
-    with serving("--", "split-groups") as server:
+    with serving(*RUNNING) as server:
         async with aiohttp.ClientSession(server.address) as session, session.ws_connect("/ws"):
             await until_an_engine_runs(server)
             theirs = server.descendants()
@@ -105,18 +111,29 @@ async def test_a_console_that_hangs_is_killed_with_its_engine() -> None:
 
 
 async def test_strange_pages_and_strange_messages_get_nowhere() -> None:
-    with serving() as server:
+    with serving("--visitors", "20") as server:
         async with aiohttp.ClientSession(server.address) as session:
             async with session.get("/", headers={"Host": "evil.example"}) as page:
                 assert page.status == 403
             with pytest.raises(aiohttp.WSServerHandshakeError, match="403"):
                 await session.ws_connect("/ws", headers={"Origin": "http://evil.example"})
-            for message in ("nonsense", "{}", "[]", '["resize", 3]', '["stdin", 3]'):
+            for message in (
+                *(
+                    "nonsense",
+                    "{}",
+                    "[]",
+                    "[" * 100_000,
+                    '["resize", 3]',
+                    '["stdin", 3]',
+                    '["stdin", "\\ud800"]',
+                ),
+                *('["resize", {"width": Infinity, "height": 1}]', '["resize", {"width": NaN, "height": 1}]'),
+            ):
                 async with session.ws_connect("/ws?width=99999999&height=x") as websocket:
                     await websocket.send_str(message)
                     while (answer := await websocket.receive(timeout=20)).type is aiohttp.WSMsgType.BINARY:
                         pass
-                    assert answer.type is aiohttp.WSMsgType.CLOSE
+                    assert (answer.type, answer.extra) == (aiohttp.WSMsgType.CLOSE, _NOT_OURS), message
             async with session.get("/") as page:
                 assert page.status == 200
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cbtui.widgets.lanes.columns import MOST_A_COLUMN, Columns, Instants, stretches
+from cbtui.widgets.lanes.columns import MOST_A_COLUMN, Columns, Instants, Ration, stretches
 from cbtui.widgets.lanes.scale import Scale
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
@@ -117,6 +117,30 @@ def test_a_picture_is_the_same_whatever_was_painted_before(stays: list[Stay], ed
     for edge in sorted(edges):
         scale = Scale(edge - 10, S, 12)
         assert kept.over(scale, 30 * S) == Columns(store.query).over(scale, 30 * S)
+
+
+@given(intervals, st.lists(st.tuples(st.integers(10, 30), st.sampled_from([S // 2, S, 2 * S])), max_size=8))
+def test_a_picture_is_the_same_when_one_zooms_out_and_in_again(
+    stays: list[Stay], looks: list[tuple[int, int]]
+) -> None:
+    store = Store(*stays)
+    kept = Columns(store.query)
+    for edge, length in sorted(looks):
+        scale = Scale(edge * S // length - 10, length, 12)
+        assert kept.over(scale, 30 * S) == Columns(store.query).over(scale, 30 * S)
+
+
+@given(intervals, st.integers(1, 30))
+def test_what_a_ration_leaves_out_comes_with_the_next_pictures(stays: list[Stay], looks: int) -> None:
+    store = Store(*stays)
+    columns, scale = Columns(store.query), Scale(0, S, 24)
+    whole = Columns(store.query).over(scale, 30 * S)
+    for _ in range(12):
+        summed = columns.over(scale, 30 * S, Ration(looks))
+        assert all(summed[place] is None for place in columns.unseen)
+        seen = [place for place in range(24) if place not in columns.unseen]
+        assert [summed[place] for place in seen] == [whole[place] for place in seen]
+    assert not columns.unseen
 
 
 def test_neighbouring_columns_of_one_interval_are_one_stretch() -> None:

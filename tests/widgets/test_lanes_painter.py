@@ -146,6 +146,17 @@ def test_a_painter_paints_the_same_whatever_it_painted_before(moments: list[int]
         assert used.paint(timeline, window, now, 100, 8) == Painter().paint(timeline, window, now, 100, 8)
 
 
+def test_lanes_that_fill_frame_by_frame_end_as_if_painted_at_once() -> None:
+    timeline = told(shared_group_run())
+    window, now = Window(0, ns(30)), ns(29)
+    at_once = Painter().paint(timeline, window, now, 100, 14)
+    painter = Painter(looks=300)
+    pictures = [painter.paint(timeline, window, now, 100, 14) for _ in range(60)]
+    assert not pictures[0].complete
+    assert "·" in pictures[0].text or pictures[0].text != at_once.text
+    assert pictures[-1] == at_once
+
+
 def test_lanes_that_grow_look_as_if_painted_at_once() -> None:
     events = shared_group_run().events
     growing, painter = Timeline(), Painter()
@@ -298,6 +309,33 @@ def test_lost_messages_are_crosses_on_the_lane_of_their_queue() -> None:
     assert Painter().text(told(run), *last(10, 10.0), 80, 8).splitlines()[2] == drawn(
         "|  a         │     × ×                 ×                        │ 10/10! lost 4  |"
     )
+
+
+def neighbours() -> Timeline:
+    """Two groups whose callbacks follow each other at once on one thread."""
+    run = Run()
+    thread, node = run.thread("MainThread"), run.node("/n")
+    one, other = (run.timer(run.exclusive(node), f"{name}_callback", 9.0) for name in ("one", "other"))
+    run.callback(one, thread, 0.0, 4.8)
+    run.callback(other, thread, 4.8, 10.0)
+    return told(run, until=10.0)
+
+
+@pytest.mark.parametrize(
+    ("charset", "bars"),
+    [
+        (Charset.BRAILLE, "│A one_callback ████████▉B other_callback ·········│"),
+        (Charset.BLOCK, "│A one_callback ████████▉B other_callback ·········│"),
+        (Charset.ASCII, "|A one_callback #########B other_callback +++++++++|"),
+    ],
+)
+def test_what_a_bars_label_leaves_has_the_texture_of_its_group(charset: Charset, bars: str) -> None:
+    assert bars in Painter(charset).text(neighbours(), *last(10, 10.0), 80, 8).splitlines()[0]
+
+
+def test_wide_lanes_show_each_groups_texture_beside_its_letter() -> None:
+    names = [line[:23] for line in Painter().text(neighbours(), *last(10, 10.0), 140, 8).splitlines()]
+    assert names[1:3] == ["A ██ exclusive one     ", "B ·· exclusive other   "]
 
 
 def test_keys_of_the_person_are_marked_on_the_axis_in_words_where_there_is_room() -> None:

@@ -1,6 +1,6 @@
 """Colours: readable on both backgrounds, and never the only code."""
 
-from itertools import combinations
+from itertools import combinations, pairwise
 
 import pytest
 from rich.color import Color
@@ -9,7 +9,7 @@ from rich.style import Style
 
 from cbtui.contrast import BLACK, WHITE, contrast, legible
 from cbtui.palettes import DARK, HIGH_CONTRAST, HIGH_CONTRAST_LIGHT, LIGHT, Palette
-from cbtui.theme import GLYPHS, Charset, Ink, Role, group_colour, style_of
+from cbtui.theme import GLYPHS, Charset, Ink, Role, group_colour, style_of, texture_of
 from sim.trace.events import Reason
 
 PALETTES = [DARK, LIGHT, HIGH_CONTRAST, HIGH_CONTRAST_LIGHT]
@@ -38,7 +38,9 @@ def contrast_in(style: Style) -> float:
 
 
 @GROUND
-@pytest.mark.parametrize("role", [role for role in Role if role not in (Role.TRAIL, Role.LABEL)])
+@pytest.mark.parametrize(
+    "role", [role for role in Role if role not in (Role.TRAIL, Role.LABEL, Role.TEXTURE)]
+)
 def test_every_ink_stands_out_from_the_background(role: Role, palette: Palette, ground: str) -> None:
     least = palette.shapes if role in DRAWN else palette.words
     for number in range(8):
@@ -60,6 +62,29 @@ def test_words_after_the_cursor_are_fainter_and_can_be_read(
 def test_a_bars_label_is_readable_on_the_bar(number: int, palette: Palette, ground: str) -> None:
     for later in (False, True):
         assert contrast_in(style_of(Ink(Role.LABEL, number, later), palette, ground)) >= 4.5
+
+
+@GROUND
+@pytest.mark.parametrize("number", range(8))
+def test_a_texture_is_seen_on_its_bar_and_is_quieter_than_a_label(
+    number: int, palette: Palette, ground: str
+) -> None:
+    texture, label, bar = (
+        style_of(Ink(role, number), palette, ground) for role in (Role.TEXTURE, Role.LABEL, Role.BAR)
+    )
+    assert texture.bgcolor == label.bgcolor == bar.color
+    assert palette.textures <= contrast_in(texture) < contrast_in(label)
+
+
+@pytest.mark.parametrize("charset", Charset)
+def test_neighbouring_groups_are_filled_with_other_textures(charset: Charset) -> None:
+    """Letters apart, nothing but the texture tells them apart without colours."""
+    glyphs = GLYPHS[charset]
+    filled = [texture_of(number, glyphs).text for number in range(12)]
+    assert len(set(filled[:6])) == 6
+    assert all(one != other for one, other in pairwise(filled))
+    meant_otherwise = {*glyphs.hatch.values(), glyphs.blocked, glyphs.lost, glyphs.cross, glyphs.cursor}
+    assert not meant_otherwise & set(filled)
 
 
 @pytest.mark.parametrize("palette", PALETTES)
@@ -110,6 +135,9 @@ def test_each_reason_has_a_texture_of_its_own() -> None:
 def test_ascii_has_no_other_glyphs() -> None:
     glyphs = vars(GLYPHS[Charset.ASCII])
     texts = [
-        text for value in glyphs.values() for text in (value.values() if isinstance(value, dict) else [value])
+        text
+        for value in glyphs.values()
+        if not isinstance(value, Role)
+        for text in (value.values() if isinstance(value, dict) else [value])
     ]
     assert all(text.isascii() for text in texts)

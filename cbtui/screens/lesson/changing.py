@@ -8,7 +8,7 @@ from cbtui.changeable import Callback, Changeable, callbacks_of, changeable, pla
 from cbtui.changes import Changes
 from cbtui.contenders import side_of
 from cbtui.equivalent_code import code_of
-from cbtui.screens.lesson.selecting import SelectingScreen
+from cbtui.screens.lesson.taking import TakingScreen
 from cbtui.screens.setup import SetupScreen
 from cbtui.screens.setup_rows import GroupRow, NumberRow, Row, ThreadsRow
 from cbtui.widgets.code import CodeView
@@ -18,15 +18,18 @@ _TOLD = 2
 """Statements of code that are told of as a run begins again; more would cover what there is to see."""
 
 
-class ChangingScreen(SelectingScreen):
+class ChangingScreen(TakingScreen):
     """Runs again with changes, and keeps the run before."""
 
     async def _run_again(self, changes: Changes) -> None:
+        await self._start_over(changes, self._run.speed)
+
+    async def _start_over(self, changes: Changes, speed: float | None) -> None:
         before = self._run
         if before.timeline.end > 0:
             self._before = side_of(before, self._changes).at_rest()
         self._changes = changes
-        self._begin(before.speed)
+        self._begin(speed)
         self.query_one(Lanes).changes = changes.words
         self._entitle()
         self._select(None)
@@ -37,6 +40,14 @@ class ChangingScreen(SelectingScreen):
     async def action_run_again(self) -> None:
         """Run again with the same set-up and speed."""
         await self._run_again(self._changes)
+
+    async def action_start_over(self) -> None:
+        """Run again although the run is not over: it may be one that cannot go on."""
+        await self.action_run_again()
+
+    async def action_watch(self) -> None:
+        """Run again with the same set-up at the pace of real time."""
+        await self._start_over(self._changes, speed=1.0)
 
     def action_threads(self) -> None:
         """Ask for a number of threads."""

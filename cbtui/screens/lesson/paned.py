@@ -1,6 +1,6 @@
 """The panes of a run: which of them is shown, which has the keys, and what stands in its frame."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 from rich.text import Text
 from textual import on
@@ -9,9 +9,10 @@ from textual.containers import Container
 from textual.events import DescendantFocus
 from textual.widget import Widget
 
-from cbtui.actions import PANES, Scope
+from cbtui.actions import Scope
 from cbtui.editor import EditorError, edit
 from cbtui.screens.lesson.running import RunningScreen
+from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.diagnosis_line import DiagnosisLine
 from cbtui.widgets.factory import FactoryView
@@ -29,6 +30,7 @@ _SCOPES: dict[type[Widget], Scope] = {
     LogLines: Scope.LOG,
     LogFilter: Scope.FILTER,
     CodeView: Scope.CODE,
+    ChecksView: Scope.CHECKS,
 }
 """Whose keys are told of while it has the focus."""
 
@@ -40,7 +42,7 @@ class PanedScreen(RunningScreen):
         """Lay out lines, lanes and panes."""
         yield StatusLine()
         yield Lanes()
-        yield Tabs()
+        yield Tabs(self.PANES_HERE)
         with Container(id="panes"):
             yield from self._panes()
         yield DiagnosisLine()
@@ -49,7 +51,7 @@ class PanedScreen(RunningScreen):
     def _panes(self) -> Iterator[Widget]:
         factory, robot = FactoryView(id="factory"), RobotView(id="robot")
         factory.can_focus = robot.can_focus = True
-        guide = Guide(self._subject.guide, id="guide")
+        guide = Guide(self._page, id="guide")
         subject = self._subject
         code = CodeView(subject.node_path, subject.source, subject.sources, id="code")
         for pane in (guide, code, robot, factory, LogView(id="log"), ShellView(id="shell")):
@@ -58,13 +60,18 @@ class PanedScreen(RunningScreen):
             pane.add_class("pane")
             yield pane
 
+    @property
+    def _page(self) -> Mapping[str, str]:
+        """The parts of the guide that can be read now."""
+        return {"guide": self._subject.guide}
+
     def _widget(self, pane: str) -> Widget:
         return self.query_one(f"#{pane}")
 
     def _show(self, pane: str) -> None:
         """Make a pane the current one."""
         self._pane = pane
-        for name in PANES:
+        for name in self.PANES_HERE:
             self._widget(name).set_class(name == pane, "-current", update=False)
         self._widget("log").set_class(pane == "shell", "-behind", update=False)
         self.update_node_styles(animate=False)
@@ -80,9 +87,14 @@ class PanedScreen(RunningScreen):
         insides: dict[str, type[Widget]] = {"log": LogLines, "shell": ShellOutput}
         return self.query_one(insides[pane]) if pane in insides else self._widget(pane)
 
+    @property
+    def _notes(self) -> dict[str, str]:
+        """What panes say of themselves."""
+        return {"code": self.query_one(CodeView).note, "log": self.query_one(LogView).note}
+
     def _entitle(self) -> None:
-        """Say in frames and tabs what code and log say of themselves."""
-        notes = {"code": self.query_one(CodeView).note, "log": self.query_one(LogView).note}
+        """Say in frames and tabs what panes say of themselves."""
+        notes = self._notes
         for pane, note in notes.items():
             self._widget(pane).border_title = Text(f"{title_of(pane)} {note}")
         changed = f"changed: {self._changes.words}" if self._changes.words else ""
@@ -95,7 +107,7 @@ class PanedScreen(RunningScreen):
     def on_descendant_focus(self, event: DescendantFocus) -> None:
         """Make the pane current that the person clicked on."""
         ids = (widget.id for widget in event.widget.ancestors_with_self)
-        pane = next((each for each in ids if each in PANES), None)
+        pane = next((each for each in ids if each in self.PANES_HERE), None)
         if pane is not None and pane != self._pane:
             self._show(pane)
         scopes = (scope for kind, scope in _SCOPES.items() if isinstance(self.focused, kind))
@@ -142,7 +154,8 @@ class PanedScreen(RunningScreen):
 
     def action_next_pane(self) -> None:
         """Go to the next pane."""
-        self._show(PANES[(PANES.index(self._pane) + 1) % len(PANES)])
+        panes = self.PANES_HERE
+        self._show(panes[(panes.index(self._pane) + 1) % len(panes)])
 
     def action_maximise(self) -> None:
         """Let the current pane fill the screen, or give the others their room back."""

@@ -1,16 +1,19 @@
 """A screen with a run: it starts and ends engines, takes what they tell, and commands them."""
 
 import asyncio
-from typing import TYPE_CHECKING, cast
+import threading
+from typing import TYPE_CHECKING, ClassVar, cast
 
 from textual import on
 from textual.message import Message
 
-from cbtui.actions import PANES
+from cbtui.actions import PANES, Scope
 from cbtui.changes import Changes
 from cbtui.compositing import SparingCompositor
 from cbtui.contenders import Side
 from cbtui.findings import Watch
+from cbtui.keymap import keymap_of
+from cbtui.live_recording import Finish
 from cbtui.live_run import Deliver, Ended, LiveRun, OpenSession
 from cbtui.playhead import Playhead
 from cbtui.record import CannotRecordError
@@ -25,11 +28,22 @@ if TYPE_CHECKING:
     from cbtui.app import CbtuiApp
 
 
+_BACKLOG = 4
+"""Batches that may wait for the screen; the engine keeps what comes meanwhile, as far as it can."""
+_PATIENCE = 1.0
+"""Seconds for which a session waits for a screen that takes nothing: it may be gone."""
+
+
 class RunningScreen(SizedScreen[None]):
     """Holds a run and the moment that is on screen. What draws it marks itself stale here.
 
     Events come from the session's thread as one message a batch, and only make the timeline longer.
     """
+
+    PANES_HERE: ClassVar[tuple[str, ...]] = PANES
+    """The panes that there are, in the order of their keys."""
+    FIRST_SPEED: ClassVar[float | None] = 1.0
+    """How fast the first run goes; None is as fast as it can."""
 
     def __init__(
         self,
@@ -48,11 +62,14 @@ class RunningScreen(SizedScreen[None]):
         self._playhead = Playhead()
         self._before: Side | None = None
         self._pane = PANES[0]
-        self._stale = True
+        self._is_stale = True
         self._grown = False
         self._frames = 0
+        self._finishing: set[asyncio.Task[None]] = set()
+        self._left = False
         self._offered: tuple[object, ...] = ()
-        self._begin(speed=1.0)
+        self._backlog = threading.BoundedSemaphore(_BACKLOG)
+        self._begin(self.FIRST_SPEED)
 
     class Delivered(Message):
         """A batch of events of the run with this number."""
@@ -61,6 +78,8 @@ class RunningScreen(SizedScreen[None]):
             super().__init__()
             self.run = run
             self.events = events
+            self.counts = False
+            """Whether it is one of the few that may wait."""
 
     class Over(Message):
         """The engine of the run with this number is gone; ``loss`` says how, if it should not be."""
@@ -80,11 +99,49 @@ class RunningScreen(SizedScreen[None]):
         """The run on screen."""
         return self._run
 
+    @property
+    def _stale(self) -> bool:
+        """Whether there is more to show than that the run has gone on."""
+        return self._is_stale
+
+    @_stale.setter
+    def _stale(self, stale: bool) -> None:
+        self._is_stale = stale
+        if stale and self.is_running:
+            self.call_next(self._draw_at_once)
+
+    def _draw_at_once(self) -> None:
+        """Show it before the next frame is due, if that can be."""
+        raise NotImplementedError
+
     async def on_unmount(self) -> None:
-        """End the engine, whatever way the screen is left."""
+        """End the engine and every recording, whatever way the screen is left."""
+        self._left = True
         saved = await asyncio.to_thread(self._run.stop)
         if saved is not None:
             cast("CbtuiApp", self.app).tell_saved(saved)
+        await asyncio.gather(*self._finishing)
+
+    def _finish(self, finish: Finish | None) -> None:
+        """Write a file to its end while the screen goes on, and say then what it holds."""
+        if finish is not None:
+            task = asyncio.create_task(self._tell_when_finished(finish))
+            self._finishing.add(task)
+            task.add_done_callback(self._finishing.discard)
+
+    async def _tell_when_finished(self, finish: Finish) -> None:
+        sentence = await asyncio.to_thread(finish)
+        if self._left:
+            cast("CbtuiApp", self.app).tell_saved(sentence)
+        else:
+            self._tell(sentence)
+
+    def _deliver(self, run: int, events: list[AnyEvent]) -> None:
+        """Hand a batch over; another thread is held up while the screen has enough to do."""
+        message = self.Delivered(run, events)
+        if threading.current_thread() is not threading.main_thread():
+            message.counts = self._backlog.acquire(timeout=_PATIENCE)
+        self._hand_over(message)
 
     def _hand_over(self, message: Message) -> None:
         """Bring something from the session's thread to the screen's; one that is closing lets it drop."""
@@ -92,6 +149,8 @@ class RunningScreen(SizedScreen[None]):
 
     @on(Delivered)
     def _take(self, message: Delivered) -> None:
+        if message.counts:
+            self._backlog.release()
         if message.run == self._runs:
             self._tell(self._run.take(message.events))
             self._grown = True
@@ -99,8 +158,12 @@ class RunningScreen(SizedScreen[None]):
     @on(Over)
     def _note_the_end(self, message: Over) -> None:
         if message.run == self._runs:
-            self._tell(self._run.over(message.loss))
+            self._finish(self._run.over(message.loss))
             self._stale = True
+
+    def _start(self) -> None:
+        """Start the first run, when the screen is there."""
+        self._run.start()
 
     def _begin(self, speed: float | None) -> None:
         """Set up another run; what the engine of the one before still sends no longer counts."""
@@ -108,7 +171,7 @@ class RunningScreen(SizedScreen[None]):
         number = self._runs
         self._run = self._new_run(
             speed,
-            lambda events: self._hand_over(self.Delivered(number, events)),
+            lambda events: self._deliver(number, events),
             lambda loss: self._hand_over(self.Over(number, loss)),
         )
         self._concurrency = Concurrency(self._run.timeline)
@@ -168,10 +231,11 @@ class RunningScreen(SizedScreen[None]):
     def action_record(self) -> None:
         """Begin a recording of this run, or end it."""
         if self._run.recorded is not None:
-            self._tell(self._run.end_recording())
+            self._finish(self._run.end_recording())
         else:
             try:
-                self._tell(self._run.record())
+                key = keymap_of(self.app).sign(Scope.LESSON, "record", self._charset)
+                self._tell(self._run.record(key))
             except CannotRecordError as error:
                 self._tell(str(error))
         self._stale = True
@@ -180,6 +244,16 @@ class RunningScreen(SizedScreen[None]):
         """Open the next lesson."""
         if self._subject.following is not None:
             cast("CbtuiApp", self.app).open_lesson(self._subject.following)
+
+    def action_exercise(self) -> None:
+        """Go to the lesson's exercise."""
+        if self.lesson is not None:
+            cast("CbtuiApp", self.app).open_exercise(self.lesson)
+
+    def action_lesson(self) -> None:
+        """Open the lesson from its beginning."""
+        if self.lesson is not None:
+            cast("CbtuiApp", self.app).open_lesson(self.lesson)
 
     def action_leave(self) -> None:
         """Go back to the menu."""

@@ -1,23 +1,27 @@
 """A lesson on screen: its run on lanes, the moment in words, and its panes."""
 
+from math import inf
 from pathlib import Path
+from time import monotonic
 from typing import ClassVar
 
 from textual.binding import BindingType
 
-from cbtui.actions import PANES, Scope, bindings_of
+from cbtui.actions import CHECKS, Scope, bindings_of
 from cbtui.keymap import keymap_of
 from cbtui.live_run import State
 from cbtui.playhead import SPANS
 from cbtui.screens.diagnoses import problems_note
 from cbtui.screens.layout import Layout
-from cbtui.screens.lesson.changing import ChangingScreen
+from cbtui.screens.lesson.exporting import ExportingScreen
+from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.code import CodeView
-from cbtui.widgets.diagnosis import call_note, verdict, with_worst
+from cbtui.widgets.diagnosis import Diagnosis, call_note, verdict, way_on, with_worst
 from cbtui.widgets.diagnosis_line import DiagnosisLine
 from cbtui.widgets.factory import FactoryView
 from cbtui.widgets.key_bar import KeyBar, hint
 from cbtui.widgets.lanes import Lanes
+from cbtui.widgets.lanes.keys import lane_keys
 from cbtui.widgets.log import LogFilter, LogLines, LogView
 from cbtui.widgets.robot import RobotView
 from cbtui.widgets.shell import Prompt, ShellView
@@ -32,17 +36,20 @@ nobody reads as fast as lanes are seen to move."""
 _GLANCE = 150_000_000
 """Nanoseconds of a person's time for which a worker is seen walking."""
 
-_ON_LANES = ("zoom", "pan", "select", "lane", "event", "code", "deselect")
+_ON_LANES = ("zoom", "pan", "select", "lane", "event", "code", "copy", "deselect")
 """Labels of the actions that the lanes tell of themselves."""
 
-_ON_LINES = ("follow", "pick_line", "pick_callback", "copy", "let_go")
-"""Actions of log and code that have a meaning for some lines only."""
+_ON_LINES = ("follow", "pick_line", "pick_callback", "copy", "let_go", "look_there")
+"""Actions of log, code and checks that have a meaning for some lines only."""
+
+_WITH_KEYS = (LogLines, CodeView, ChecksView)
+"""Panes that know which of their own actions have a meaning."""
 
 _DISK = 1.0
 """Seconds after which the source's file is looked at again."""
 
 
-class LessonScreen(ChangingScreen):
+class LessonScreen(ExportingScreen):
     """Runs a lesson and shows it: everything on it is a function of the run's timeline and of a moment.
 
     A timer draws what there is new. However fast a run is, the lanes are drawn ``FRAMES_A_SECOND`` times at
@@ -54,14 +61,18 @@ class LessonScreen(ChangingScreen):
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.LESSON)]
     AUTO_FOCUS = "#guide"
 
+    _drawn_at = inf
+    """When all panes were drawn last; the first time is the timer's."""
+
     def on_mount(self) -> None:
         """Start the run and the timer that draws it."""
         lanes, robot, factory = self.query_one(Lanes), self.query_one(RobotView), self.query_one(FactoryView)
         lanes.charset = robot.charset = factory.charset = self._charset
         lanes.service = self._subject.service
+        lanes.keys = lane_keys(keymap_of(self.app), Scope.LESSON, self._charset)
         lanes.changes = self._changes.words
         self._show(self._pane)
-        self._run.start()
+        self._start()
         self.set_interval(1 / FRAMES_A_SECOND, self._draw_if_stale)
         code, log = self.query_one(CodeView), self.query_one(LogView)
         self.set_interval(_DISK, code.look_at_disk)
@@ -73,23 +84,31 @@ class LessonScreen(ChangingScreen):
     def draw(self) -> None:
         """Show the moment that the playhead is at."""
         self._stale = self._grown = False
+        self._drawn_at = monotonic()
         if self.layout_now is Layout.SMALL:
             return
         self.draw_lanes()
         run, timeline = self._run, self._run.timeline
         now = self._playhead.now(timeline.end)
         subject = self._subject
-        self.query_one(StatusLine).status = status_of(subject.heading, run, self._playhead, subject.executor)
+        self.query_one(StatusLine).status = status_of(
+            subject.heading, run, self._playhead, subject.executor, self._exported
+        )
         self.query_one(CodeView).over = not run.alive
         line = self.query_one(DiagnosisLine)
         told = self._watch.told
-        line.diagnosis = with_worst(verdict(run, self._playhead, self._concurrency), told)
+        line.diagnosis = with_worst(self._verdict(), told, way_on(run, keymap_of(self.app)))
         line.note = call_note(timeline, now)
         line.problems = problems_note(told, keymap_of(self.app), self._charset)
-        for name in PANES:
+        for name in self.PANES_HERE:
             if self._widget(name).display:
                 self._draw_pane(name)
         self._offer_keys()
+        self._look_whether_watched()
+
+    def _verdict(self) -> Diagnosis:
+        """What to say of the moment on screen."""
+        return verdict(self._run, self._playhead, self._concurrency, keymap_of(self.app))
 
     def draw_lanes(self) -> None:
         """Show it on the lanes alone."""
@@ -105,6 +124,11 @@ class LessonScreen(ChangingScreen):
     def laid_out(self) -> None:
         """Draw what the new layout shows."""
         self._stale = True
+
+    def _draw_at_once(self) -> None:
+        """Draw what the person did without waiting for the timer, as long as that is not done in a row."""
+        if self._stale and monotonic() - self._drawn_at >= 1 / FRAMES_A_SECOND:
+            self.draw()
 
     def _draw_if_stale(self) -> None:
         self._frames += 1
@@ -139,6 +163,7 @@ class LessonScreen(ChangingScreen):
             self._before is None,
             lanes.has_focus,
             lanes.selection is None,
+            self._standing,
             *(self.check_action(action, ()) for action in _ON_LINES),
         )
         if offered != self._offered:
@@ -150,7 +175,7 @@ class LessonScreen(ChangingScreen):
         """Offer what has a meaning now."""
         run, playhead = self._run, self._playhead
         focused = self.focused
-        if isinstance(focused, LogLines | CodeView) and not focused.check_action(action, parameters):
+        if isinstance(focused, _WITH_KEYS) and not focused.check_action(action, parameters):
             return False
         typing = isinstance(focused, Prompt | LogFilter)
         end = run.timeline.end
@@ -165,6 +190,7 @@ class LessonScreen(ChangingScreen):
             "lane_above": not on_lanes,
             "lane_below": not on_lanes,
             "deselect": lanes.selection is None and not on_lanes,
+            "copy_details": typing or isinstance(focused, LogLines | CodeView),
             "next_pane": typing,
             "prompt": not run.alive,
             "filter_log": isinstance(focused, LogLines),
@@ -175,9 +201,10 @@ class LessonScreen(ChangingScreen):
             "resume": not run.alive or not run.paused,
             "step": playhead.at is None and not (run.virtual and run.state is State.PAUSED),
             "step_back": playhead.now(run.timeline.end) == 0,
-            "reset_world": not run.alive,
+            "reset_world": not run.alive or run.state is State.SILENT,
             "record": not run.alive,
-            "run_again": run.alive,
+            "export": end == 0,
+            "run_again": run.alive and run.state is not State.SILENT,
             "slower": not run.alive or run.speed == run.speeds[0],
             "faster": not run.alive or run.speed == run.speeds[-1],
             "live": playhead.follows,
@@ -186,5 +213,10 @@ class LessonScreen(ChangingScreen):
             "zoom_out": playhead.span == SPANS[-1],
             "compare": self._before is None,
             "next_lesson": self._subject.following is None,
+            "exercise": self.lesson is None or self.lesson.exercise is None,
+            "lesson": True,
+            "watch": True,
+            "show_pane": parameters == (CHECKS,),
+            **self._not_to_be_learnt,
         }
         return not meaningless.get(action, False)

@@ -9,6 +9,7 @@ from cbtui.theme import GLYPHS, Charset
 from cbtui.widgets.code.files import SourceFile, SourceFiles
 from cbtui.widgets.durations import duration
 from cbtui.widgets.lanes.names import short_thread
+from cbtui.widgets.lanes.roster import roster_of
 from sim.trace.events import EntityId
 from sim.trace.model import Entity, Moment, Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
@@ -53,7 +54,9 @@ def marks_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[So
     """
     moment = timeline.moment(at)
     found: defaultdict[SourceFile, dict[int, Marked]] = defaultdict(dict)
-    for entity in timeline.entities.values():
+    active = timeline.active_since(at - JUST_NOW)
+    for number in sorted(active.union(roster_of(timeline).places.values())):
+        entity = timeline.entities[number]
         file = files.of(entity.file)
         if file is None:
             continue

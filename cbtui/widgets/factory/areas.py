@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from cbtui.theme import Ink, Role
+from cbtui.theme import GLYPHS, Ink, Role, texture_of
 from cbtui.widgets.factory.canvas import PLAIN, WARN, Canvas
 from cbtui.widgets.factory.glyphs import Walls
 from cbtui.widgets.factory.large_seats import LargeSeats
@@ -10,6 +10,10 @@ from cbtui.widgets.factory.plan import LARGE, Columns, Density, Place
 from cbtui.widgets.factory.scene import Area, Scene
 from cbtui.widgets.factory.seats import Seats
 from cbtui.widgets.factory.words import first_fitting, seats_of
+
+_SWATCH = 2
+"""Columns of a group's texture beside its letter, as in the lanes."""
+_LONGEST_QUEUE = len("  1 waits ")
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,12 +31,22 @@ class Areas:
         self._wall(area, line, left, right)
         at, end = self.columns.belts + 2, self.columns.right_wall
         at = self.canvas.write(at, line, f" {area.group.letter}", Ink(Role.LETTER, area.number), end - at)
+        at = self._texture(area, at, line, end)
         seats = first_fitting([f" {text} " for text in seats_of(area)], end - at - 1)
         at = self.canvas.write(at, line, seats, PLAIN, len(seats))
         if area.waiting:
             ways = ("waits outside", "waits") if area.waiting == 1 else ("wait outside", "wait")
             text = first_fitting([f" {area.waiting} {words} " for words in ways], end - at - 2)
             self.canvas.write(end - 1 - len(text), line, text, WARN, len(text))
+
+    def _texture(self, area: Area, at: int, line: int, end: int) -> int:
+        """Draw the group's texture if there is room for every word too; return the column after it."""
+        words = max(len(f" {seats_of(each)[0]} ") for each in self.scene.areas)
+        if end - at - 1 < 1 + _SWATCH + words + _LONGEST_QUEUE:
+            return at
+        texture = texture_of(area.number, GLYPHS[self.canvas.charset])
+        at = self.canvas.write(at, line, " ", PLAIN, 1)
+        return self.canvas.write(at, line, texture.text * _SWATCH, texture.ink, _SWATCH)
 
     def bottom(self, area: Area, line: int) -> None:
         """Draw the lower wall."""

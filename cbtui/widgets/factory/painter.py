@@ -69,7 +69,7 @@ def _draw(canvas: Canvas, scene: Scene, plan: Plan, words: Sequence[str]) -> Non
 
 def _draw_belts(belts: Belts, place: Place, plan: Plan) -> None:
     rows = plan.density.belt
-    hidden = len(place.area.belts) - len(place.belts)
+    hidden = len(place.area.belts) - len(place.belts) + place.area.more
     line = place.first
     for number in place.belts:
         belts.draw(place.area.belts[number], place.area, line, min(rows, 2))

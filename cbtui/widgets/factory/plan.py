@@ -177,7 +177,7 @@ def _arranged(
         height,
         density,
         tuple(places),
-        hidden=len(scene.areas) - len(areas),
+        hidden=len(scene.areas) - len(areas) + scene.more,
         headline=0 if before or (density.top and areas) else None,
         captions=before if captions else None,
         bench=bench_at if bench else None,

@@ -6,6 +6,7 @@ from enum import Enum, auto
 from functools import cached_property
 
 from cbtui.widgets.lanes.names import short_thread
+from cbtui.widgets.lanes.roster import roster_of
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, SoleLane, ThreadLane, all_lanes, ever_ran
 from sim.trace.events import EntityKind, GroupKind, ThreadId
 from sim.trace.model import Blocked, Entity, Group, Moment, Nanoseconds, Queue, Span, Wait, Window
@@ -84,6 +85,8 @@ class Area:
     belts: tuple[Belt, ...]
     visitors: tuple[Worker, ...]
     kept: tuple[Entity, ...]
+    more: int = 0
+    """Callbacks of the group that have no belt, where there are more than anybody could look at."""
 
     @property
     def is_open(self) -> bool:
@@ -109,6 +112,8 @@ class Scene:
     now: Nanoseconds
     workers: tuple[Worker, ...]
     areas: tuple[Area, ...]
+    more: int = 0
+    """Groups that have no area, where there are more than anybody could look at."""
 
     @cached_property
     def idle(self) -> int:
@@ -153,7 +158,8 @@ class _Staging:
         hired = sum(executor.threads for executor in self._timeline.executors.values())
         workers += [Worker(f"worker {number + 1}", Stay.NEVER) for number in range(len(workers), hired)]
         areas = tuple(self._area(group, members[group.id], workers) for group in groups.values())
-        return Scene(self._timeline, self._now, tuple(workers), areas)
+        more = roster_of(self._timeline).groups - len(areas)
+        return Scene(self._timeline, self._now, tuple(workers), areas, more)
 
     def _worker(self, thread: ThreadId, name: str) -> Worker:
         span = self._moment.running.get(thread)
@@ -191,7 +197,8 @@ class _Staging:
         holders = self._moment.holders.get(group.id, ())
         kept = tuple(self._timeline.entities[holder] for holder in holders if holder not in seated)
         belts = tuple(self._belt(member) for member in members)
-        return Area(group, self._numbers[group.id], belts, visitors, kept)
+        more = roster_of(self._timeline).size(group.id) - len(belts)
+        return Area(group, self._numbers[group.id], belts, visitors, kept, more)
 
     def _belt(self, entity: Entity) -> Belt:
         wait = self._moment.waiting.get(entity.id)

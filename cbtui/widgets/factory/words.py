@@ -22,7 +22,7 @@ def cast(scene: Scene) -> str:
     """Say how many workers and areas there are: ``4 workers, 1 seat``."""
     if not scene.areas:
         return "no callback group yet"
-    return f"{_count(len(scene.workers), 'worker')}, {_places(scene.areas)}"
+    return f"{_count(len(scene.workers), 'worker')}, {_places(scene)}"
 
 
 def headline(scene: Scene) -> tuple[str, ...]:
@@ -38,7 +38,10 @@ def headline(scene: Scene) -> tuple[str, ...]:
     return (*whole, what.replace(" callbacks wait", " wait").replace(" callback waits", " waits"), start)
 
 
-def _places(areas: Sequence[Area]) -> str:
+def _places(scene: Scene) -> str:
+    areas = scene.areas
+    if scene.more:
+        return _count(len(areas) + scene.more, "area")
     is_open = sum(area.is_open for area in areas)
     if is_open == len(areas):
         return _count(is_open, "open area")

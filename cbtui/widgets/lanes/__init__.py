@@ -1,7 +1,7 @@
 """Lanes: threads, callback groups and waiting callbacks over time."""
 
-from cbtui.widgets.lanes.painter import Painter, Picture, wanted_rows
+from cbtui.widgets.lanes.painter import LOOKS_A_FRAME, Painter, Picture, wanted_rows
 from cbtui.widgets.lanes.selection import Selection, start_of
 from cbtui.widgets.lanes.widget import Lanes
 
-__all__ = ["Lanes", "Painter", "Picture", "Selection", "start_of", "wanted_rows"]
+__all__ = ["LOOKS_A_FRAME", "Lanes", "Painter", "Picture", "Selection", "start_of", "wanted_rows"]

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from cbtui.theme import Glyphs, Ink, Role
+from cbtui.theme import Glyphs, Ink, Role, texture_of
 from cbtui.widgets.cells import Row
 from cbtui.widgets.durations import duration
 from cbtui.widgets.lanes.columns import Column, Interval, Stretch, stretches
@@ -37,6 +37,7 @@ class Bars:
         for stretch in stretches(columns):
             number = self._number(stretch.top.entity)
             self._columns(row, stretch, Ink(Role.BAR, number))
+            self._texture(row, stretch, number)
             if len(stretch.columns) > 1:
                 self._seam(row, stretch)
                 self._label(row, stretch, Ink(Role.LABEL, number))
@@ -162,6 +163,15 @@ class Bars:
         left, right = self.glyphs.left, self.glyphs.right
         self._cells(row, stretch, [(right if c.runs_on else left)[c.eighths] for c in stretch.columns], ink)
 
+    def _texture(self, row: Row, stretch: Stretch[Span], number: int) -> None:
+        """Fill the whole columns of a bar, all between its ends, with the texture of its group."""
+        glyph, ink = texture_of(number, self.glyphs)
+        if glyph == self.glyphs.left[8] or stretch.is_short:
+            return
+        first = stretch.first + (stretch.columns[0].eighths < 8)
+        after = stretch.after - (stretch.columns[-1].eighths < 8)
+        row.fill(first, max(first, after), glyph, ink)
+
     def _line(self, row: Row, stretch: Stretch[Span], ink: Ink) -> None:
         """Draw a stretch as a line, double where there are several; nothing is drawn there yet."""
         one, several = self.glyphs.line, self.glyphs.double_line
@@ -174,7 +184,13 @@ class Bars:
     def _seam(self, row: Row, stretch: Stretch[Span]) -> None:
         """Part a bar from the one that it follows at once."""
         before = stretch.first - 1
-        if before >= 0 and row.cells[before] == self.glyphs.left[8]:
+        if before < 0:
+            return
+        ink = row.inks[before]
+        if ink.role is Role.TEXTURE:
+            row.inks[before] = ink._replace(role=Role.BAR)
+            row.cells[before] = self.glyphs.left[7]
+        elif row.cells[before] == self.glyphs.left[8]:
             row.cells[before] = self.glyphs.left[7]
 
     def _label(self, row: Row, stretch: Stretch[Span], ink: Ink) -> None:

@@ -42,8 +42,8 @@ class Calls:
         return f"{count}, {duration(last.replied - last.sent)}"
 
 
-def draw_calls(row: Row, calls: Sequence[Call], scale: Scale, now: Nanoseconds) -> None:
-    """Mark where calls left (▲, with ``s`` for the person's key) and where the reply came (◂)."""
+def draw_calls(row: Row, calls: Sequence[Call], scale: Scale, now: Nanoseconds, key: str) -> None:
+    """Mark where calls left (▲, with the person's ``key`` if it was that) and where the reply came (◂)."""
     glyphs = GLYPHS[row.charset]
     for call in calls:
         sent = scale.column_of(call.sent)
@@ -54,8 +54,8 @@ def draw_calls(row: Row, calls: Sequence[Call], scale: Scale, now: Nanoseconds) 
             if row.blank(column, column + 1):
                 row.put(column, glyphs.point, FAINT)
         row.put(sent, glyphs.up, MARK)
-        by_key = call.caller == 0
-        if by_key:
-            row.put(sent + 1, "s", MARK)
+        name = "" if call.caller else key
+        for column, letter in enumerate(name, sent + 1):
+            row.put(column, letter, MARK)
         if call.replied is not None:
-            row.put(max(replied, sent + 1 + by_key), glyphs.back, MARK)
+            row.put(max(replied, sent + 1 + len(name)), glyphs.back, MARK)

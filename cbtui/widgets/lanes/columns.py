@@ -2,6 +2,7 @@
 
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Sequence
+from math import inf
 from operator import attrgetter
 from typing import Generic, NamedTuple, Protocol, TypeAlias, TypeVar
 
@@ -16,6 +17,15 @@ _START = attrgetter("start")
 
 _SETTLED_AFTER: Nanoseconds = 100_000_000
 """Threads of a real-clock run report a little out of order: younger columns are summed up anew."""
+
+
+_LENGTHS_KEPT = 4
+"""For how many lengths of columns the settled past is kept."""
+
+_NEWEST = 2
+"""Columns that are summed up however little of a ration is left: those in which a run goes on."""
+_A_PART = 12
+"""Columns that are summed up before the ration is looked at again."""
 
 
 class Interval(Protocol):
@@ -76,67 +86,127 @@ class Stretch(NamedTuple, Generic[I]):
         return enumerate(self.columns, self.first)
 
 
+class Ration:
+    """How many intervals may be looked at for one picture; what is not looked at for one is for the next."""
+
+    def __init__(self, looks: float = inf) -> None:
+        self._left = looks
+
+    @property
+    def is_endless(self) -> bool:
+        """Whether everything may be looked at."""
+        return self._left == inf
+
+    @property
+    def is_used_up(self) -> bool:
+        """Whether no more than what is newest may be summed up."""
+        return self._left <= 0
+
+    def use(self, looks: int) -> None:
+        """Note that so many intervals have been looked at."""
+        self._left -= looks
+
+
+class _Past(Generic[I]):
+    """What was summed up in columns of one length."""
+
+    def __init__(self) -> None:
+        self.edge = 0
+        self.settled = 0
+        self.kept: dict[int, Column[I] | None] = {}
+        self.lasting: dict[_Key, int] = {}
+        self.told: set[_Key] = set()
+
+
 class Columns(Generic[I]):
-    """The columns of one lane; those of the settled past are kept from picture to picture."""
+    """The columns of one lane; those of the settled past are kept from picture to picture.
+
+    The lengths of columns that were shown last are remembered, so that zooming out and in again is quick.
+    """
 
     def __init__(self, query: Callable[[Window], Sequence[I]]) -> None:
         self._query = query
         self._per_column = 0
-        self._edge = 0
-        self._settled = 0
-        self._kept: dict[int, Column[I] | None] = {}
-        self._lasting: dict[_Key, int] = {}
-        self._told: set[_Key] = set()
+        self._pasts: dict[Nanoseconds, _Past[I]] = {}
+        self.unseen: tuple[int, ...] = ()
+        """The places of the last answer that are still to be summed up."""
 
-    def over(self, scale: Scale, edge: Nanoseconds) -> list[Column[I] | None]:
-        """Sum up a scale's columns; an interval that still lasts reaches to ``edge``."""
-        too_many = len(self._kept) > 4 * scale.columns
-        if scale.per_column != self._per_column or too_many or edge < self._edge:
-            self._per_column = scale.per_column
-            self._kept.clear()
-            self._lasting.clear()
-        self._edge = edge
-        self._forget_what_changed()
-        kept = self._kept
+    def over(self, scale: Scale, edge: Nanoseconds, ration: Ration | None = None) -> list[Column[I] | None]:
+        """Sum up a scale's columns; an interval that still lasts reaches to ``edge``.
+
+        The newest come first. What the ration does not suffice for is None, and ``unseen``.
+        """
+        past = self._past_of(scale, edge)
+        self._forget_what_changed(past)
+        kept = past.kept
         first = max(scale.first, 0)
         after = min(scale.first + scale.columns, edge // scale.per_column + 1)
         missing = [number for number in range(first, after) if number not in kept]
-        fresh = self._summed(missing, edge) if missing else {}
-        self._settled = max(0, (edge - _SETTLED_AFTER) // scale.per_column)
+        fresh, left = self._newest_of(missing, edge, ration or Ration())
+        self.unseen = tuple(number - scale.first for number in missing[:left])
+        past.settled = max(0, (edge - _SETTLED_AFTER) // scale.per_column)
         for number, column in fresh.items():
-            if number < self._settled:
+            if number < past.settled:
                 kept[number] = column
                 if column is not None and column.top.end is None:
                     key = _key(column.top)
-                    self._lasting[key] = min(number, self._lasting.get(key, number))
-        self._told = set(self._running_at(self._settled))
+                    past.lasting[key] = min(number, past.lasting.get(key, number))
+        past.told = set(self._running_at(past.settled))
         columns = list(map(kept.get, range(scale.first, scale.first + scale.columns)))
         for number, column in fresh.items():
             columns[number - scale.first] = column
         return columns
 
-    def _forget_what_changed(self) -> None:
+    def _past_of(self, scale: Scale, edge: Nanoseconds) -> _Past[I]:
+        """What is kept of columns of this length, and is of use."""
+        self._per_column = scale.per_column
+        past = self._pasts.pop(scale.per_column, None)
+        if past is None or len(past.kept) > 4 * scale.columns or edge < past.edge:
+            past = _Past()
+        self._pasts[scale.per_column] = past
+        past.edge = edge
+        if len(self._pasts) > _LENGTHS_KEPT:
+            del self._pasts[next(iter(self._pasts))]
+        return past
+
+    def _forget_what_changed(self, past: _Past[I]) -> None:
         """Drop kept columns in which something began that was not told when they were summed up, or ended.
 
         A wait is often told late: once it is clear that the callback has to wait.
         """
-        if not self._kept:
+        if not past.kept:
             return
-        running = self._running_at(self._settled)
-        ended = [key for key in self._lasting if key not in running or running[key].end is not None]
-        changed = [key[0] // self._per_column for key in running.keys() - self._told]
-        changed += [self._lasting.pop(key) for key in ended]
+        running = self._running_at(past.settled)
+        ended = [key for key in past.lasting if key not in running or running[key].end is not None]
+        changed = [key[0] // self._per_column for key in running.keys() - past.told]
+        changed += [past.lasting.pop(key) for key in ended]
         if changed:
             since = min(changed)
-            self._kept = {number: column for number, column in self._kept.items() if number < since}
-            self._lasting = {key: number for key, number in self._lasting.items() if number < since}
+            past.kept = {number: column for number, column in past.kept.items() if number < since}
+            past.lasting = {key: number for key, number in past.lasting.items() if number < since}
 
-    def _summed(self, numbers: Sequence[int], edge: Nanoseconds) -> dict[int, Column[I] | None]:
-        """Sum up all columns from the first of ascending numbers to the last."""
+    def _newest_of(
+        self, missing: Sequence[int], edge: Nanoseconds, ration: Ration
+    ) -> tuple[dict[int, Column[I] | None], int]:
+        """Sum up missing columns from the last backwards; also returns how many of them are left."""
+        fresh: dict[int, Column[I] | None] = {}
+        left = len(missing)
+        while left and not (fresh and ration.is_used_up):
+            count = left if ration.is_endless else _NEWEST if not fresh else _A_PART
+            part = missing[max(0, left - count) : left]
+            summed, looks = self._summed(part, edge)
+            fresh.update(summed)
+            ration.use(looks)
+            left -= len(part)
+        return fresh, left
+
+    def _summed(self, numbers: Sequence[int], edge: Nanoseconds) -> tuple[dict[int, Column[I] | None], int]:
+        """Sum up all columns from the first of ascending numbers to the last, in how many looks."""
         length = self._per_column
         found = self._query(Window(numbers[0] * length, (numbers[-1] + 1) * length))
         if not found:
-            return dict.fromkeys(numbers)
+            return dict.fromkeys(numbers), 1
+        looks = len(numbers)
         summed: dict[int, Column[I] | None] = {}
         low = high = bisect_left(found, numbers[0] * length, key=_START)
         running = self._running(numbers[0] * length)
@@ -145,12 +215,13 @@ class Columns(Generic[I]):
             low, high = high, _first_from(found, window.end, high, high - low)
             step = max(1, -(-(high - low) // MOST_A_COLUMN))
             begun = [found[place] for place in range(low, high, step)]
+            looks += len(running) + len(begun)
             summed[number] = _column(running, begun, step, window, edge) if running or begun else None
             if step > 1:
                 running = self._running(window.end)
             else:
                 running = [one for one in (*running, *begun) if one.end is None or one.end > window.end]
-        return summed
+        return summed, looks
 
     def _running(self, at: Nanoseconds) -> list[I]:
         return [one for one in self._query(Window(at, at + 1)) if one.start < at]

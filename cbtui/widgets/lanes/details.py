@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from cbtui.widgets.durations import duration
+from cbtui.widgets.lanes.keys import USUAL_KEYS, LaneKeys
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLane, ThreadLane
 from cbtui.widgets.lanes.selection import Bar, Selection
@@ -35,8 +36,10 @@ def details_of(timeline: Timeline, bar: Bar, now: Nanoseconds) -> Details:
             return Details(f"call of {bar.service}", tuple(_of_call(timeline, bar, now)))
 
 
-def details_of_selection(timeline: Timeline, selection: Selection, now: Nanoseconds) -> Details:
-    """Return what is known of a selection; of a lane without a bar, how to find one."""
+def details_of_selection(
+    timeline: Timeline, selection: Selection, now: Nanoseconds, keys: LaneKeys = USUAL_KEYS
+) -> Details:
+    """Return what is known of a selection; of a lane without a bar, by which keys to find one."""
     if selection.bar is not None:
         return details_of(timeline, selection.bar, now)
     match selection.lane:
@@ -48,7 +51,8 @@ def details_of_selection(timeline: Timeline, selection: Selection, now: Nanoseco
             name = entity.spoken_name
         case ServiceLane(service):
             name = service
-    return Details(name, ("nothing up to here on screen", "{ and } go to what came before and after"))
+    how = f"{keys.before} and {keys.after} go to what came before and after"
+    return Details(name, ("nothing up to here on screen", how))
 
 
 # a call of a callback

@@ -3,14 +3,16 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from math import inf
 
-from cbtui.theme import GLYPHS, Charset, Ink, Role, Run
+from cbtui.theme import GLYPHS, Charset, Ink, Role, Run, texture_of
 from cbtui.widgets.cells import Row, fit
 from cbtui.widgets.durations import duration
 from cbtui.widgets.lanes.axis import draw_axis
 from cbtui.widgets.lanes.bars import Bars
 from cbtui.widgets.lanes.calls import Calls, draw_calls
-from cbtui.widgets.lanes.columns import Column, Columns, Instants
+from cbtui.widgets.lanes.columns import Column, Columns, I, Instants, Ration
+from cbtui.widgets.lanes.keys import USUAL_KEYS
 from cbtui.widgets.lanes.names import entity_name, sole_name, thread_name
 from cbtui.widgets.lanes.rows import (
     GroupLane,
@@ -21,6 +23,7 @@ from cbtui.widgets.lanes.rows import (
     ThreadLane,
     all_lanes,
     choose,
+    lanes_beyond,
 )
 from cbtui.widgets.lanes.scale import Scale, scale_for
 from cbtui.widgets.lanes.selection import Selection
@@ -37,6 +40,15 @@ MARK = Ink(Role.MARK)
 
 LEAST_WIDTH = 20
 """Columns below which lanes are left blank."""
+
+LOOKS_A_FRAME = 2000
+"""Intervals that are looked at for one frame, more than a lesson has on screen: zoomed out on an hour the
+lanes fill in a few frames, and no key waits for all of it."""
+
+_TEXTURED_FROM = 20
+"""The narrowest column of names that shows the textures of groups."""
+_SWATCH = 2
+"""Columns of texture beside a group's letter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,12 +70,16 @@ def layout_for(width: int) -> Layout:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """Painted lanes, the axis last. ``lanes`` are those that ``rows`` begins with, one a row."""
+    """Painted lanes, the axis last. ``lanes`` are those that ``rows`` begins with, one a row.
+
+    One that is not ``complete`` has faint points where there was more to look at than a picture may take.
+    """
 
     rows: tuple[tuple[Run, ...], ...]
     lanes: tuple[Lane, ...]
     layout: Layout
     scale: Scale
+    complete: bool = True
 
     @property
     def text(self) -> str:
@@ -84,12 +100,22 @@ def wanted_rows(timeline: Timeline, service: str = "") -> int:
 class Painter:
     """Paints a timeline as lanes; keeps what it summed up of the past, so that one painter serves one widget.
 
-    ``service`` is a service of others that is to have a lane before it is first called.
+    ``service`` is a service of others that is to have a lane before it is first called. ``looks`` is how many
+    intervals a picture may look at; the next picture of the same stretch goes on where it stopped.
+    ``call_key`` is what calls the service, as people write it.
     """
 
-    def __init__(self, charset: Charset = Charset.BRAILLE, service: str = "") -> None:
+    def __init__(
+        self,
+        charset: Charset = Charset.BRAILLE,
+        service: str = "",
+        looks: float = inf,
+        call_key: str = USUAL_KEYS.call,
+    ) -> None:
         self.charset = charset
+        self.call_key = call_key
         self.service = service
+        self.looks = looks
         self._timeline: Timeline | None = None
         self._spans: dict[tuple[str, int], Columns[Span]] = {}
         self._waits: dict[EntityId, Columns[Wait]] = {}
@@ -129,8 +155,10 @@ class Painter:
         frame = _Frame(self, timeline, scale, layout, now, timeline.moment(now), selection)
         rows = [frame.lane(lane) for lane in lanes] if height > 0 else []
         if height > 0:
-            rows.append(frame.axis(hidden=len(every) - len(lanes)))
-        return Picture(tuple(tuple(row) for row in rows), tuple(lanes), layout, scale)
+            hidden = len(every) - len(lanes) + lanes_beyond(every, timeline)
+            rows.append(frame.axis(hidden))
+        complete = not frame.unseen
+        return Picture(tuple(tuple(row) for row in rows), tuple(lanes), layout, scale, complete)
 
     def spans(self, lane: Lane, timeline: Timeline) -> Columns[Span]:
         """Return the summed-up calls of a lane."""
@@ -171,7 +199,11 @@ class Painter:
 
 @dataclass(frozen=True, slots=True)
 class _Sums:
-    """What a lane shows, column by column. ``lasting`` is how long what still lasts has lasted, in words."""
+    """What a lane shows, column by column.
+
+    ``lasting`` is how long what still lasts has lasted, in words; ``unseen`` are the columns that are still
+    to be summed up.
+    """
 
     scale: Scale
     calls: list[Column[Span] | None]
@@ -179,6 +211,7 @@ class _Sums:
     blocks: list[Column[Blocked] | None]
     losses: list[int]
     lasting: tuple[str, ...]
+    unseen: tuple[int, ...]
 
 
 class _Frame:
@@ -200,6 +233,8 @@ class _Frame:
         self._scale = scale
         self._layout = layout
         self._now = now
+        self._ration = Ration(painter.looks)
+        self.unseen = False
         self._charset = painter.charset
         self._glyphs = GLYPHS[painter.charset]
         self._edge = max(now, timeline.end) if timeline.ended is None else timeline.end
@@ -238,6 +273,8 @@ class _Frame:
     def _painted(self, lane: Lane, sums: _Sums) -> list[Run]:
         row = Row(self._layout.columns, self._charset)
         self._draw(row, lane, sums)
+        for place in sums.unseen:
+            row.put(place, self._glyphs.point, FAINT)
         selection = self._selection
         if selection is not None and selection.lane == lane and selection.bar is not None:
             self._bars.select(row, selection.bar, self._scale)
@@ -259,17 +296,19 @@ class _Frame:
         return self._scale.column_of(self._now - (self._now == self._scale.window.end))
 
     def _sums(self, lane: Lane) -> _Sums:
-        painter, timeline, scale, edge = self._painter, self._timeline, self._scale, self._edge
-        calls = painter.spans(lane, timeline).over(scale, edge)
+        painter, timeline = self._painter, self._timeline
+        unseen: set[int] = set()
+        calls = self._summed(painter.spans(lane, timeline), unseen)
         waits: list[Column[Wait] | None] = []
         blocks: list[Column[Blocked] | None] = []
         losses: list[int] = []
         match lane:
             case ThreadLane(thread):
-                blocks = painter.blocks(thread.id, timeline).over(scale, edge)
+                blocks = self._summed(painter.blocks(thread.id, timeline), unseen)
             case MemberLane(entity) | SoleLane(entity):
-                waits = painter.waits(entity, timeline).over(scale, edge)
-                losses = painter.losses(entity, timeline).over(scale, edge)
+                waits = self._summed(painter.waits(entity, timeline), unseen)
+                losses = painter.losses(entity, timeline).over(self._scale, self._edge)
+        self.unseen = self.unseen or bool(unseen)
         lasting = dict.fromkeys(
             column.top.start
             for columns in (calls, waits)
@@ -277,7 +316,13 @@ class _Frame:
             if column is not None and column.top.end is None
         )
         lengths = tuple(duration(self._now - start) for start in lasting)
-        return _Sums(scale, calls, waits, blocks, losses, lengths)
+        return _Sums(self._scale, calls, waits, blocks, losses, lengths, tuple(sorted(unseen)))
+
+    def _summed(self, columns: Columns[I], unseen: set[int]) -> list[Column[I] | None]:
+        """Sum up as much as the picture's ration allows, and add what it does not to ``unseen``."""
+        summed = columns.over(self._scale, self._edge, self._ration)
+        unseen.update(columns.unseen)
+        return summed
 
     def _draw(self, row: Row, lane: Lane, sums: _Sums) -> None:
         match lane:
@@ -291,9 +336,11 @@ class _Frame:
                 self._bars.waits(row, sums.waits, sums.calls)
                 self._bars.lost(row, sums.losses)
                 if entity.kind is EntityKind.SERVICE:
-                    draw_calls(row, self._calls.of(entity.name), self._scale, self._edge)
+                    draw_calls(
+                        row, self._calls.of(entity.name), self._scale, self._edge, self._painter.call_key
+                    )
             case ServiceLane(service):
-                draw_calls(row, self._calls.of(service), self._scale, self._edge)
+                draw_calls(row, self._calls.of(service), self._scale, self._edge, self._painter.call_key)
 
     def _latest(self, columns: list[Column[Span] | None]) -> Span | None:
         shown = columns[: max(0, self._now_column + 1)]
@@ -335,16 +382,21 @@ class _Frame:
                 name = thread_name(thread, self._layout.names - 1, self._glyphs.ellipsis)
                 return [Run(name, PLAIN)]
             case GroupLane(group):
-                return [self._letter(group), Run(group.kind.value, PLAIN)]
+                return [*self._letter(group), Run(group.kind.value, PLAIN)]
             case MemberLane(entity):
                 return [Run(f"  {entity_name(entity, self._layout.names - 3)}", PLAIN)]
             case SoleLane(entity, group):
-                return [
-                    self._letter(group),
-                    Run(sole_name(entity, group, self._layout.names - len(group.letter) - 1), PLAIN),
-                ]
+                letter = self._letter(group)
+                room = self._layout.names - sum(len(run.text) for run in letter)
+                return [*letter, Run(sole_name(entity, group, room), PLAIN)]
             case ServiceLane(service):
                 return [Run(service, PLAIN)]
 
-    def _letter(self, group: Group) -> Run:
-        return Run(f"{group.letter} ", Ink(Role.LETTER, self._numbers[group.id]))
+    def _letter(self, group: Group) -> list[Run]:
+        """A group's letter, and its texture where there is room."""
+        number = self._numbers[group.id]
+        letter = Run(f"{group.letter} ", Ink(Role.LETTER, number))
+        if self._layout.names < _TEXTURED_FROM:
+            return [letter]
+        texture = texture_of(number, self._glyphs)
+        return [letter, texture._replace(text=texture.text * _SWATCH), Run(" ", PLAIN)]

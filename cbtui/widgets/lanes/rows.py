@@ -3,23 +3,10 @@
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from sim.trace.events import EntityId, EntityKind, GroupId, ThreadId
+from cbtui.widgets.lanes.roster import MOST, roster_of
+from sim.trace.events import EntityId, GroupId, ThreadId
 from sim.trace.model import Entity, Group, Nanoseconds, Thread, Window
 from sim.trace.timeline import Timeline
-
-HOUSEKEEPING = frozenset(
-    (
-        "describe_parameters",
-        "get_parameter_types",
-        "get_parameters",
-        "get_type_description",
-        "list_parameters",
-        "parameter_events",
-        "set_parameters",
-        "set_parameters_atomically",
-    )
-)
-"""Last names of the topics and services that every node brings along; they have no lanes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,23 +50,28 @@ Lane: TypeAlias = ThreadLane | GroupLane | MemberLane | SoleLane | ServiceLane
 
 
 def all_lanes(timeline: Timeline, service: str) -> list[Lane]:
-    """Return every lane of a run: threads, then groups with their members, then services of others.
+    """Return the lanes of a run: threads, then groups with their members, then services of others.
 
-    ``service`` is one that has a lane before its first call; "" for none.
+    Of groups and members it is the first ``MOST``; ``lanes_beyond`` counts the others. ``service`` is one
+    that has a lane before its first call; "" for none.
     """
+    roster = roster_of(timeline)
     lanes: list[Lane] = [ThreadLane(thread) for thread in _working_threads(timeline)]
-    own: set[str] = set()
-    for group in timeline.groups.values():
-        members = [member for member in timeline.group_members(group.id) if member.label not in HOUSEKEEPING]
-        own.update(member.name for member in members if member.kind is EntityKind.SERVICE)
-        if len(members) == 1:
+    for group, members in roster.staged(timeline):
+        if roster.size(group.id) == 1:
             lanes.append(SoleLane(members[0], group))
-        elif members:
+        else:
             lanes.append(GroupLane(group))
-            lanes.extend(MemberLane(member, group) for member in members)
+            lanes.extend([MemberLane(member, group) for member in members])
     called = dict.fromkeys([service, *timeline.services_called])
-    lanes.extend(ServiceLane(name) for name in called if name and name not in own)
+    lanes.extend([ServiceLane(name) for name in called if name and name not in roster.services])
     return lanes
+
+
+def lanes_beyond(lanes: list[Lane], timeline: Timeline) -> int:
+    """Return how many groups and callbacks of a run have no lane among all of these."""
+    shown = sum([not isinstance(lane, ThreadLane | ServiceLane) for lane in lanes])
+    return roster_of(timeline).lanes - shown
 
 
 def _working_threads(timeline: Timeline) -> list[Thread]:
@@ -152,7 +144,7 @@ class _Worth:
         return 9 if busy >= 0.5 else 7 if busy > 0 else 2
 
     def _group_waits(self, group: GroupId) -> bool:
-        return any(self._waits_long(member.id) for member in self.timeline.group_members(group))
+        return any(self._waits_long(member.id) for member in self.timeline.group_members(group)[:MOST])
 
     def _waits_long(self, entity: EntityId) -> bool:
         latest = self.timeline.waits_of(entity, self.window)[-_LATEST:]

@@ -58,7 +58,7 @@ class Status:
 
     def _group(self, group: Group) -> Run:
         entities = self.timeline.entities
-        waiting = sum(entities[entity].group == group.id for entity in self.moment.waiting)
+        waiting = sum([entities[entity].group == group.id for entity in self.moment.waiting])
         holders = len(self.moment.holders.get(group.id, ()))
         if group.kind is GroupKind.REENTRANT:
             state = f"open, {holders} run" if holders else "open"

@@ -11,7 +11,8 @@ from textual.reactive import reactive
 from cbtui.theme import GLYPHS, Charset, Run
 from cbtui.widgets.lanes.details import details_of_selection
 from cbtui.widgets.lanes.details_rows import ROWS, details_rows
-from cbtui.widgets.lanes.painter import Painter, Picture, wanted_rows
+from cbtui.widgets.lanes.keys import USUAL_KEYS, LaneKeys
+from cbtui.widgets.lanes.painter import LOOKS_A_FRAME, Painter, Picture, wanted_rows
 from cbtui.widgets.lanes.rows import Lane, all_lanes
 from cbtui.widgets.lanes.selection import Selection, bar_at, bar_up_to, beside, start_of
 from cbtui.widgets.painted import Painted
@@ -21,6 +22,9 @@ from sim.trace.timeline import Timeline
 _LEAST_LANES = 3
 """Rows below which what is selected is not told of: the lanes would have no room left."""
 
+_A_FRAME = 1 / 30
+"""Seconds until the lanes go on to fill."""
+
 
 class Lanes(Painted, can_focus=True):
     """Threads as lanes, callbacks as bars, waits as hatching; the time axis runs along the bottom.
@@ -28,7 +32,8 @@ class Lanes(Painted, can_focus=True):
     Set ``timeline`` again (it may be the same one) when it has grown. ``now`` is the cursor that every pane
     obeys; ``service`` one that is not the learner's and is to have a lane before its first call. What is
     selected stands out and is told of below the axis; it is for the screen to set ``selection``, ``hint`` to
-    what its frame is to say of keys, and ``changes`` to what a person changed about the run.
+    what its frame is to say of keys, ``keys`` to those in force, and ``changes`` to what a person changed
+    about the run.
     """
 
     DEFAULT_CSS = "Lanes { height: auto; }"
@@ -41,11 +46,13 @@ class Lanes(Painted, can_focus=True):
     selection: reactive[Selection | None] = reactive(None, repaint=False)
     hint: reactive[str] = reactive("", repaint=False)
     changes: reactive[str] = reactive("", repaint=False)
+    keys: reactive[LaneKeys] = reactive(USUAL_KEYS, repaint=False)
 
-    _painter = Painter()
+    _painter = Painter(looks=LOOKS_A_FRAME)
     _picture: Picture | None = None
-    _wanted = 0
+    _laid_out_for = 0
     _titled = ""
+    _goes_on = False
 
     class Picked(Message):
         """The person pointed at a moment ``at``, and at something on a lane if ``selection`` says so."""
@@ -54,6 +61,12 @@ class Lanes(Painted, can_focus=True):
             super().__init__()
             self.at = at
             self.selection = selection
+
+        @property
+        def control(self) -> "Lanes":
+            """The lanes that were pointed at."""
+            assert isinstance(self._sender, Lanes)
+            return self._sender
 
     class Turned(Message):
         """The person turned the wheel: ``steps`` > 0 asks for a longer stretch of time, < 0 for a shorter."""
@@ -146,12 +159,24 @@ class Lanes(Painted, can_focus=True):
         height = size.height - told
         picture = self._painter.paint(self.timeline, self.window, self.now, size.width, height, selection)
         self._picture = picture
+        if not picture.complete:
+            self._go_on_later()
         title = ["Lanes", picture.time_per_column, *([f"changed: {self.changes}"] if self.changes else [])]
         self._entitle(f" {GLYPHS[self.charset].between} ".join(title))
         if selection is None or not told:
             return picture.rows
-        details = details_of_selection(self.timeline, selection, self.now)
+        details = details_of_selection(self.timeline, selection, self.now, self.keys)
         return [*picture.rows, *details_rows(details, size.width, self.charset)]
+
+    def _go_on_later(self) -> None:
+        """Paint what is missing in the next frame, also when the run stands."""
+        if self.is_running and not self._goes_on:
+            self._goes_on = True
+            self.set_timer(_A_FRAME, self._go_on)
+
+    def _go_on(self) -> None:
+        self._goes_on = False
+        self.changed()
 
     def _entitle(self, title: str) -> None:
         """Set another title: Textual draws the whole widget anew even for the same one."""
@@ -164,13 +189,13 @@ class Lanes(Painted, can_focus=True):
 
     def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
         """Return how many rows show every lane, and tell of the selected bar."""
-        return wanted_rows(self.timeline, self.service) + (0 if self.selection is None else ROWS)
+        self._laid_out_for = wanted_rows(self.timeline, self.service)
+        return self._laid_out_for + (0 if self.selection is None else ROWS)
 
     def watch_timeline(self) -> None:
         """Paint anew, in another height if lanes have come."""
-        wanted = wanted_rows(self.timeline, self.service)
-        if wanted != self._wanted:
-            self._wanted = wanted
+        # Lanes that are out of sight are not laid out: it is asked for again until it was done.
+        if wanted_rows(self.timeline, self.service) != self._laid_out_for:
             self.refresh(layout=True)
         self.changed()
 
@@ -198,10 +223,15 @@ class Lanes(Painted, can_focus=True):
 
     def watch_service(self) -> None:
         """Give the service a lane."""
-        self._painter = Painter(self.charset, self.service)
+        self._painter = Painter(self.charset, self.service, LOOKS_A_FRAME, self.keys.call)
+        self.changed()
+
+    def watch_keys(self) -> None:
+        """Speak of other keys."""
+        self._painter = Painter(self.charset, self.service, LOOKS_A_FRAME, self.keys.call)
         self.changed()
 
     def watch_charset(self) -> None:
         """Paint in other glyphs."""
-        self._painter = Painter(self.charset, self.service)
+        self._painter = Painter(self.charset, self.service, LOOKS_A_FRAME, self.keys.call)
         self.changed()

@@ -43,7 +43,7 @@ _CURSOR, _MOMENT = "log--cursor", "log--moment"
 
 
 class LogLines(Following):
-    """The lines that a filter lets through, up to a moment.
+    """The lines that a filter lets through, up to a moment; below them it says how many came later.
 
     One of them may be picked with the arrow keys or the pointer: enter, or a click, tells its time.
     """
@@ -73,6 +73,7 @@ class LogLines(Following):
         self._now = 0
         self._searching = False
         self._kept: int | None = None
+        self._later = 0
         self._drawn: tuple[int, ...] = ()
 
     @property
@@ -122,6 +123,7 @@ class LogLines(Following):
         if self.picked is not None and self.picked >= written:
             self.picked = None
         looks_back = self._now < timeline.end
+        self._later = len(self._search.places) - count if looks_back else 0
         drawn = (id(self._search), count, self._search.widest, looks_back, len(timeline.logs))
         if drawn != self._drawn:
             self._drawn = drawn
@@ -225,10 +227,17 @@ class LogLines(Following):
         """Columns for thread and group, where there is room."""
         return _COLUMNS if self.scrollable_content_region.width >= COLUMNS_FROM else 0
 
+    def below(self) -> int:
+        """A row that tells of later lines, if there are any."""
+        return 1 if self._later else 0
+
     def render_line(self, y: int) -> Strip:
         """Return one line of the view."""
         row = self.scroll_offset.y + y
         width = self.scrollable_content_region.width
+        if self._later and row == self._count:
+            words = later_lines(self._now, self._later, width)
+            return Strip([Segment(words, self.in_ink(Ink(Role.FAINT)))], width)
         if row >= self._count:
             return Strip.blank(width, self.in_class(""))
         place = self._search.places[row]
@@ -277,3 +286,10 @@ class LogLines(Following):
         if isinstance(event, Printed):
             return self.in_class("log--error" if event.error else "log--info")
         return self.in_class(_STYLES[event.severity])
+
+
+def later_lines(now: Nanoseconds, later: int, width: int) -> str:
+    """Return the line at which the cursor stands in the log, and how many lines are yet to come."""
+    rule = GLYPHS[Charset.BRAILLE].line
+    words = f"{rule} {now / 1e9:.3f} s, {later:,} later line{'' if later == 1 else 's'} "
+    return fit(words + rule * (width - len(words)), width, Charset.BRAILLE)

@@ -45,7 +45,7 @@ def test_one_seat_starves_the_sensors() -> None:
 def test_the_same_starving_in_nine_rows_of_ascii() -> None:
     assert factory(SHARED, 12.9, 78, 9, Charset.ASCII) == drawn(
         """
-        | 1 worker, 1 seat: 2 callbacks wait for it  += A one seat ===== 2 wait =+     |
+        | 1 worker, 1 seat: 2 callbacks wait for it  += A ## one seat == 2 wait =+     |
         | odom  10/10 ! lost 168 ---#########[498ms]X|                           |     |
         |   waits 8.9 s: seat taken by timer_callback|                           |     |
         | scan  10/10 ! lost 168 ---#########[495ms]X|[@ timer_callback] 8.9 s   |     |
@@ -98,11 +98,11 @@ def test_three_areas_fit_nine_rows() -> None:
     assert factory(SPLIT, 9.412, 78, 9) == drawn(
         """
         | 4 workers, 3 areas, no callback waits for another                            |
-        |                                            ┏━ A one seat ━━━━━━━━━━━━━━┓     |
+        |                                            ┏━ A ██ one seat ━━━━━━━━━━━┓     |
         | timer ◷ 500 ms 4.9 s: last call runs ────◆✗┃▐☻ timer_callback▌ 5.4 s   ┃     |
-        |                                            ┣━ B one seat ━━━━━━━━━━━━━━┫     |
+        |                                            ┣━ B ·· one seat ━━━━━━━━━━━┫     |
         | odom  0/10    ──────────────────□□□□□□□□□□▸┃▐ ▌ odom_callback just ran ┃☺▸   |
-        |                                            ┣━ C one seat ━━━━━━━━━━━━━━┫     |
+        |                                            ┣━ C ══ one seat ━━━━━━━━━━━┫     |
         | scan  0/10    ──────────────────□□□□□□□□□□▸┃▐ ▌ scan_callback just ran ┃☺▸   |
         |                                            ┗━━━━━━━━━━━━━━━━━━━━━━━━━━━┛     |
         | · Pool-0_0 in A  · Pool-0_1 from B  · Pool-0_2 from C  ☺ Pool-0_3 unused     |
@@ -132,19 +132,19 @@ def test_a_wide_pane_has_large_figures_and_a_yard() -> None:
         r"""
     | 4 workers, 3 areas, no callback waits for another                                                      |
     | belts                                  areas                               workers                     |
-    |                                      ┏━ A one seat ━━━━━━━━━━━━━━━━┓                                   |
+    |                                      ┏━ A ██ one seat ━━━━━━━━━━━━━┓                                   |
     | timer ◷ 500 ms ────────────────────◆✗┃    ☻                        ┃                                   |
     |  late 4.9 s: its last call still runs┃ ▐ /█\ ▌   timer  5.4 s      ┃        ·   Pool-0_0               |
     |                                      ┃ ▐▄▄▄▄▄▌   Pool-0_0          ┃            works in A             |
     |                                      ┗━━━━━━━━━━━━━━━━━━━━━━━━━━━━━┛                                   |
     |                                                                                                        |
-    |                                      ┏━ B one seat ━━━━━━━━━━━━━━━━┓        ·   Pool-0_1               |
+    |                                      ┏━ B ·· one seat ━━━━━━━━━━━━━┓        ·   Pool-0_1               |
     | odom  0/10    ────────────□□□□□□□□□□▸┃                             ┃ ☺          back from B            |
     |                                      ┃ ▐     ▌   odom just ran     ┃/█\                                |
     |                                      ┃ ▐▄▄▄▄▄▌                     ┃/ >                                |
     |                                      ┗━━━━━━━━━━━━━━━━━━━━━━━━━━━━━┛        ·   Pool-0_2               |
     |                                                                                 back from C            |
-    |                                      ┏━ C one seat ━━━━━━━━━━━━━━━━┓                                   |
+    |                                      ┏━ C ══ one seat ━━━━━━━━━━━━━┓                                   |
     | scan  0/10    ────────────□□□□□□□□□□▸┃                             ┃ ☺      ☺                          |
     |                                      ┃ ▐     ▌   scan just ran     ┃/█\    /█\  Pool-0_3               |
     |                                      ┃ ▐▄▄▄▄▄▌                     ┃/ >    / \  never needed           |
@@ -159,7 +159,7 @@ def test_large_figures_are_readable_in_ascii() -> None:
         r"""
     | 1 worker, 1 seat: 2 callbacks wait for it                                                              |
     | belts                                  areas                               workers                     |
-    |                                      += A one seat ======= 2 wait =+                                   |
+    |                                      += A ## one seat ==== 2 wait =+                                   |
     | odom  10/10 ! lost 168 ---##########X|                             |                                   |
     |      waits 8.9 s: seat taken by timer|                             |        .   MainThread             |
     |                                      |                             |            works in A             |
@@ -179,7 +179,7 @@ def test_four_workers_have_one_seat() -> None:
         """
         | 4 workers, 1 seat: 1 callback waits for it, 3 workers idle                   |
         | belts                                        areas                           |
-        |                                            ╔═ A one seat ════ 1 waits ═╗     |
+        |                                            ╔═ A ██ one seat ═ 1 waits ═╗     |
         | odom  3/3 ! lost 2 ─────▐4.5s▌▐4.6s▌▐4.7s▌✗║                           ║     |
         |   waits 4.9 s: seat taken by timer_callback║▐☻ timer_callback▌ 5.0 s   ║     |
         | timer ○ 500 ms ───────────────────────────►║   Pool-0_0                ║     |
@@ -195,7 +195,7 @@ def test_four_workers_have_one_seat_in_large() -> None:
         r"""
     | 4 workers, 1 seat: 1 callback waits for it, 3 workers idle                                             |
     | belts                                  areas                               workers                     |
-    |                                      ┏━ A one seat ━━━━━━ 1 waits ━┓                                   |
+    |                                      ┏━ A ██ one seat ━━━ 1 waits ━┓                                   |
     | odom  3/3 ! lost 2 ────■▐4.6s▌▐4.7s▌✗┃                             ┃                                   |
     |      waits 4.9 s: seat taken by timer┃    ☻                        ┃        ·   Pool-0_0               |
     |                                      ┃ ▐ /█\ ▌   timer  5.0 s      ┃            works in A             |
@@ -239,11 +239,11 @@ def test_one_worker_has_three_areas_in_nine_rows() -> None:
     assert factory(one_worker_three_areas(), 12.0, 78, 9, Charset.ASCII) == drawn(
         """
         | 1 worker, 3 areas: 2 callbacks wait for a worker                             |
-        |                                            += A one seat ==== 1 waits =+     |
+        |                                            += A ## one seat = 1 waits =+     |
         | odom  1/10    7.0 s: no free worker .....#X|[ ] free                   |     |
-        |                                            += B one seat ==== 1 waits =+     |
+        |                                            += B ++ one seat = 1 waits =+     |
         | scan  1/10    7.0 s: no free worker .....#X|[ ] free                   |     |
-        |                                            += C one seat ==============+     |
+        |                                            += C == one seat ===========+     |
         | timer every 500 ms ----------------------->|[@ timer_callback] 8.0 s   |     |
         |                                            +===========================+     |
         | . Pool-0_0 works in C                                                        |
@@ -307,7 +307,7 @@ def test_a_worker_in_a_call_is_stuck_in_its_seat() -> None:
         """
         | 2 workers, 1 seat: 1 callback waits for it, 1 worker idle                    |
         | belts                                        areas                           |
-        |                                            ┏━ A one seat ━━━━ 1 waits ━┓     |
+        |                                            ┏━ A ██ one seat ━ 1 waits ━┓     |
         | timer       ◷ 1.0 s ──────────────────────▸┃                           ┃     |
         |                                            ┃▐☻ timer_callback▌ 2.0 s   ┃     |
         | motor_power 1/10    ───────□□□□□□□□□▐1.8s▌✗┃   stuck in call 1.8 s     ┃     |

@@ -250,6 +250,21 @@ async def test_a_picked_line_that_the_filter_keeps_back_is_let_go() -> None:
         assert app.query_one(LogLines).picked is None
 
 
+async def test_whoever_looks_back_reads_how_many_lines_came_later() -> None:
+    app = PaneOnly()
+    async with app.run_test(size=(60, 10)) as pilot:
+        lines = app.query_one(LogLines)
+        await showing(pilot, log_of(100), 50_000_000)
+        assert "[n]: line 50" in lines.render_line(8).text
+        assert lines.render_line(9).text.startswith("─ 0.050 s, 49 later lines ───")
+        await showing(pilot, log_of(100), 98_000_000)
+        assert lines.render_line(9).text.startswith("─ 0.098 s, 1 later line ───")
+        await typed(pilot, "99")
+        assert lines.render_line(0).text.startswith("─ 0.098 s, 1 later line ───")
+        await showing(pilot, log_of(100))
+        assert "later" not in "".join(lines.render_line(y).text for y in range(9))
+
+
 async def test_the_line_of_the_moment_is_set_off_while_looking_back() -> None:
     app = PaneOnly()
     async with app.run_test(size=(60, 10)) as pilot:
@@ -260,7 +275,7 @@ async def test_the_line_of_the_moment_is_set_off_while_looking_back() -> None:
         app.stylesheet.add_source(".log--moment { background: red; }")
         app.refresh_css()
         await showing(pilot, log_of(100), 50_000_000)
-        ground = [segment.style.bgcolor for segment in lines.render_line(9) if segment.style]
+        ground = [segment.style.bgcolor for segment in lines.render_line(8) if segment.style]
         assert {colour.name for colour in ground if colour} == {"#ff0000"}
 
 

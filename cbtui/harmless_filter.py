@@ -1,0 +1,33 @@
+"""Makes sure that no text on the screen is one that a terminal obeys, whoever wrote it."""
+
+import re
+from functools import lru_cache
+
+from rich.cells import cell_len
+from rich.segment import Segment
+from textual.color import Color
+from textual.filter import LineFilter
+
+_OBEYED = re.compile(
+    "[\x00-\x1f\x7f-\x9f\u200b\u200e\u200f\u202a-\u202e\u2060\u2066-\u2069\ud800-\udfff\ufeff]"
+)
+"""Control characters, what turns text round or hides in it, and halves of characters."""
+
+
+class HarmlessFilter(LineFilter):
+    """Leaves out what a terminal would obey, column by column; panes show its picture where they can."""
+
+    def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
+        """Return the segments without it; what carries no text, such as a cursor movement, stays."""
+        if all(text.isprintable() for text, _, control in segments if not control):
+            return segments
+        return [
+            segment if segment.control else Segment(harmless(segment.text), segment.style)
+            for segment in segments
+        ]
+
+
+@lru_cache(maxsize=1024)
+def harmless(text: str) -> str:
+    """Return text of the same width that no terminal obeys."""
+    return _OBEYED.sub(lambda found: "?" * cell_len(found[0]), text)

@@ -1,0 +1,156 @@
+"""Asks before a run what the learner expects of it."""
+
+from collections.abc import Callable
+from enum import Enum, auto
+from typing import ClassVar
+
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.containers import Container, VerticalScroll
+from textual.content import Content
+from textual.widgets import OptionList, Static
+from textual.widgets.option_list import Option
+
+from cbtui.actions import Scope, bindings_of
+from cbtui.keymap import keymap_of
+from cbtui.named_keys import with_keys_in_force
+from cbtui.screens.sized import SizedModal
+from cbtui.theme import Charset
+from cbtui.widgets.key_bar import KeyBar
+from cbtui.widgets.prose import Prose
+from lessons.description import Prediction
+
+
+class Way(Enum):
+    """Where a person wants to go from the questions."""
+
+    ON = auto()
+    """To the run, with or without answers."""
+    BACK = auto()
+
+
+class PredictionScreen(SizedModal[Way]):
+    """Asks the questions that are not answered yet, one after the other.
+
+    ``answered`` is how many are; ``answer`` takes the place of a question and that of its answer at the
+    moment the person confirms it. Nothing is highlighted at first: an answer is not to be given by mistake.
+    """
+
+    SCOPE = Scope.PREDICTION
+    CSS_PATH = "window.tcss"
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.PREDICTION)]
+
+    def __init__(
+        self,
+        introduction: str,
+        predictions: tuple[Prediction, ...],
+        answered: int,
+        answer: Callable[[int, int], None],
+        charset: Charset,
+    ) -> None:
+        super().__init__()
+        self._introduction = introduction
+        self._predictions = predictions
+        self._place = answered
+        self._answer = answer
+        self._charset = charset
+
+    def compose(self) -> ComposeResult:
+        """Lay out what the lesson is about, the question, and the answers to choose from."""
+        with Container(classes="window") as window:
+            window.border_subtitle = "a given answer stays"
+            with VerticalScroll(can_focus=False):
+                yield Prose(with_keys_in_force(self._introduction, keymap_of(self.app)))
+            yield Static(classes="question", markup=False)
+            yield Answers()
+            yield KeyBar(Scope.PREDICTION, self._charset)
+
+    def on_mount(self) -> None:
+        """Ask the first question."""
+        self._ask()
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Offer the answers that there are, and to take one when one is highlighted."""
+        match action:
+            case "choose":
+                place = parameters[0]
+                return isinstance(place, int) and place <= len(self._prediction.answers)
+            case "take":
+                return self.is_mounted and self.query_one(Answers).highlighted is not None
+        return True
+
+    @property
+    def _prediction(self) -> Prediction:
+        return self._predictions[self._place]
+
+    def _ask(self) -> None:
+        several = len(self._predictions) > 1
+        number = f" ({self._place + 1} of {len(self._predictions)})" if several else ""
+        self.query_one(".window").border_title = f"What do you expect?{number}"
+        self.query_one(".question", Static).update(self._prediction.question)
+        answers = self.query_one(Answers)
+        answers.set_options(
+            Option(Content.assemble((self._key(number), "bold $text-accent"), f"  {answer}"))
+            for number, answer in enumerate(self._prediction.answers, start=1)
+        )
+        answers.highlighted = None
+        answers.focus()
+        self.query_one(KeyBar).changed()
+
+    def _key(self, number: int) -> str:
+        """The key that highlights an answer."""
+        return keymap_of(self.app).sign(Scope.PREDICTION, f"choose({number})", self._charset)
+
+    @on(OptionList.OptionHighlighted)
+    def _show_keys(self) -> None:
+        self.query_one(KeyBar).changed()
+
+    @on(OptionList.OptionSelected)
+    def _highlight_clicked(self, event: OptionList.OptionSelected) -> None:
+        """Let a click choose, and no more."""
+        self.query_one(Answers).highlighted = event.option_index
+
+    def action_choose(self, number: int) -> None:
+        """Highlight an answer."""
+        self.query_one(Answers).highlighted = number - 1
+
+    def action_previous(self) -> None:
+        """Highlight the answer above."""
+        self.query_one(Answers).action_cursor_up()
+
+    def action_next(self) -> None:
+        """Highlight the answer below."""
+        self.query_one(Answers).action_cursor_down()
+
+    def action_page_up(self) -> None:
+        """Scroll what the lesson is about."""
+        self.query_one(VerticalScroll).scroll_page_up(animate=False)
+
+    def action_page_down(self) -> None:
+        """Scroll what the lesson is about."""
+        self.query_one(VerticalScroll).scroll_page_down(animate=False)
+
+    def action_take(self) -> None:
+        """Take the highlighted answer, for good, and ask the next question."""
+        chosen = self.query_one(Answers).highlighted
+        if chosen is None:
+            return
+        self._answer(self._place, chosen)
+        if self._place + 1 == len(self._predictions):
+            self.dismiss(Way.ON)
+        else:
+            self._place += 1
+            self._ask()
+
+    def action_skip(self) -> None:
+        """Go on without an answer."""
+        self.dismiss(Way.ON)
+
+    def action_close(self) -> None:
+        """Go back to where the person came from."""
+        self.dismiss(Way.BACK)
+
+
+class Answers(OptionList, inherit_bindings=False):
+    """The answers; the screen's keys move the highlight, a click does."""

@@ -1,0 +1,138 @@
+"""Shows the solution of an exercise, and in what it differs from another file."""
+
+from collections.abc import Iterator
+from difflib import unified_diff
+from typing import ClassVar
+
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.containers import Container, VerticalScroll
+from textual.content import Content
+from textual.widgets import Static
+
+from cbtui.actions import Scope, bindings_of
+from cbtui.screens.sized import SizedModal
+from cbtui.theme import Charset
+from cbtui.widgets.cells import visible
+from cbtui.widgets.code.highlight import Kind, highlight
+from cbtui.widgets.key_bar import KeyBar
+
+_STYLES = {
+    Kind.PLAIN: "$text",
+    Kind.KEYWORD: "$text-accent",
+    Kind.NAME: "bold $text-primary",
+    Kind.BUILTIN: "$text-primary",
+    Kind.STRING: "$text-success",
+    Kind.NUMBER: "$text-warning",
+    Kind.COMMENT: "italic $text-muted",
+}
+_CHANGED = {"+": "$text-success", "-": "$text-error", "@": "$text-muted"}
+
+
+class SolutionScreen(SizedModal[None]):
+    """Shows a solution as a difference to the file ``begun`` (its name and its text), or as a whole."""
+
+    SCOPE = Scope.SOLUTION
+    CSS_PATH = "window.tcss"
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.SOLUTION)]
+
+    def __init__(self, begun: tuple[str, str], solution: tuple[str, str], charset: Charset) -> None:
+        super().__init__()
+        self._begun = begun
+        self._solution = solution
+        self._charset = charset
+        self._whole = False
+
+    def compose(self) -> ComposeResult:
+        """Lay out the text."""
+        with Container(classes="window"):
+            with VerticalScroll():
+                yield Static(classes="text", markup=False)
+            yield KeyBar(Scope.SOLUTION, self._charset)
+
+    def on_mount(self) -> None:
+        """Begin with what differs."""
+        self._show()
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Offer the other view."""
+        match action:
+            case "show_whole":
+                return not self._whole
+            case "show_difference":
+                return self._whole
+        return True
+
+    def action_show_whole(self) -> None:
+        """Show the whole solution."""
+        self._whole = True
+        self._show()
+
+    def action_show_difference(self) -> None:
+        """Show what differs."""
+        self._whole = False
+        self._show()
+
+    def action_close(self) -> None:
+        """Go back."""
+        self.dismiss()
+
+    def _show(self) -> None:
+        name, text = self._solution
+        title = f"The solution: {name}" if self._whole else f"From {self._begun[0]} to the solution"
+        self.query_one(".window").border_title = Content(title)
+        shown = code_of(text, self._charset) if self._whole else difference(*self._begun, text, self._charset)
+        self.query_one(".text", Static).update(shown)
+        self.query_one(VerticalScroll).scroll_home(animate=False)
+        self.query_one(KeyBar).changed()
+
+
+class AskingScreen(SizedModal[bool]):
+    """Asks whether the solution is to be shown."""
+
+    SCOPE = Scope.ASKING
+    CSS_PATH = "window.tcss"
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.ASKING)]
+
+    def __init__(self, hints_left: int, charset: Charset) -> None:
+        super().__init__()
+        self._hints_left = hints_left
+        self._charset = charset
+
+    def compose(self) -> ComposeResult:
+        """Lay out the question."""
+        left = self._hints_left
+        there_are = f"{left} hint{'s'[: left - 1]} {'is' if left == 1 else 'are'} left." if left else ""
+        with Container(classes="window") as window:
+            window.border_title = "Look at the solution?"
+            yield Static(f"What you find yourself stays with you longer. {there_are}".rstrip(), markup=False)
+            yield KeyBar(Scope.ASKING, self._charset)
+
+    def action_take(self) -> None:
+        """Look."""
+        self.dismiss(True)
+
+    def action_close(self) -> None:
+        """Do not."""
+        self.dismiss(False)
+
+
+def code_of(source: str, charset: Charset) -> Content:
+    """Return Python source with its words coloured."""
+    lines = (
+        Content.assemble(*((visible(word.text, charset), _STYLES[word.kind]) for word in line))
+        for line in highlight(source)
+    )
+    return Content("\n").join(lines)
+
+
+def difference(name: str, begun: str, solution: str, charset: Charset) -> Content:
+    """Return how to get from a file to the solution: lines that go begin with ``-``, new ones with ``+``."""
+    lines = list(_changed(begun, solution, charset))
+    return Content("\n").join(lines) if lines else Content(f"{name} is the solution, word for word.")
+
+
+def _changed(begun: str, solution: str, charset: Charset) -> Iterator[Content]:
+    lines = unified_diff(begun.splitlines(), solution.splitlines(), lineterm="")
+    for line in list(lines)[2:]:
+        yield Content.styled(visible(line.expandtabs(4), charset), _CHANGED.get(line[0], "$text"))

@@ -1,0 +1,139 @@
+"""The checks on screen: one of them is picked, and leads to the moment that it speaks of."""
+
+from typing import ClassVar
+
+from rich.segment import Segment
+from rich.style import Style
+from textual.binding import BindingType
+from textual.events import Click
+from textual.geometry import Size
+from textual.message import Message
+from textual.reactive import var
+from textual.strip import Strip
+
+from cbtui.actions import Scope, bindings_of
+from cbtui.widgets.checks.sheet import Kind, Line, Sheet, Standing, lines_of
+from cbtui.widgets.inked import Inked
+from sim.trace.model import Nanoseconds
+
+_PICKED = "checks--picked"
+
+
+class ChecksView(Inked):
+    """Shows a sheet. The first check that fails is picked by itself when there are new ones."""
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = {*(kind.value for kind in Kind), _PICKED}
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.CHECKS)]
+    can_focus = True
+
+    note: var[str] = var("")
+    """What the pane says of itself in a few words."""
+    picked: var[int | None] = var(None)
+    """The place of the picked check."""
+
+    class MomentPicked(Message):
+        """The person wants to see the moment that a check speaks of: ``at`` nanoseconds into the run."""
+
+        def __init__(self, at: Nanoseconds) -> None:
+            super().__init__()
+            self.at = at
+
+    def __init__(self, sheet: Sheet, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
+        super().__init__(id=id)
+        self._sheet = sheet
+        self._lines: list[Line] = []
+
+    def show(self, sheet: Sheet) -> None:
+        """Show another sheet."""
+        if sheet == self._sheet:
+            return
+        before, self._sheet = self._sheet, sheet
+        self.note = sheet.note
+        self._break_lines()
+        if [row.standing for row in before.rows] != [row.standing for row in sheet.rows]:
+            self._pick_what_fails()
+        self.refresh()
+
+    def on_resize(self) -> None:
+        """Break the lines anew."""
+        self._break_lines()
+
+    def _break_lines(self) -> None:
+        width = self.scrollable_content_region.width
+        self._lines = lines_of(self._sheet, width)
+        self.virtual_size = Size(width, len(self._lines))
+
+    def _pick_what_fails(self) -> None:
+        failing = (place for place, row in enumerate(self._sheet.rows) if row.standing is Standing.FAILED)
+        self.picked = next(failing, None)
+        self.scroll_to(y=0, animate=False, immediate=True, force=True)
+        if self.picked is not None:
+            self._bring_into_view(self.picked)
+
+    # the keys
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Offer to go where there is something to go to."""
+        if action == "look_there":
+            return self._moment is not None
+        return super().check_action(action, parameters)
+
+    def action_check_above(self) -> None:
+        """Pick the check above; above the first, show what stands there."""
+        if not self.picked:
+            self.scroll_to(y=max(0, self.scroll_offset.y - 1), animate=False, force=True)
+        else:
+            self._pick(self.picked - 1)
+
+    def action_check_below(self) -> None:
+        """Pick the check below; below the last, show what stands there."""
+        below = 0 if self.picked is None else self.picked + 1
+        if below < len(self._sheet.rows):
+            self._pick(below)
+        else:
+            self.scroll_to(y=self.scroll_offset.y + 1, animate=False, force=True)
+
+    def action_look_there(self) -> None:
+        """Tell the moment of the picked check."""
+        if self._moment is not None:
+            self.post_message(self.MomentPicked(self._moment))
+
+    def on_click(self, event: Click) -> None:
+        """Pick the check under the pointer, and tell its moment."""
+        offset = event.get_content_offset(self)
+        y = -1 if offset is None else self.scroll_offset.y + offset.y
+        row = self._lines[y].row if 0 <= y < len(self._lines) else None
+        if row is not None:
+            self._pick(row)
+            self.action_look_there()
+
+    @property
+    def _moment(self) -> Nanoseconds | None:
+        return None if self.picked is None else self._sheet.rows[self.picked].at
+
+    def _pick(self, row: int) -> None:
+        self.picked = row
+        self._bring_into_view(row)
+        self.refresh()
+
+    def _bring_into_view(self, row: int) -> None:
+        """Scroll as little as shows all lines of a check; the news above the first one with it."""
+        places = [y for y, line in enumerate(self._lines) if line.row == row]
+        first, last = 0 if row == 0 else places[0], places[-1]
+        height = self.scrollable_content_region.height
+        top = min(first, max(self.scroll_offset.y, last - height + 1))
+        self.scroll_to(y=top, animate=False, immediate=True, force=True)
+
+    # drawing
+
+    def render_line(self, y: int) -> Strip:
+        """Return one line of the view."""
+        number = self.scroll_offset.y + y
+        width = self.scrollable_content_region.width
+        if number >= len(self._lines):
+            return Strip.blank(width, self.in_class(""))
+        line = self._lines[number]
+        picked = line.row is not None and line.row == self.picked
+        ground = Style(bgcolor=self.in_class(_PICKED).bgcolor) if picked else Style()
+        pieces = [Segment(text, self.in_class(kind.value) + ground) for text, kind in line.pieces]
+        return Strip(pieces).adjust_cell_length(width, self.in_class("") + ground)

@@ -1,0 +1,66 @@
+"""A Markdown text in one widget.
+
+Textual's own Markdown makes a widget of every paragraph and bullet. A page of a lesson has dozens of them,
+and every change of focus looks at the style of each again: that was most of what going to another pane took.
+"""
+
+from typing import ClassVar
+
+from rich.console import Console, ConsoleOptions, RenderResult
+from rich.markdown import Heading, Markdown, MarkdownElement
+from rich.theme import Theme
+from textual.reactive import reactive
+from textual.widget import Widget
+
+_LOOKS = ("h1", "h2", "code", "bullet")
+
+
+class Prose(Widget):
+    """Shows a Markdown text, ``text``; links are not opened. Its looks stand in the console's style sheet."""
+
+    COMPONENT_CLASSES: ClassVar[set[str]] = {f"prose--{look}" for look in _LOOKS}
+    DEFAULT_CSS = "Prose { height: auto; }"
+
+    text: reactive[str] = reactive("", layout=True)
+
+    def __init__(self, text: str, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
+        super().__init__(id=id)
+        self.set_reactive(Prose.text, text)
+
+    def render(self) -> "_Page":
+        """Return the text in the looks of the theme in force."""
+        h1, h2, code, bullet = (
+            self.get_component_rich_style(f"prose--{look}", partial=True) for look in _LOOKS
+        )
+        styles = {
+            "h1": h1,
+            "h2": h2,
+            "code": code,
+            "item.bullet": bullet,
+            "item.number": bullet,
+            "block_quote": bullet,
+        }
+        return _Page(self.text, Theme({f"markdown.{name}": style for name, style in styles.items()}))
+
+
+class _Page:
+    """A Markdown text with looks of its own."""
+
+    def __init__(self, text: str, theme: Theme) -> None:
+        self._markdown = _Markdown(text, hyperlinks=False)
+        self._theme = theme
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        with console.use_theme(self._theme):
+            yield from console.render(self._markdown, options)
+
+
+class _LeftHeading(Heading):
+    """A heading at the left, without a frame."""
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        yield self.text
+
+
+class _Markdown(Markdown):
+    elements: ClassVar[dict[str, type[MarkdownElement]]] = Markdown.elements | {"heading_open": _LeftHeading}

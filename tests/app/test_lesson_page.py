@@ -1,0 +1,92 @@
+"""What can be read on a lesson's page at each stage, for every lesson there is."""
+
+import msgspec
+import pytest
+
+from cbtui.lesson_page import Part, Signs, Standing, introduction, page_of, page_of_exercise, tally
+from cbtui.outcome import Outcome, run_in_words
+from cbtui.stage import Stage, stage_of
+from lessons.catalogue import find, lessons
+from lessons.lesson import Lesson
+from lessons.progress import LessonProgress
+
+SIGNS = Signs("P", "a", "h", "H", "e")
+EVERY = pytest.mark.parametrize("lesson", lessons(), ids=lambda lesson: lesson.id)
+
+
+def known(lesson: Lesson, answers: tuple[int, ...] = (), *, seen: bool = False) -> LessonProgress:
+    return LessonProgress(lesson=lesson.id, answers=answers, seen=seen)
+
+
+def rightly(lesson: Lesson) -> tuple[int, ...]:
+    return tuple(each.right for each in lesson.predictions)
+
+
+@EVERY
+def test_a_page_says_why_only_after_the_run(lesson: Lesson) -> None:
+    for answers in ((), rightly(lesson)[:1], rightly(lesson)):
+        page = page_of(lesson, Standing(known(lesson, answers)), SIGNS)
+        assert not page.keys() & {Part.SHOWN, Part.EXPLANATION, Part.EXERCISE, Part.HINTS, Part.NEXT}
+        text = "\n".join(page.values())
+        assert not any(prediction.because in text for prediction in lesson.predictions)
+        assert (Part.GUIDE in page) == (len(answers) == len(lesson.predictions))
+
+
+@EVERY
+def test_a_page_leaves_out_nothing_of_a_lesson_that_was_watched(lesson: Lesson) -> None:
+    outcome = Outcome(rightly(lesson))
+    page = page_of(lesson, Standing(known(lesson, rightly(lesson), seen=True), outcome), SIGNS)
+    text = "\n".join(page.values())
+    lines = f"{lesson.guide}\n{lesson.explanation}".splitlines()
+    told = {line.lstrip("# ") for line in text.splitlines()}
+    assert [line for line in lines if line and line.lstrip("# ") not in told] == []
+    assert all(prediction.because in text for prediction in lesson.predictions)
+    assert list(page) == [part for part in Part if part in page]
+
+
+@EVERY
+def test_what_is_read_before_the_question_has_no_section(lesson: Lesson) -> None:
+    assert introduction(lesson.guide).startswith("# ")
+    assert "\n## " not in introduction(lesson.guide)
+
+
+def test_answers_are_counted_that_came_true() -> None:
+    lesson = find("shared-group")
+    for answers, told in (((0, 1), "2 of 2"), ((0, 0), "1 of 2"), ((1,), "0 of 2")):
+        assert told in tally(lesson, Standing(known(lesson, answers, seen=True), Outcome((0, 1))))
+
+
+def test_an_exercise_has_its_task_first_and_no_explanation_that_was_not_seen() -> None:
+    lesson = find("split-groups")
+    assert lesson.exercise is not None
+    page = page_of_exercise(lesson, Standing(known(lesson)), SIGNS)
+    assert list(page) == [Part.EXERCISE, Part.HINTS]
+    assert lesson.exercise.asks.strip() in page[Part.EXERCISE]
+    seen = page_of_exercise(lesson, Standing(known(lesson, seen=True)), SIGNS)
+    assert Part.EXPLANATION in seen
+
+
+@pytest.mark.parametrize(
+    ("lesson", "words"),
+    [
+        ("shared-group", "a run of 30 s"),
+        ("how-many-threads", "a run of 30 s with 4 threads"),
+        (
+            "reentrant-2-threads",
+            "a run of 28 s with /dummy_server_srv called at 2.55, 10.55, 10.6 and 10.65 s",
+        ),
+        ("qos-never-matches", "a run of 20 s with `ros2 topic info -v /temperature` given at 10 s"),
+    ],
+)
+def test_a_page_says_which_run_decides(lesson: str, words: str) -> None:
+    assert run_in_words(find(lesson)) == words
+
+
+def test_a_lesson_without_an_exercise_is_done_when_it_was_watched() -> None:
+    plain, exercised = find("shared-group"), find("split-groups")
+    assert stage_of(plain, known(plain, seen=True), opened=True) is Stage.DONE
+    assert stage_of(exercised, known(exercised, seen=True), opened=True) is Stage.WATCHED
+    passed = msgspec.structs.replace(known(exercised), passed=True)
+    assert stage_of(exercised, passed, opened=False) is Stage.DONE
+    assert stage_of(plain, known(plain), opened=True) is Stage.OPENED
+    assert stage_of(plain, known(plain), opened=False) is Stage.UNTOUCHED

@@ -1,0 +1,293 @@
+"""``cbtui doctor``: one line for each thing, and for each fault what to do."""
+
+import os
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from cbtui import cli
+from cbtui.health import engines
+from cbtui.health.engines import engine
+from cbtui.health.extras import browser, editor, ros
+from cbtui.health.packages import bullet, dependencies, python
+from cbtui.health.places import configuration, folders, lessons_found, progress
+from cbtui.health.probes import Outcome, Probe
+from cbtui.health.requirements import Requirement, in_range, read_requirement, requirements
+from cbtui.health.screen import Screen, screen
+from cbtui.health.verdict import Sign, Verdict, fault, note, well
+
+
+@pytest.fixture(autouse=True)
+def nobodys_folders(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for kind in ("CONFIG", "STATE"):
+        monkeypatch.setenv(f"XDG_{kind}_HOME", str(tmp_path / kind.lower()))
+
+
+def _doctor(*arguments: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    command = [sys.executable, "-m", "cbtui", "doctor", *arguments]
+    return subprocess.run(
+        command, capture_output=True, text=True, timeout=60, check=False, env={**os.environ, **environment}
+    )
+
+
+def test_a_machine_that_has_everything_is_well_and_nothing_is_changed_on_it(tmp_path: Path) -> None:
+    done = _doctor(LC_ALL="C.UTF-8")
+    assert done.returncode == 0, done.stdout
+    assert done.stderr == ""
+    assert not [line for line in done.stdout.splitlines() if line.startswith("✗")]
+    subjects = [line[2:15].strip() for line in done.stdout.splitlines()]
+    assert {"Python", "packages", "PyBullet", "engine", "lessons", "terminal", "config"} < {*subjects}
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_where_pybullet_crashes_the_doctor_lives_and_ends_with_1(tmp_path: Path) -> None:
+    (tmp_path / "pybullet.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGSEGV)\n")
+    done = _doctor("--charset", "ascii", PYTHONPATH=str(tmp_path))
+    assert done.returncode == 1
+    [line] = [line for line in done.stdout.splitlines() if line.startswith("x")]
+    assert "PyBullet" in line
+    assert "crashed by SIGSEGV" in line
+    assert "pip install" in line
+    assert done.stdout.isascii()
+    assert done.stdout.endswith("1 thing cbtui needs is not well.\n")
+
+
+def test_the_exit_code_is_1_only_if_something_is_at_fault(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    verdicts = [well("a", "is"), note("b", "is less", "do this")]
+    monkeypatch.setattr("cbtui.health.examinations", lambda *_: iter(verdicts))
+    assert cli.main(["doctor"]) == 0
+    verdicts.append(fault("c", "is not", "do that"))
+    assert cli.main(["doctor"]) == 1
+    out = capsys.readouterr().out
+    assert "b            is less: do this" in out
+
+
+class _Ended(Probe):
+    """A probe that has ended with a certain outcome."""
+
+    def __init__(self, outcome: Outcome) -> None:
+        self._outcome = outcome
+
+    def outcome(self) -> Outcome:
+        return self._outcome
+
+
+def test_a_package_that_cannot_be_imported_is_named_with_why_and_so_is_one_that_crashes() -> None:
+    said = "begin yaml\nbad yaml: ImportError: no libyaml\nbegin numpy\n"
+    found = list(dependencies(_Ended(Outcome(said, "", -11, "it crashed by SIGSEGV"))))
+    assert [each.subject for each in found] == ["numpy", "pyyaml"]
+    assert all(each.sign is Sign.FAULT for each in found)
+    assert "it crashed by SIGSEGV" in found[0].what
+    assert "ImportError: no libyaml" in found[1].what
+
+
+def test_a_package_that_is_missing_or_too_old_is_told_with_the_command_that_mends_it(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    needed = (Requirement("rich", ">=99"), Requirement("no-such-thing", ">=1"))
+    monkeypatch.setattr("cbtui.health.packages.requirements", lambda: needed)
+    old, missing = dependencies(_Ended(Outcome("", "", 0, "")))
+    assert "cbtui needs >=99" in old.what
+    assert "is not installed" in missing.what
+    assert "-m pip install 'no-such-thing>=1'" in missing.remedy
+
+
+@pytest.mark.parametrize(
+    ("version", "versions", "fits"),
+    [
+        ("8.0.0", ">=8,<9", True),
+        ("9.0", ">=8,<9", False),
+        ("8", ">=8.0.0", True),
+        ("0.59.1", ">=0.59,<0.60", True),
+        ("0.60.0", ">=0.59,<0.60", False),
+        ("1.10", ">=1.9", True),
+        ("2.0rc1", ">=2", True),
+        ("1.2", "!=1.2", False),
+        ("1.2", "", True),
+    ],
+)
+def test_a_version_fits_by_its_numbers(version: str, versions: str, fits: bool) -> None:
+    assert in_range(version, versions) is fits
+
+
+def test_requirements_for_other_pythons_and_for_extras_do_not_count() -> None:
+    line = "backports.zstd<2,>=1; python_version < '3.14'"
+    assert read_requirement(line, (3, 11)) == Requirement("backports.zstd", "<2,>=1")
+    assert read_requirement(line, (3, 14)) is None
+    assert read_requirement("ruff>=0.8; extra == 'test'", (3, 11)) is None
+
+
+def test_what_cbtui_says_that_it_needs_is_looked_at() -> None:
+    assert {"textual", "pybullet", "numpy"} < {each.name for each in requirements()}
+
+
+def test_newer_pythons_are_told_that_pybullet_has_to_be_built() -> None:
+    gone = _Ended(Outcome("", "No module named 'pybullet'\n", 1, ""))
+    assert "C++ compiler" in bullet(gone, (3, 13)).remedy
+    assert "C++ compiler" not in bullet(gone, (3, 11)).remedy
+    assert "No module named 'pybullet'" in bullet(gone, (3, 11)).what
+
+
+def test_an_old_python_is_at_fault() -> None:
+    assert python((3, 10, 4)).sign is Sign.FAULT
+    assert python((3, 13, 0)).sign is Sign.WELL
+
+
+def test_an_engine_that_cannot_be_started_is_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Broken:
+        def __init__(self, *_: object) -> None: ...
+
+        def start(self) -> None:
+            raise FileNotFoundError(2, "No usable temporary directory")
+
+    monkeypatch.setattr(engines, "Session", Broken)
+    assert engine().sign is Sign.FAULT
+    assert "No usable temporary directory" in engine().what
+
+
+def test_an_engine_that_is_lost_is_a_fault_with_what_became_of_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    class Lost:
+        def __init__(self, _setup: object, _deliver: object, ended: object) -> None:
+            self._ended = ended
+
+        def start(self) -> None:
+            assert callable(self._ended)
+            self._ended("the engine was killed by signal 9")
+
+        def stop(self) -> None: ...
+
+    monkeypatch.setattr(engines, "Session", Lost)
+    assert engine().what == "does not run (the engine was killed by signal 9)"
+
+
+def _of(verdicts: Iterator[Verdict], subject: str) -> Verdict:
+    return next(each for each in verdicts if each.subject == subject)
+
+
+_BIG = os.terminal_size((120, 40))
+
+
+@pytest.mark.parametrize(
+    ("environment", "subject", "sign", "said"),
+    [
+        ({"TERM": "dumb"}, "terminal", Sign.FAULT, "cannot place its cursor"),
+        ({}, "terminal", Sign.NOTE, "TERM is not set"),
+        ({"TERM": "xterm"}, "terminal", Sign.WELL, "xterm, 120 columns and 40 rows"),
+        ({"TERM": "xterm"}, "colours", Sign.NOTE, "16"),
+        ({"TERM": "xterm-256color"}, "colours", Sign.WELL, "256"),
+        ({"TERM": "xterm", "COLORTERM": "truecolor"}, "colours", Sign.WELL, "16 million"),
+        ({"TERM": "xterm", "NO_COLOR": "1"}, "colours", Sign.WELL, "none, as NO_COLOR asks"),
+        ({"TMUX": "/tmp/x", "SSH_TTY": "/dev/pts/1"}, "between", Sign.WELL, "ssh and tmux"),
+        ({"TMUX": "/tmp/x"}, "clipboard", Sign.NOTE, "tmux keeps what is copied"),
+        ({}, "clipboard", Sign.WELL, "OSC 52"),
+    ],
+)
+def test_the_terminal_is_known_by_its_environment(
+    environment: dict[str, str], subject: str, sign: Sign, said: str
+) -> None:
+    found = _of(screen(Screen(environment, "braille", _BIG)), subject)
+    assert found.sign is sign
+    assert said in found.what
+
+
+def test_a_terminal_that_is_too_small_or_none_is_noted() -> None:
+    small = Screen({"TERM": "xterm"}, "ascii", os.terminal_size((60, 20)))
+    assert "80 columns and 24 rows" in _of(screen(small), "terminal").remedy
+    assert "no terminal" in _of(screen(small._replace(size=None)), "terminal").what
+    assert _of(screen(small), "signs").sign is Sign.NOTE
+    assert "⣿" in _of(screen(small._replace(charset="braille")), "signs").what
+
+
+def test_a_folder_that_cannot_be_written_to_is_noted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    in_the_way = tmp_path / "file"
+    in_the_way.write_text("")
+    monkeypatch.setenv("XDG_STATE_HOME", str(in_the_way))
+    assert _of(folders(lambda: tmp_path), "state folder").sign is Sign.NOTE
+    assert _of(folders(lambda: in_the_way), "this folder").sign is Sign.NOTE
+    assert _of(folders(lambda: tmp_path), "this folder").sign is Sign.WELL
+
+    def nowhere() -> Path:
+        raise FileNotFoundError(2, "No such file")
+
+    assert "not there any more" in _of(folders(nowhere), "this folder").what
+
+
+def test_no_folder_for_temporary_files_is_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:
+    def refuse() -> str:
+        raise FileNotFoundError(2, "No usable temporary directory")
+
+    monkeypatch.setattr("cbtui.health.places.tempfile.gettempdir", refuse)
+    assert _of(folders(Path.cwd), "temp folder").sign is Sign.FAULT
+
+
+def test_what_is_wrong_in_the_configuration_is_told_with_its_line(tmp_path: Path) -> None:
+    assert [each.sign for each in configuration(None)] == [Sign.WELL]
+    mine = tmp_path / "config" / "cbtui" / "config.toml"
+    mine.parent.mkdir(parents=True)
+    mine.write_text('[display]\ntheme = "drak"\n[keys]\nnonsense = "x"\n')
+    first, second = configuration(None)
+    assert "config.toml:2: there is no theme 'drak'; did you mean 'dark'?" in first.what
+    assert "config.toml:4: there is no action nonsense" in second.what
+    assert [each.sign for each in configuration(tmp_path / "none.toml")] == [Sign.NOTE]
+
+
+def test_a_broken_file_of_progress_is_told_and_left_as_it_is(tmp_path: Path) -> None:
+    assert progress().what == "none yet"
+    mine = tmp_path / "state" / "cbtui" / "progress.jsonl"
+    mine.parent.mkdir(parents=True)
+    mine.write_text('{"lesson":"single-thread"}\nnonsense\n')
+    assert "progress.jsonl:2 is no progress" in progress().what
+    assert [path.name for path in mine.parent.iterdir()] == ["progress.jsonl"]
+
+
+def test_a_lesson_of_somebody_elses_that_is_at_fault_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    [found] = lessons_found()
+    assert found.sign is Sign.WELL
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine" / "lesson.toml").write_text("id = 3\n")
+    monkeypatch.setenv("CBTUI_LESSONS", str(tmp_path))
+    [found] = lessons_found()
+    assert found.sign is Sign.FAULT
+    assert str(tmp_path / "mine" / "lesson.toml") in found.what
+    assert "CBTUI_LESSONS" in found.remedy
+    assert engine().what == "was not tried"
+
+
+@pytest.mark.parametrize(
+    ("environment", "said"),
+    [
+        ({}, "none is named"),
+        ({"EDITOR": "no-such-editor -w"}, "no-such-editor is not there"),
+        ({"EDITOR": "'vi"}, "the quotes of 'vi do not match"),
+        ({"VISUAL": "sh -c", "EDITOR": "nothing"}, "sh -c"),
+    ],
+)
+def test_an_editor_has_to_be_named_and_there(environment: dict[str, str], said: str) -> None:
+    assert said in editor({**environment, "PATH": os.environ["PATH"]}).what
+
+
+def test_a_port_that_is_taken_is_noted() -> None:
+    import socket
+
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+        assert browser(other.getsockname()[1]).sign is Sign.NOTE
+
+
+def test_a_real_rclpy_on_the_path_is_noted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert [each.sign for each in ros({})] == [Sign.WELL]
+    assert "jazzy" in next(ros({"ROS_DISTRO": "jazzy"})).what
+    (tmp_path / "rclpy").mkdir()
+    (tmp_path / "rclpy" / "__init__.py").write_text("raise RuntimeError('this is the real one')\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    [found] = ros({"ROS_DISTRO": "jazzy"})
+    assert found.sign is Sign.NOTE
+    assert str(tmp_path / "rclpy") in found.what

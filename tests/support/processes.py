@@ -1,0 +1,21 @@
+"""Processes that others started, looked up in Linux's ``/proc``."""
+
+from pathlib import Path
+
+
+def descendants(process: int) -> list[int]:
+    """Return the numbers of all processes that a process started, and that those started."""
+    found = [process]
+    for each in found:
+        for task in Path(f"/proc/{each}/task").glob("*/children"):
+            found += map(int, task.read_text().split())
+    return found[1:]
+
+
+def alive(process: int) -> bool:
+    """Tell whether a process still does something."""
+    try:
+        state = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
+    except (FileNotFoundError, ProcessLookupError):
+        return False
+    return state not in "ZX"

@@ -1,0 +1,62 @@
+"""The console in a real terminal: a lesson from the menu and out again, and nothing is left of it."""
+
+import sys
+import time
+from pathlib import Path
+from signal import SIGTERM
+
+import pytest
+
+from tests.support.processes import alive
+from tests.terminal.console import opened
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc")
+
+_LOG = "5"
+_SPLIT_GROUPS = "3"
+_ESCAPE = "\x1b"
+"""Out of the question what one expects, without an answer."""
+
+
+@pytest.mark.parametrize(("columns", "rows"), [(80, 24), (140, 40)], ids=["80x24", "140x40"])
+def test_a_lesson_is_chosen_called_paused_scrubbed_and_left_and_nothing_stays(
+    columns: int, rows: int, tmp_path: Path
+) -> None:
+    with opened(columns, rows, tmp_path) as console:
+        console.until("Split groups")
+        console.press(_SPLIT_GROUPS)
+        console.until("What do you expect?")
+        console.press(_ESCAPE)
+        console.until("LIVE")
+        console.press(_LOG)
+        console.press("s")
+        console.until("/motor_power replied")
+        theirs = console.started()
+        assert theirs
+        console.press(" ")
+        console.until("PAUSED")
+        console.press("[")
+        console.until("BACK")
+        console.press("0")
+        console.press(" ")
+        console.until("LIVE")
+        console.press("q")
+        console.until("Unit 5")
+        console.press("q")
+        assert console.ended() == 0, console.said()
+        assert console.left_on() == set()
+        gone_by = time.monotonic() + 5
+        while any(map(alive, theirs)):
+            assert time.monotonic() < gone_by, "an engine is left"
+
+
+def test_a_terminal_is_as_it_was_when_the_console_is_ended_from_outside(tmp_path: Path) -> None:
+    with opened(80, 24, tmp_path) as console:
+        console.until("Split groups")
+        console.press(_SPLIT_GROUPS)
+        console.until("What do you expect?")
+        console.press(_ESCAPE)
+        console.until("LIVE")
+        console.process.terminate()
+        assert console.ended() == 128 + SIGTERM
+        assert console.left_on() == set()

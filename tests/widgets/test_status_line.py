@@ -1,0 +1,64 @@
+"""The line at the top as plain text, and what gives way where it has no room."""
+
+from dataclasses import replace
+
+import pytest
+
+from cbtui.live_run import State
+from cbtui.widgets.status_line import Status, status_row
+from tests.support.builder import ns
+
+LIVE = Status(
+    title="2/6 One shared group",
+    state=State.LIVE,
+    pace="virtual ×1.0",
+    at=ns(12.48),
+    back=0,
+    executor="SingleThreadedExecutor",
+    dropped=412,
+    lost=0,
+)
+
+
+def line(status: Status, width: int) -> str:
+    return "".join(run.text for run in status_row(status, width))
+
+
+@pytest.mark.parametrize(
+    ("status", "width", "golden"),
+    [
+        (
+            LIVE,
+            120,
+            "| 2/6 One shared group                          ● LIVE  virtual ×1.0   t 12.480 s   "
+            "SingleThreadedExecutor   dropped 412 |",
+        ),
+        (LIVE, 80, "| 2/6 One shared group           ● LIVE  virtual ×1.0   t 12.480 s   dropped 412 |"),
+        (
+            replace(LIVE, exported=35),
+            100,
+            "| 2/6 One shared group                 ● LIVE  virtual ×1.0   t 12.480 s   EXPORT 35 %   "
+            "dropped 412 |",
+        ),
+        (
+            replace(LIVE, recorded=41_204, unrecorded=7),
+            110,
+            "| 2/6 One shared group                    ● LIVE  virtual ×1.0   t 12.480 s   "
+            "REC 41,204, lost 7   "
+            "dropped 412 |",
+        ),
+        (
+            replace(LIVE, back=ns(3.2), dropped=0),
+            80,
+            "| 2/6 One shared group       ◂ BACK 3.2 s  virtual ×1.0   t 12.480 s   dropped 0 |",
+        ),
+        (replace(LIVE, lost=9), 48, "|● LIVE   t 12.480 s   dropped 412   trace lost 9 |"),
+    ],
+)
+def test_the_line_is(status: Status, width: int, golden: str) -> None:
+    assert line(status, width) == golden[1:-1]
+
+
+@pytest.mark.parametrize("width", range(40, 140, 7))
+def test_the_line_is_as_wide_as_it_is_asked_to_be(width: int) -> None:
+    assert len(line(LIVE, width)) == width
