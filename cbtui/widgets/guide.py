@@ -47,8 +47,8 @@ class Guide(VerticalScroll):
     def go_to(self, name: str) -> None:
         """Bring the beginning of a part to the top, if it is there and there is enough below it."""
         if name in self._parts:
-            part = self.query_one(f"#part-{name}")
-            self.call_after_refresh(self.scroll_to_widget, part, animate=False, top=True)
+            self._reading = (self.query_one(f"#part-{name}", Prose), 0)
+            self.call_after_refresh(self._keep_in_sight)
 
     def _read_now(self, parts: Mapping[str, str]) -> tuple[Prose, int] | None:
         """Return which of the parts that stay is at the top, and how many of its rows are above it."""
@@ -58,7 +58,7 @@ class Guide(VerticalScroll):
         return None if top == 0 or part is None else (part, max(0, top - part.virtual_region.y))
 
     def _keep_in_sight(self) -> None:
-        """Let a text that is being read stay where it is, whatever came and went above it."""
+        """Let a text that is or was to be read be where it was, whatever came and went above it."""
         if self._reading is not None:
             part, above = self._reading
             self._reading = None

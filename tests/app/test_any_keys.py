@@ -1,6 +1,6 @@
 """Whatever is pressed, clicked and resized, in whatever order: nothing breaks, and ``q`` leaves.
 
-``CBTUI_KEY_RUNS`` says how many sequences of up to 60 steps are tried, 8 if it says nothing;
+``CBTUI_KEY_RUNS`` says how many sequences of up to 60 steps are tried, 5 if it says nothing;
 ``python -m tests.soak.keys`` goes on for longer, over every screen and with engines.
 """
 
@@ -31,7 +31,7 @@ steps = st.lists(
 @pytest.mark.usefixtures("in_empty_folder")
 @given(lesson=st.sampled_from(sorted(RUNS)), sequence=steps, lost=st.booleans())
 @settings(
-    max_examples=int(os.environ.get("CBTUI_KEY_RUNS", "8")),
+    max_examples=int(os.environ.get("CBTUI_KEY_RUNS", "5")),
     deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )

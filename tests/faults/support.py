@@ -159,10 +159,10 @@ def still_here(live: LiveRun) -> bool:
 
 
 @contextmanager
-def nothing_left(within: float = 0.0) -> Iterator[None]:
+def nothing_left(within: float = 2.0) -> Iterator[None]:
     """Check that every process started inside has ended, in whatever group or session it is.
 
-    ``within`` so many seconds: where nobody is left who could have waited for them.
+    ``within`` so many seconds: whoever watches over an engine ends by itself a moment after it.
     """
     mark = f"CBTUI_FAULT={uuid4().hex}"
     name, _, value = mark.partition("=")

@@ -15,7 +15,7 @@ from tests.ros.systems import System, play, systems
 
 pytestmark = pytest.mark.filterwarnings("ignore:MultiThreadedExecutor is used with a single thread")
 
-each_schedule = settings(deadline=None, max_examples=60, suppress_health_check=[HealthCheck.too_slow])
+each_schedule = settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow])
 SEEDS = st.integers(1, 2**32 - 1)
 ENOUGH = range(1, 400)
 """Schedules within which a fault is found that no run in the usual order shows."""
