@@ -204,7 +204,7 @@ def _busy_threads(moment: Moment, timeline: Timeline) -> str:
         return "no thread is free"
     if len(running) == 1:
         return f"the only thread runs {running[0]}"
-    names = sorted(set(running), key=running.count, reverse=True)
+    names = sorted(dict.fromkeys(running), key=running.count, reverse=True)
     return f"all {len(running)} threads are busy with {' and '.join(names[:2])}"
 
 
