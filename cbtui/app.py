@@ -18,6 +18,7 @@ from cbtui.actions import Scope, bindings_of
 from cbtui.ascii_filter import AsciiFilter
 from cbtui.colour_themes import STANDARD, THEMES
 from cbtui.commands.output import shown
+from cbtui.garbage import survivors_set_aside
 from cbtui.harmless_filter import HarmlessFilter
 from cbtui.interrupts import ENDING
 from cbtui.keymap import Keymap
@@ -64,12 +65,11 @@ class CbtuiApp(App[None]):
     """The console.
 
     ``start_lesson`` is the id of a lesson to open at once, ``start_exercise`` of one whose exercise to open,
-    ``start_file`` a program file, its arguments and
-    its clock, ``start_changes`` what is changed about either, ``start_recording`` a recording to show,
-    ``start_comparison`` two runs to compare;
-    ``theme`` is the name of a colour theme, ``keys`` the keys in force, and ``complaints`` are sentences to
-    begin with; ``open_session`` starts engines in place of the real ones, ``observe`` runs one to its end
-    beside the screen.
+    ``start_file`` a program file, its arguments and its clock, ``start_changes`` what is changed about
+    either, ``start_recording`` a recording to show, ``start_comparison`` two runs to compare. ``theme`` is
+    the name of a colour theme, ``keys`` the keys in force, and ``complaints`` are sentences to begin with.
+    ``open_session`` starts engines in place of the real ones, ``observe`` runs one to its end beside the
+    screen.
     """
 
     TITLE = "cbtui"
@@ -137,7 +137,8 @@ class CbtuiApp(App[None]):
         with suppress(NotImplementedError):  # Windows has no such signals
             for number in ENDING:
                 asyncio.get_running_loop().add_signal_handler(number, self.exit, None, 128 + number)
-        return await super().run_async(*args, **options)
+        with survivors_set_aside():
+            return await super().run_async(*args, **options)
 
     def get_driver_class(self) -> "type[Driver]":
         """Return what keys are read from and all is drawn to."""

@@ -5,13 +5,14 @@ from itertools import takewhile
 
 from rich.cells import cell_len
 from rich.segment import Segment
+from rich.style import Style
 from textual.geometry import Region, Size
 from textual.strip import Strip
 from textual.widget import Widget
 
 from cbtui.colour_themes import palette_of
-from cbtui.palettes import Palette
-from cbtui.theme import Run, style_of
+from cbtui.theme import Ink, Run, style_of
+from cbtui.widgets.cells import BLANK
 
 
 class Painted(Widget):
@@ -25,8 +26,12 @@ class Painted(Widget):
     _rows: Sequence[Sequence[Run]] = ()
     _rows_size: Size | None = None
     _stale = False
-    _look: tuple[Palette, str] | None = None
-    """The theme's palette, and the colour behind the text, as long as the styles do not change."""
+    _sides: tuple[list[Segment], list[Segment]] | None = None
+    """The frame and the room left and right of the painted lines, as long as the styles do not change."""
+
+    def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
+        super().__init__(id=id)
+        self._styles: dict[Ink, Style] = {}
 
     def rows(self, size: Size) -> Sequence[Sequence[Run]]:
         """Paint: return at most ``size.height`` rows, each ``size.width`` columns wide."""
@@ -38,23 +43,58 @@ class Painted(Widget):
             self._stale = True
             self.call_next(self._paint)
 
+    def render_lines(self, crop: Region) -> list[Strip]:
+        """Return lines of the widget, its frame included.
+
+        Textual's own way to them cares for what no painted widget has, such as tinted lines, and takes longer
+        than the painting.
+        """
+        top, rows, width = self.gutter.top, self.size.height, self.outer_size.width
+        background, filters = self.background_colors[1], self.get_line_filters()
+        lines: list[Strip] = []
+        for y in crop.line_range:
+            if top <= y < top + rows:
+                left, right = self._sides_of(y)
+                segments = self.segments(y - top)
+                for each in filters:
+                    segments = each.apply(segments, background)
+                lines.append(Strip([*left, *segments, *right], width))
+            else:
+                lines += super().render_lines(Region(0, y, width, 1))
+        return [line.crop(crop.x, crop.right) for line in lines]
+
     def render_line(self, y: int) -> Strip:
         """Return one painted line."""
+        return Strip(self.segments(y), self.size.width)
+
+    def segments(self, y: int) -> list[Segment]:
+        """Return one painted line, as wide as the rows are."""
         size = self.size
         if self._rows_size != size:
             self._rows, self._rows_size = self.rows(size), size
         if y >= len(self._rows):
-            return Strip.blank(size.width, self.rich_style)
-        if self._look is None:
-            background = self.background_colors[1].rgb
-            self._look = palette_of(self.app.current_theme), "#{:02x}{:02x}{:02x}".format(*background)
-        segments = [Segment(run.text, style_of(run.ink, *self._look)) for run in self._rows[y]]
-        return Strip(segments, size.width)
+            return [Segment(" " * size.width, self._style(BLANK))]
+        return [Segment(run.text, self._style(run.ink)) for run in self._rows[y]]
 
     def notify_style_update(self) -> None:
-        """Forget the look of the theme before."""
+        """Forget the look of the theme and of the frame before."""
         super().notify_style_update()
-        self._look = None
+        self._styles.clear()
+        self._sides = None
+
+    def _style(self, ink: Ink) -> Style:
+        if ink not in self._styles:
+            ground = "#{:02x}{:02x}{:02x}".format(*self.background_colors[1].rgb)
+            self._styles[ink] = style_of(ink, palette_of(self.app.current_theme), ground)
+        return self._styles[ink]
+
+    def _sides_of(self, y: int) -> tuple[list[Segment], list[Segment]]:
+        """What is left and right of the painted lines, of which ``y`` is one of the whole widget."""
+        if self._sides is None:
+            line = super().render_lines(Region(0, y, self.outer_size.width, 1))[0]
+            left = self.gutter.left
+            self._sides = list(line.crop(0, left)), list(line.crop(left + self.size.width))
+        return self._sides
 
     def _paint(self) -> None:
         self._stale = False

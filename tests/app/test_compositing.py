@@ -1,13 +1,12 @@
 """Partial pictures are the same as whole ones, and only widgets with something new are asked to draw."""
 
 import pytest
-from textual._compositor import ChopsUpdate
+from textual._compositor import LayoutUpdate
 from textual.app import App
-from textual.screen import Screen
 from textual.strip import Strip
 from textual.widget import Widget
 
-from cbtui.compositing import SparingCompositor
+from cbtui.compositing import Parts, SparingCompositor
 from cbtui.widgets.guide import Guide
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
@@ -16,51 +15,61 @@ from tests.support.runs import shared_group_run
 EVENTS = shared_group_run().events
 
 
-def wrong_parts(screen: Screen[None], update: ChopsUpdate) -> list[tuple[int, int, int]]:
-    """The stretches of lines in which an update differs from the whole picture."""
-    whole = screen._compositor.render_strips()
-    wrong = []
-    for y, left, right in update.spans:
-        for end, (start, strip) in zip(update.chop_ends[y], update.chops[y].items(), strict=True):
-            inside = start < right and end > left
-            if inside and (strip is None or plain(strip) != plain(whole[y].crop(start, end))):
-                wrong.append((y, start, end))
-    return wrong
+Cell = tuple[str, object]
 
 
-def plain(strip: Strip) -> list[tuple[str, object]]:
+class Terminal:
+    """What a terminal shows to which every update was sent: a character and its style for each cell."""
+
+    def __init__(self) -> None:
+        self.lines: list[list[Cell]] = []
+        self.parts = 0
+
+    def take(self, update: object) -> None:
+        """Draw an update over what there was."""
+        if isinstance(update, LayoutUpdate):
+            assert update.region.offset == (0, 0)
+            self.lines = [[cell for strip in line for cell in cells(strip)] for line in update.strips]
+        elif isinstance(update, Parts):
+            self.parts += 1
+            for x, y, strip in update.parts:
+                drawn = cells(strip)
+                self.lines[y][x : x + len(drawn)] = drawn
+
+
+def cells(strip: Strip) -> list[Cell]:
     return [(character, segment.style) for segment in strip for character in segment.text]
 
 
 @pytest.mark.parametrize("size", [NARROW, WIDE])
-async def test_partial_pictures_are_parts_of_the_whole(
+async def test_the_parts_that_are_sent_make_the_whole_picture(
     size: tuple[int, int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    updates = 0
-    wrong: list[tuple[int, int, int]] = []
-
-    def display(app: App[None], screen: Screen[None], update: object) -> None:
-        nonlocal updates
-        if isinstance(update, ChopsUpdate):
-            updates += 1
-            wrong.extend(wrong_parts(screen, update))
-
+    terminal = Terminal()
     app = RecordedConsole("shared-group", EVENTS, 2.0)
     async with app.run_test(size=size) as pilot:
         await settle(pilot)
         assert isinstance(app.screen._compositor, SparingCompositor)
-        monkeypatch.setattr(App, "_display", display)
+        monkeypatch.setattr(App, "_display", lambda app, screen, update: terminal.take(update))
+        app.screen.refresh(layout=True)
+        await settle(pilot)
+
+        def wrong() -> list[int]:
+            whole = map(cells, app.screen._compositor.render_strips())
+            return [y for y, pair in enumerate(zip(terminal.lines, whole, strict=True)) if pair[0] != pair[1]]
+
         for tenth in range(21, 61, 3):
             app.engines.latest.play(ns(tenth / 10))
             await settle(pilot)
+            assert wrong() == []
         app.notify("something that lies over the panes")
         await settle(pilot)
         for key in ("enter", "down", "left_square_bracket", "left", "4", "2", "0"):
             await pilot.press(key)
             app.engines.latest.play(ns(7))
             await settle(pilot)
-    assert updates > 4
-    assert wrong == []
+            assert wrong() == [], key
+    assert terminal.parts > 4
 
 
 async def test_a_pane_without_news_is_not_asked_to_draw(monkeypatch: pytest.MonkeyPatch) -> None:

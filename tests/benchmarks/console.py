@@ -1,19 +1,16 @@
 """A console in a terminal of its own: keys go in, what it draws comes out, what it takes is told."""
 
-import fcntl
 import os
-import pty
 import re
-import struct
 import subprocess
-import sys
-import termios
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from select import select
 from tempfile import TemporaryDirectory
+
+from tests.support.pseudo_terminal import start_in_terminal
 
 COLUMNS, ROWS = 140, 40
 QUESTION = rb"without predicting"
@@ -22,7 +19,6 @@ SKIPS = "\x1b"
 """The key for that."""
 RUNS = rb"\bt (?!0\.000)\d+\.\d{3} s"
 """A time after 0 in the status line: the first callbacks have been told of."""
-_TERMINAL = {"TERM": "xterm-256color", "COLORTERM": "truecolor", "LC_ALL": "C.UTF-8"}
 _PATIENCE = 60.0
 """Seconds after which what never comes is given up."""
 _AT_ONCE = 1 << 16
@@ -32,11 +28,11 @@ _CODES = re.compile(rb"\x1b\[[0-9;?]*[a-zA-Z]")
 
 
 class Console:
-    """A running console. Not thread-safe."""
+    """A running console, by the number of its ``process``. Not thread-safe."""
 
     def __init__(self, screen: int, process: int) -> None:
         self._screen = screen
-        self._process = process
+        self.process = process
         self._last = b""
 
     def press(self, keys: str) -> None:
@@ -55,7 +51,7 @@ class Console:
         drawn = b""
         while time.perf_counter() < began + _PATIENCE:
             drawn = drawn[-_TAIL:] + self._read(1.0)
-            if wanted.search(_CODES.sub(b"", drawn)):
+            if wanted.search(_CODES.sub(b" ", drawn)):
                 return time.perf_counter() - began
         raise TimeoutError(f"the console has not drawn {pattern.decode()} in {_PATIENCE:g} s")
 
@@ -87,7 +83,7 @@ class Console:
         return (int(behind_the_name[11]) + int(behind_the_name[12])) / os.sysconf("SC_CLK_TCK")
 
     def _told(self, file: str) -> str:
-        return Path(f"/proc/{self._process}/{file}").read_text(encoding="utf-8")
+        return Path(f"/proc/{self.process}/{file}").read_text(encoding="utf-8")
 
     def _read(self, seconds: float) -> bytes:
         ready, _, _ = select([self._screen], [], [], seconds)
@@ -102,12 +98,8 @@ class Console:
 @contextmanager
 def opened(*arguments: str) -> Iterator[Console]:
     """A console that is started with these arguments, as on a machine where nobody has used it yet."""
-    ours, theirs = pty.openpty()
-    fcntl.ioctl(theirs, termios.TIOCSWINSZ, struct.pack("HHHH", ROWS, COLUMNS, 0, 0))
     with TemporaryDirectory() as home:
-        environment = os.environ | _TERMINAL | {"HOME": home, "XDG_CONFIG_HOME": home, "XDG_DATA_HOME": home}
-        command = [sys.executable, "-m", "cbtui", *arguments]
-        process = subprocess.Popen(command, stdin=theirs, stdout=theirs, stderr=theirs, env=environment)
+        process, ours, theirs = start_in_terminal(("-m", "cbtui", *arguments), COLUMNS, ROWS, Path(home))
         os.close(theirs)
         console = Console(ours, process.pid)
         try:
@@ -138,4 +130,7 @@ def _drain(screen: int, process: "subprocess.Popen[bytes]") -> None:
                 os.read(screen, _AT_ONCE)
         except OSError:
             break
+    if process.poll() is None and time.monotonic() > end:
+        process.kill()
+        raise TimeoutError(f"the console has not ended in {_PATIENCE:g} s")
     process.wait()

@@ -12,6 +12,7 @@ from cbtui.changes import Changes
 from cbtui.compositing import SparingCompositor
 from cbtui.contenders import Side
 from cbtui.findings import Watch
+from cbtui.garbage import collect_now, look_at_all_again
 from cbtui.keymap import keymap_of
 from cbtui.live_recording import Finish
 from cbtui.live_run import Deliver, Ended, LiveRun, OpenSession
@@ -114,9 +115,14 @@ class RunningScreen(SizedScreen[None]):
         """Show it before the next frame is due, if that can be."""
         raise NotImplementedError
 
+    def on_mount(self) -> None:
+        """Have old garbage gone before the first key: collecting it takes longer than drawing."""
+        self.call_after_refresh(collect_now)
+
     async def on_unmount(self) -> None:
         """End the engine and every recording, whatever way the screen is left."""
         self._left = True
+        look_at_all_again()
         saved = await asyncio.to_thread(self._run.stop)
         if saved is not None:
             cast("CbtuiApp", self.app).tell_saved(saved)

@@ -87,6 +87,7 @@ class CodeView(Inked):
         self._long: set[tuple[Path, int]] = set()
         self._placed = False
         self._changed = False
+        self._drawn: dict[int, Strip] = {}
         self._open(self._file)
 
     def show(self, timeline: Timeline, now: Nanoseconds) -> None:
@@ -140,6 +141,7 @@ class CodeView(Inked):
             self.scroll_to(y=0, animate=False, immediate=True, force=True)
         if file is not self._file:
             self._file = file
+            self._drawn = {}
             self._changed = False
             self.picked = None
         self.virtual_size = Size(_GUTTER + file.widest, len(file.lines))
@@ -218,6 +220,11 @@ class CodeView(Inked):
 
     # drawing
 
+    def notify_style_update(self) -> None:
+        """Draw the lines for the new theme."""
+        super().notify_style_update()
+        self._drawn = {}
+
     def render_line(self, y: int) -> Strip:
         """Return one line of the view."""
         number = self.scroll_offset.y + y
@@ -225,7 +232,7 @@ class CodeView(Inked):
         if number >= len(self._file.lines):
             return Strip.blank(width, self.in_class(""))
         marked = self._marked_at(number + 1)
-        code = Strip([self._segment(word) for word in self._file.lines[number]])
+        code = self._code(number)
         left = self.scroll_offset.x
         line = Strip([*self._gutter(number + 1, marked), *code.crop(left, left + width - _GUTTER)])
         if marked is None or marked.first_line != number + 1 or marked.doing is Doing.IDLE:
@@ -299,6 +306,12 @@ class CodeView(Inked):
         text = fit(text, min(len(text), max(0, width - _LEAST_CODE)), Charset.BRAILLE)
         mark = Segment(text, self.in_ink(Ink(_INKS[marked.doing], marked.number)))
         return Strip([*line.adjust_cell_length(width - len(text), self.in_class("")), mark], width)
+
+    def _code(self, number: int) -> Strip:
+        """A line of the file, counted from 0, as it is wherever the view stands."""
+        if number not in self._drawn:
+            self._drawn[number] = Strip([self._segment(word) for word in self._file.lines[number]])
+        return self._drawn[number]
 
     def _segment(self, word: Word) -> Segment:
         style = self.in_class(word.kind.value)

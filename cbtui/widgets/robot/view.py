@@ -4,6 +4,7 @@ import asyncio
 from collections.abc import Callable, Sequence
 from typing import Protocol
 
+from rich.segment import Segment
 from textual import on
 from textual.geometry import Region, Size
 from textual.message import Message
@@ -87,14 +88,14 @@ class RobotView(Painted):
         self._painting = painter.paint(self.timeline, self.now, size.width, size.height, self.look, note)
         return self._painting.rows
 
-    def render_line(self, y: int) -> Strip:
+    def segments(self, y: int) -> list[Segment]:
         """Return one painted line, and the picture's over it."""
-        strip = super().render_line(y)
+        painted = super().segments(y)
         place = self._painting.camera
         if place is None or not place.y <= y < place.bottom or not self._fits():
-            return strip
-        picture = self._film[y - place.y]
-        return Strip.join([strip.crop(0, place.x), picture, strip.crop(place.right, self.size.width)])
+            return painted
+        around, picture = Strip(painted, self.size.width), self._film[y - place.y]
+        return [*around.crop(0, place.x), *picture, *around.crop(place.right)]
 
     def changed(self) -> None:
         """Paint anew, and ask for another picture, as soon as the message at hand is dealt with."""

@@ -1,0 +1,41 @@
+"""Python's collector of garbage, kept from walking through the whole console again and again.
+
+A full collection looks at every object there is: that takes a console a tenth of a second, in which no key is
+answered. What has outlived one is set aside here, so that the next looks at little; when a screen is left, all
+is looked at once more.
+"""
+
+import gc
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+_FULL = 2
+"""The oldest generation: a collection of it is a full one."""
+
+
+@contextmanager
+def survivors_set_aside() -> Iterator[None]:
+    """Set aside, from now to the end, what outlives a full collection, and what there is now."""
+    gc.callbacks.append(_set_survivors_aside)
+    gc.freeze()
+    try:
+        yield
+    finally:
+        gc.callbacks.remove(_set_survivors_aside)
+        gc.unfreeze()
+
+
+def collect_now() -> None:
+    """Make a full collection while nobody waits for a key; without ``survivors_set_aside`` none is due."""
+    if _set_survivors_aside in gc.callbacks:
+        gc.collect()
+
+
+def look_at_all_again() -> None:
+    """Have the next full collection look at everything: a screen's objects are of no use any more."""
+    gc.unfreeze()
+
+
+def _set_survivors_aside(phase: str, about: dict[str, int]) -> None:
+    if phase == "stop" and about["generation"] == _FULL:
+        gc.freeze()

@@ -1,0 +1,60 @@
+"""What has outlived a full collection is not looked at by the next, until a screen is left."""
+
+import gc
+from collections.abc import Iterator
+
+import pytest
+
+from cbtui.garbage import collect_now, look_at_all_again, survivors_set_aside
+
+
+class Knot:
+    """Something that only a collection can remove, and that counts what is left of its kind."""
+
+    left = 0
+
+    def __init__(self) -> None:
+        self.me = self
+        Knot.left += 1
+
+    def __del__(self) -> None:
+        Knot.left -= 1
+
+
+@pytest.fixture(autouse=True)
+def _as_before() -> Iterator[None]:
+    gc.unfreeze()
+    gc.collect()
+    Knot.left = 0
+    yield
+    gc.unfreeze()
+
+
+def test_a_collection_takes_what_is_new_and_sets_the_rest_aside() -> None:
+    with survivors_set_aside():
+        kept = Knot()
+        Knot()
+        collect_now()
+        assert Knot.left == 1
+        del kept
+        collect_now()
+        assert Knot.left == 1  # set aside, and so not seen to be garbage
+        look_at_all_again()
+        collect_now()
+        assert Knot.left == 0
+
+
+def test_nothing_is_collected_early_or_set_aside_without_being_asked() -> None:
+    Knot()
+    collect_now()
+    assert Knot.left == 1
+    gc.collect()
+    assert Knot.left == 0
+    assert gc.get_freeze_count() == 0
+
+
+def test_afterwards_all_is_as_before() -> None:
+    with survivors_set_aside():
+        gc.collect()
+        assert gc.get_freeze_count() > 0
+    assert gc.get_freeze_count() == 0
