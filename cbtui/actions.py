@@ -291,6 +291,9 @@ ACTIONS = (
     ),
     Action("next_pane", "tab", "next pane", "Go to the next pane", Scope.LESSON),
     Action("maximise", "z", "enlarge", "Let one pane fill the screen; press again to go back", Scope.LESSON),
+    Action(
+        "enlarge_lanes", "Z", "enlarge", "Let the lanes fill the screen; press again to go back", Scope.LESSON
+    ),
     Action("leave", "q", "menu", "End the run and go back to the menu", Scope.LESSON),
     Action("leave", "q", "quit", "Leave the console", Scope.MENU),
     Action(

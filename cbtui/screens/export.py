@@ -74,5 +74,5 @@ class ExportScreen(SizedModal[Choice]):
     def _option(self, name: str) -> Option:
         key = keymap_of(self.app).sign(Scope.EXPORT, f"choose({name!r})", self._charset)
         _, title, meaning = CHOICES[name]
-        words = (key, "bold $text-accent"), f"  {title:<14}", (meaning, "$text-muted")
+        words = (key, "bold $text-accent"), f"  {title:<15}", (meaning, "$text-muted")
         return Option(Content.assemble(*words))

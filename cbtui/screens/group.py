@@ -85,7 +85,7 @@ class GroupScreen(SizedModal[str]):
     def _option(self, choice: str) -> Option:
         name = choice or "the program's"
         key = (self._key(choice), "bold $text-accent")
-        return Option(Content.assemble(key, f"  {name:<13} ", (_MEANINGS[choice], "$text-muted")))
+        return Option(Content.assemble(key, f"  {name:<14} ", (_MEANINGS[choice], "$text-muted")))
 
     def _key(self, choice: str) -> str:
         """The key that takes a group."""

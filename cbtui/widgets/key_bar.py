@@ -32,7 +32,12 @@ class Entry:
 
 
 class KeyBar(Painted):
-    """Shows the keys of a scope; a click on one does what it does. Call ``changed`` when others work."""
+    """Shows the keys of a scope; a click on one does what it does. Call ``changed`` when others work.
+
+    ``first`` are labels of actions that come before all others.
+    """
+
+    first: Sequence[str] = ()
 
     def __init__(self, scope: Scope, charset: Charset) -> None:
         super().__init__()
@@ -68,6 +73,7 @@ class KeyBar(Painted):
     def _working(self) -> list[Action]:
         """The actions that have a meaning now, with the keys in force."""
         working = [action for action in actions_of(self._scope) if self._works(action)]
+        working.sort(key=lambda action: action.label not in self.first)
         return keymap_of(self.app).of(working)
 
     def _works(self, action: Action) -> bool:

@@ -88,7 +88,10 @@ class StatusLine(Painted):
 
 
 def status_row(status: Status, width: int) -> list[Run]:
-    """Return the line in exactly ``width`` columns; the executor gives way first, then pace and recording."""
+    """Return the line in exactly ``width`` columns; the executor gives way first, then pace and recording.
+
+    Last of all, what the trace lost is told and messages are not.
+    """
     title = Run(f" {status.title}", _STRONG)
     state = _state(status)
     pace = Run(f"  {status.pace}", _PLAIN)
@@ -101,12 +104,14 @@ def status_row(status: Status, width: int) -> list[Run]:
         ([state, pace, _GAP, time, _GAP, executor, _GAP, *recording, *losses], whole),
         ([state, pace, _GAP, time, _GAP, *recording, *losses], whole),
         ([state, _GAP, time, _GAP, *recording, *losses], _LEAST_TITLE),
-        ([state, _GAP, time, _GAP, *losses], 0),
+        ([state, _GAP, time, _GAP, *losses], _LEAST_TITLE),
+        ([state, _GAP, time, _GAP, losses[-1]], 0),
     ):
         room = width - sum(len(run.text) for run in parts) - 1
         if room >= least:
             break
-    return [Run(fit(title.text, room, Charset.BRAILLE), _STRONG), *parts, Run(" ", _PLAIN)]
+    shown = f"{fit(title.text, room - 1, Charset.BRAILLE)} " if room > 1 else " " * room
+    return [Run(shown, _STRONG), *parts, Run(" ", _PLAIN)]
 
 
 def _state(status: Status) -> Run:

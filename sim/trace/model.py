@@ -87,7 +87,12 @@ class Entity:
 
     @property
     def spoken_name(self) -> str:
-        """The function a person wrote, else the topic, service or action, else what kind of thing it is."""
+        """The function a person wrote, else the topic, service or action, else what kind of thing it is.
+
+        What a client waits to take is a reply: by its service's name alone it would be taken for the service.
+        """
+        if self.kind is EntityKind.CLIENT and self.name and not self.callback:
+            return f"reply of {self.name}"
         return self.callback or self.name or self.kind.value
 
 

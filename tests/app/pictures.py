@@ -1,6 +1,7 @@
 """What is on a console's screen, as text."""
 
 from textual.app import App
+from textual.widget import Widget
 
 
 def lines_of(app: App[None]) -> list[str]:
@@ -11,3 +12,10 @@ def lines_of(app: App[None]) -> list[str]:
 def text_of(app: App[None]) -> str:
     """Return the whole screen as text."""
     return "\n".join(lines_of(app))
+
+
+def picture_of(app: App[None], widget: Widget) -> str:
+    """Return what is to be seen of a widget, with its frame, and without blanks at the ends of its lines."""
+    left, top, width, height = widget.region
+    strips = app.screen._compositor.render_strips()[top : top + height]
+    return "".join(f"{strip.crop(left, left + width).text.rstrip()}\n" for strip in strips)

@@ -16,7 +16,7 @@ from tests.support.ansi import ansi_of
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
 from tests.support.engine_runs import run_to_end
-from tests.support.goldens import GOLDENS, accept, differences
+from tests.support.goldens import SCREENS, hold
 
 MOMENTS = {
     # The robot turns for ten seconds, and what it hears meanwhile waits, or does not.
@@ -86,12 +86,7 @@ async def in_every_look(lesson: str, monkeypatch: pytest.MonkeyPatch) -> dict[st
 async def test_a_lesson_looks_as_it_did(
     lesson: str, monkeypatch: pytest.MonkeyPatch, pytestconfig: pytest.Config
 ) -> None:
-    pictures = await in_every_look(lesson, monkeypatch)
-    if pytestconfig.getoption("--accept-pictures"):
-        changed = accept(pictures)
-        pytest.skip(f"{len(changed)} pictures are drawn anew; somebody has to look at them")
-    told = differences(pictures)
-    assert not told, "\n".join(told)
+    hold(await in_every_look(lesson, monkeypatch), SCREENS, pytestconfig)
 
 
 async def test_a_console_that_grew_and_changed_its_theme_looks_as_one_that_begins_so() -> None:
@@ -110,4 +105,4 @@ def test_every_lesson_has_its_moment_and_pictures_of_no_other_are_kept() -> None
     # No two runs on the real clock are alike.
     names = sorted(lesson.id for lesson in lessons() if lesson.setup.clock == "virtual")
     assert sorted(MOMENTS) == names
-    assert sorted(folder.name for folder in GOLDENS.iterdir()) == names
+    assert sorted(folder.name for folder in SCREENS.iterdir()) == names

@@ -1,4 +1,4 @@
-"""Pictures of screens that somebody has looked at, as files, and what to do when one differs.
+"""Pictures that somebody has looked at, as files, and what to do when one differs.
 
 ``pytest --accept-pictures`` keeps the pictures as they are drawn now; tests that did so are skipped and not
 passed, because somebody has to look at them first: ``git diff``, or ``cat`` for each.
@@ -9,9 +9,14 @@ from collections.abc import Iterator, Mapping
 from itertools import zip_longest
 from pathlib import Path
 
-GOLDENS = Path(__file__).parents[1] / "app" / "goldens"
-"""Where the pictures are that are agreed upon."""
-DRAWN = Path(__file__).parents[2] / "new_pictures"
+import pytest
+
+_TESTS = Path(__file__).parents[1]
+SCREENS = _TESTS / "app" / "goldens"
+"""Where whole screens are that are agreed upon, with their colours."""
+WIDGETS = _TESTS / "widgets" / "goldens"
+"""Where single widgets are, as plain text."""
+DRAWN = _TESTS.parent / "new_pictures"
 """Where those land that differ; nothing there is kept in the repository."""
 
 _MOST = 6
@@ -19,29 +24,40 @@ _MOST = 6
 _CODE = re.compile(r"\x1b\[[0-9;]*m")
 
 
-def accept(pictures: Mapping[str, str]) -> list[str]:
+def hold(pictures: Mapping[str, str], agreed: Path, config: pytest.Config) -> None:
+    """Fail if pictures, by the names of their files, differ from those in the folder ``agreed``.
+
+    Where the person has asked for that, keep them instead, and skip the test.
+    """
+    __tracebackhide__ = True
+    if config.getoption("--accept-pictures"):
+        changed = _accept(pictures, agreed)
+        pytest.skip(f"{len(changed)} pictures are drawn anew; somebody has to look at them")
+    told = list(_differences(pictures, agreed))
+    assert not told, "\n".join(told)
+
+
+def _accept(pictures: Mapping[str, str], agreed: Path) -> list[str]:
     """Keep pictures in place of those that differ; return the names of these."""
-    changed = [name for name, now in pictures.items() if _agreed(name) != now]
+    changed = [name for name, now in pictures.items() if _text_of(agreed / name) != now]
     for name in changed:
-        _write(GOLDENS / name, pictures[name])
+        _write(agreed / name, pictures[name])
     return changed
 
 
-def differences(pictures: Mapping[str, str]) -> list[str]:
+def _differences(pictures: Mapping[str, str], agreed: Path) -> Iterator[str]:
     """Say which pictures differ from those agreed upon, in which lines, and where they have been written."""
-    told = []
     for name, now in pictures.items():
-        (DRAWN / name).unlink(missing_ok=True)
-        before = _agreed(name)
+        drawn = DRAWN / agreed.parent.name / name
+        drawn.unlink(missing_ok=True)
+        before = _text_of(agreed / name)
         if before != now:
-            _write(DRAWN / name, now)
+            _write(drawn, now)
             what = "is new" if before is None else "differs:\n" + "\n".join(_lines(before, now))
-            told.append(f"{name} {what}\n  see: cat {GOLDENS / name} {DRAWN / name}")
-    return told
+            yield f"{name} {what}\n  see: cat {agreed / name} {drawn}"
 
 
-def _agreed(name: str) -> str | None:
-    path = GOLDENS / name
+def _text_of(path: Path) -> str | None:
     return path.read_text(encoding="utf-8") if path.exists() else None
 
 
@@ -51,7 +67,10 @@ def _write(path: Path, picture: str) -> None:
 
 
 def _lines(before: str, now: str) -> Iterator[str]:
-    pairs = enumerate(zip_longest(before.splitlines(), now.splitlines(), fillvalue=""), start=1)
+    lines = before.splitlines(), now.splitlines()
+    if len(lines[0]) != len(lines[1]):
+        yield f"  {len(lines[0])} lines before, {len(lines[1])} now"
+    pairs = enumerate(zip_longest(*lines, fillvalue=""), start=1)
     changed = [(number, *pair) for number, pair in pairs if pair[0] != pair[1]]
     for number, old, new in changed[:_MOST]:
         texts = [_CODE.sub("", line).rstrip() for line in (old, new)]

@@ -59,7 +59,7 @@ def test_a_failure_of_what_has_no_callback_is_told_by_its_name() -> None:
     run.start(client, thread, 1.0)
     run.fail(client, thread, 2.0, "ValueError: no")
     (mark,) = (each for each in timeline_of(run).marks(ALWAYS) if each.kind == "error")
-    assert mark.text.startswith("/turn raised ValueError")
+    assert mark.text.startswith("reply of /turn raised ValueError")
 
 
 def test_every_kind_of_event_is_understood() -> None:

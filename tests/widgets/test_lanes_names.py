@@ -1,7 +1,8 @@
 import pytest
 
-from cbtui.widgets.lanes.names import thread_name
-from sim.trace.model import Thread
+from cbtui.widgets.lanes.names import group_name, more_lanes, thread_name
+from sim.trace.events import GroupKind
+from sim.trace.model import Group, Thread
 
 
 @pytest.mark.parametrize(
@@ -24,3 +25,22 @@ def test_a_threads_name_gives_way_where_it_tells_least(name: str, room: int, sho
 def test_threads_of_programs_that_differ_at_the_end_stay_apart() -> None:
     names = {thread_name(Thread(1, f"exercise53-{n} MainThread", 0), 11, "…") for n in range(1, 4)}
     assert len(names) == 3
+
+
+@pytest.mark.parametrize(("room", "shown"), [(9, "exclusive"), (8, "excl")])
+def test_a_groups_kind_is_cut_to_what_it_is_known_by(room: int, shown: str) -> None:
+    assert group_name(Group(1, 1, GroupKind.EXCLUSIVE, "", "A"), room) == shown
+
+
+@pytest.mark.parametrize(
+    ("hidden", "key", "room", "shown"),
+    [
+        (2, "Z", 23, "+2 lanes: Z shows more"),
+        (2, "Z", 12, "+2 lanes Z"),
+        (12, "↑ ↓", 12, "+12 ↑ ↓"),
+        (2, "Z", 6, "+2 Z"),
+        (2, "", 23, "+2 lanes"),
+    ],
+)
+def test_lanes_without_room_are_told_of_with_their_key(hidden: int, key: str, room: int, shown: str) -> None:
+    assert more_lanes(hidden, key, room) == shown

@@ -53,8 +53,8 @@ def test_what_has_no_callback_of_its_own_goes_by_its_name() -> None:
     run.subscription(group, "/a", "a_callback")
     run.callback(action, thread, 1.0, 9.0)
     text = Painter().text(told(run, until=10.0), *last(10, 10.0), 100, 8)
-    assert "A /turn/_action" in text
-    assert "held by /turn/_action on MainThread" in text
+    assert "A reply of /turn/_action" in text
+    assert "held by reply of /turn/_action on MainThread" in text
 
 
 def test_the_same_in_ascii_has_no_other_glyph() -> None:

@@ -52,7 +52,7 @@ def line(status: Status, width: int) -> str:
             80,
             "| 2/6 One shared group       ◂ BACK 3.2 s  virtual ×1.0   t 12.480 s   dropped 0 |",
         ),
-        (replace(LIVE, lost=9), 48, "|● LIVE   t 12.480 s   dropped 412   trace lost 9 |"),
+        (replace(LIVE, lost=9), 48, "| 2/6 One sh… ● LIVE   t 12.480 s   trace lost 9 |"),
     ],
 )
 def test_the_line_is(status: Status, width: int, golden: str) -> None:

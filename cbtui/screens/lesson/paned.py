@@ -11,6 +11,7 @@ from textual.widget import Widget
 
 from cbtui.actions import Scope
 from cbtui.editor import EditorError, edit
+from cbtui.keymap import keymap_of
 from cbtui.screens.lesson.running import RunningScreen
 from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.code import CodeView
@@ -19,6 +20,7 @@ from cbtui.widgets.factory import FactoryView
 from cbtui.widgets.guide import Guide
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes
+from cbtui.widgets.lanes.keys import lane_keys
 from cbtui.widgets.log import LogFilter, LogLines, LogView
 from cbtui.widgets.robot import RobotView
 from cbtui.widgets.shell import Prompt, ShellOutput, ShellView
@@ -33,6 +35,10 @@ _SCOPES: dict[type[Widget], Scope] = {
     ChecksView: Scope.CHECKS,
 }
 """Whose keys are told of while it has the focus."""
+
+_PANE_ALONE = "-maximised"
+_LANES_ALONE = "-lanes-alone"
+"""Classes of a screen that one pane, or the lanes, fill."""
 
 
 class PanedScreen(RunningScreen):
@@ -70,6 +76,8 @@ class PanedScreen(RunningScreen):
 
     def _show(self, pane: str) -> None:
         """Make a pane the current one."""
+        if self.has_class(_LANES_ALONE):
+            self._enlarge("")
         self._pane = pane
         for name in self.PANES_HERE:
             self._widget(name).set_class(name == pane, "-current", update=False)
@@ -158,8 +166,27 @@ class PanedScreen(RunningScreen):
         self._show(panes[(panes.index(self._pane) + 1) % len(panes)])
 
     def action_maximise(self) -> None:
-        """Let the current pane fill the screen, or give the others their room back."""
-        self.toggle_class("-maximised")
+        """Let the current pane, or the lanes if they have the keys, fill the screen; or none of them."""
+        if self.query_one(Lanes).has_focus:
+            self.action_enlarge_lanes()
+        else:
+            self._enlarge("" if self.has_class(_PANE_ALONE) else _PANE_ALONE)
+
+    def action_enlarge_lanes(self) -> None:
+        """Go to the lanes and let them fill the screen, or go back to the current pane."""
+        if self.has_class(_LANES_ALONE):
+            self._show(self._pane)
+        else:
+            self._enlarge(_LANES_ALONE)
+            self.query_one(Lanes).focus()
+
+    def _enlarge(self, alone: str) -> None:
+        """Let the current pane or the lanes fill the screen; "" for neither."""
+        for name in (_PANE_ALONE, _LANES_ALONE):
+            self.set_class(name == alone, name, update=False)
+        self.update_node_styles(animate=False)
+        more = ("lane_above", "lane_below") if alone == _LANES_ALONE else ("enlarge_lanes",)
+        self.query_one(Lanes).keys = lane_keys(keymap_of(self.app), Scope.LESSON, self._charset, *more)
         self._stale = True
 
     def action_cycle_camera(self) -> None:

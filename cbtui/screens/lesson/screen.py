@@ -21,7 +21,6 @@ from cbtui.widgets.diagnosis_line import DiagnosisLine
 from cbtui.widgets.factory import FactoryView
 from cbtui.widgets.key_bar import KeyBar, hint
 from cbtui.widgets.lanes import Lanes
-from cbtui.widgets.lanes.keys import lane_keys
 from cbtui.widgets.log import LogFilter, LogLines, LogView
 from cbtui.widgets.robot import RobotView
 from cbtui.widgets.shell import Prompt, ShellView
@@ -69,7 +68,7 @@ class LessonScreen(ExportingScreen):
         lanes, robot, factory = self.query_one(Lanes), self.query_one(RobotView), self.query_one(FactoryView)
         lanes.charset = robot.charset = factory.charset = self._charset
         lanes.service = self._subject.service
-        lanes.keys = lane_keys(keymap_of(self.app), Scope.LESSON, self._charset)
+        self._enlarge("")
         lanes.changes = self._changes.words
         self._show(self._pane)
         self._start()
@@ -164,12 +163,17 @@ class LessonScreen(ExportingScreen):
             lanes.has_focus,
             lanes.selection is None,
             self._standing,
+            self.layout_now,
             *(self.check_action(action, ()) for action in _ON_LINES),
         )
         if offered != self._offered:
             self._offered = offered
-            self.query_one(KeyBar).changed()
-            lanes.hint = hint(self.query_one(KeyBar).working(_ON_LANES), self._charset)
+            bar = self.query_one(KeyBar)
+            # Where the lanes have a frame, that tells of them.
+            framed = self.layout_now is Layout.GRID
+            bar.first = (*_ON_LANES, "enlarge") if lanes.has_focus and not framed else ()
+            bar.changed()
+            lanes.hint = hint(bar.working(_ON_LANES), self._charset)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer what has a meaning now."""

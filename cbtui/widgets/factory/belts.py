@@ -7,6 +7,7 @@ from cbtui.widgets.durations import duration
 from cbtui.widgets.factory.canvas import FAINT, PLAIN, STRONG, WARN, Canvas
 from cbtui.widgets.factory.scene import Area, Belt, Scene
 from cbtui.widgets.factory.words import belt_name, details, first_fitting, level, reasons
+from sim.trace.events import EntityKind
 
 _MOST_BOXES = 10
 _LEAST_BOXES = 4
@@ -163,4 +164,6 @@ def _ink_of(belt: Belt) -> Ink:
 
 
 def _widest_level(belt: Belt) -> str:
+    if belt.entity.kind is EntityKind.CLIENT:
+        return max(level(belt), "1 reply", key=len)
     return f"{belt.entity.depth}/{belt.entity.depth} !" if belt.entity.depth > 0 else level(belt)

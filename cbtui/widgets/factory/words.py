@@ -111,7 +111,13 @@ def belt_name(belt: Belt) -> str:
 
 
 def level(belt: Belt) -> str:
-    """Say how full a belt is: ``3/10``, ``10/10 !``; the bare number where there is no limit."""
+    """Say how full a belt is: ``3/10``, ``10/10 !``; the bare number where there is no limit.
+
+    A client's says so, or how many replies wait on it: it goes by the same name as its service's.
+    """
+    if belt.entity.kind is EntityKind.CLIENT:
+        replies = belt.queue.depth
+        return "client" if replies == 0 else f"{replies} {'reply' if replies == 1 else 'replies'}"
     if belt.entity.depth <= 0:
         return str(belt.queue.depth)
     return f"{belt.queue.depth}/{belt.entity.depth}{' !' if belt.full else ''}"

@@ -8,18 +8,22 @@ from cbtui.theme import Charset
 
 
 class LaneKeys(NamedTuple):
-    """Keys as people write them: for calling the service, and to a lane's bar before and after."""
+    """Keys as people write them: for calling the service, and to a lane's bar before and after.
+
+    ``more`` shows the lanes for which there is no room; "" where no key does.
+    """
 
     call: str
     before: str
     after: str
+    more: str = ""
 
 
-def lane_keys(keymap: Keymap, scope: Scope, charset: Charset) -> LaneKeys:
-    """Return the keys that are in force on a screen with lanes."""
+def lane_keys(keymap: Keymap, scope: Scope, charset: Charset, *more: str) -> LaneKeys:
+    """Return the keys in force on a screen with lanes, where the actions ``more`` show more lanes."""
     call = keymap.sign(Scope.LESSON, "call_service", charset)
     before, after = (keymap.sign(scope, action, charset) for action in ("previous_event", "next_event"))
-    return LaneKeys(call, before, after)
+    return LaneKeys(call, before, after, " ".join(keymap.sign(scope, action, charset) for action in more))
 
 
 USUAL_KEYS = lane_keys(STANDARD, Scope.LESSON, Charset.ASCII)

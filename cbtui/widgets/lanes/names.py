@@ -5,6 +5,8 @@ from sim.trace.model import Entity, Group, Thread
 
 _LEAST_PROGRAM = 3
 """Columns below which nothing is left of a program's name to know it by."""
+_BRIEF = 4
+"""Letters by which the kinds of groups are still known."""
 
 
 def short_thread(name: str) -> str:
@@ -35,6 +37,12 @@ def _without_middle(text: str, room: int, ellipsis: str) -> str:
     return f"{text[:before]}{ellipsis}{text[len(text) - (room - 1 - before) :]}"
 
 
+def group_name(group: Group, room: int) -> str:
+    """Return what kind of group one of several callbacks is."""
+    whole, brief = _kinds(group)
+    return whole if len(whole) <= room else brief
+
+
 def entity_name(entity: Entity, room: int) -> str:
     """Return the name of a callback of a group of several."""
     return entity.label if len(entity.label) <= room else short(entity.label)
@@ -42,9 +50,23 @@ def entity_name(entity: Entity, room: int) -> str:
 
 def sole_name(entity: Entity, group: Group, room: int) -> str:
     """Return the name of a group's only callback, after the kind of the group where there is room for it."""
-    whole, brief = group.kind.value, group.kind.value[:4]
     names = (entity.label, short(entity.label))
-    for text in (f"{kind} {name}" for kind in (whole, brief) for name in names):
+    for text in (f"{kind} {name}" for kind in _kinds(group) for name in names):
         if len(text) <= room:
             return text
     return short(entity.label)
+
+
+def more_lanes(hidden: int, key: str, room: int) -> str:
+    """Say how many lanes are not shown and which key shows them, in as many words as there is room for.
+
+    ``key`` is "" where no key does.
+    """
+    plain = f"+{hidden} lanes"
+    told = (f"{plain}: {key} shows more", f"{plain} {key}", f"+{hidden} {key}") if key else ()
+    return next((text for text in told if len(text) <= room), plain)
+
+
+def _kinds(group: Group) -> tuple[str, str]:
+    """A group's kind, whole and brief."""
+    return group.kind.value, group.kind.value[:_BRIEF]

@@ -13,7 +13,7 @@ from cbtui.widgets.lanes.bars import Bars
 from cbtui.widgets.lanes.calls import Calls, draw_calls
 from cbtui.widgets.lanes.columns import Column, Columns, I, Instants, Ration
 from cbtui.widgets.lanes.keys import USUAL_KEYS
-from cbtui.widgets.lanes.names import entity_name, sole_name, thread_name
+from cbtui.widgets.lanes.names import entity_name, group_name, more_lanes, sole_name, thread_name
 from cbtui.widgets.lanes.rows import (
     GroupLane,
     Lane,
@@ -102,7 +102,8 @@ class Painter:
 
     ``service`` is a service of others that is to have a lane before it is first called. ``looks`` is how many
     intervals a picture may look at; the next picture of the same stretch goes on where it stopped.
-    ``call_key`` is what calls the service, as people write it.
+    ``call_key`` is what calls the service, as people write it; ``more_key`` what shows the lanes that have no
+    room, "" where no key does.
     """
 
     def __init__(
@@ -111,9 +112,11 @@ class Painter:
         service: str = "",
         looks: float = inf,
         call_key: str = USUAL_KEYS.call,
+        more_key: str = "",
     ) -> None:
         self.charset = charset
         self.call_key = call_key
+        self.more_key = more_key
         self.service = service
         self.looks = looks
         self._timeline: Timeline | None = None
@@ -285,7 +288,7 @@ class _Frame:
         """Paint the time axis; ``hidden`` lanes that had no room are told of at its left."""
         row = Row(self._layout.columns, self._charset)
         draw_axis(row, self._scale, self._now_column, self._commands())
-        name = f"+{hidden} lanes" if hidden else "seconds"
+        name = more_lanes(hidden, self._painter.more_key, self._layout.names) if hidden else "seconds"
         unit = f"{duration(self._scale.per_column)}/col" if self._layout.statuses >= 15 else ""
         self._show_cursor(row)
         return self._framed([Run(name, FAINT)], row.runs(), Run(unit, FAINT), chosen=False)
@@ -354,7 +357,7 @@ class _Frame:
 
     def _framed(self, name: list[Run], runs: list[Run], status: Run, chosen: bool) -> list[Run]:
         *before, last = name
-        room = self._layout.names - sum(len(run.text) for run in before)
+        room = self._room_after(before)
         frame = Run(self._glyphs.frame, FAINT)
         text = f" {status.text}" if self._layout.statuses else ""
         return [
@@ -382,15 +385,19 @@ class _Frame:
                 name = thread_name(thread, self._layout.names - 1, self._glyphs.ellipsis)
                 return [Run(name, PLAIN)]
             case GroupLane(group):
-                return [*self._letter(group), Run(group.kind.value, PLAIN)]
+                letter = self._letter(group)
+                return [*letter, Run(group_name(group, self._room_after(letter)), PLAIN)]
             case MemberLane(entity):
                 return [Run(f"  {entity_name(entity, self._layout.names - 3)}", PLAIN)]
             case SoleLane(entity, group):
                 letter = self._letter(group)
-                room = self._layout.names - sum(len(run.text) for run in letter)
-                return [*letter, Run(sole_name(entity, group, room), PLAIN)]
+                return [*letter, Run(sole_name(entity, group, self._room_after(letter)), PLAIN)]
             case ServiceLane(service):
                 return [Run(service, PLAIN)]
+
+    def _room_after(self, runs: list[Run]) -> int:
+        """How many columns of a name are left."""
+        return self._layout.names - sum(len(run.text) for run in runs)
 
     def _letter(self, group: Group) -> list[Run]:
         """A group's letter, and its texture where there is room."""

@@ -76,6 +76,8 @@ class Status:
                 return self._queue(entity, latest)
             case EntityKind.SERVICE:
                 return Run(self.calls.summary(entity.name, self.moment.at), PLAIN)
+            case EntityKind.CLIENT:
+                return self._client(entity)
             case _:
                 return Run("", PLAIN)
 
@@ -88,6 +90,14 @@ class Status:
         if is_late(latest, timer):
             return Run(f"was late {duration(latest.age)}", WARN)
         return Run("on time", FAINT)
+
+    def _client(self, client: Entity) -> Run:
+        """Tell a client from the service of the same name; what waits for it are replies."""
+        replies = self.timeline.queue(client.id, self.moment.at).depth
+        if replies == 0:
+            return Run("client", FAINT)
+        told = f"client, {replies} {'reply' if replies == 1 else 'replies'}"
+        return Run(told if len(told) < self.width else "client", PLAIN)
 
     def _queue(self, entity: Entity, latest: Span | None) -> Run:
         queue = self.timeline.queue(entity.id, self.moment.at)

@@ -223,15 +223,18 @@ class Lanes(Painted, can_focus=True):
 
     def watch_service(self) -> None:
         """Give the service a lane."""
-        self._painter = Painter(self.charset, self.service, LOOKS_A_FRAME, self.keys.call)
-        self.changed()
+        self._begin_anew()
 
     def watch_keys(self) -> None:
         """Speak of other keys."""
-        self._painter = Painter(self.charset, self.service, LOOKS_A_FRAME, self.keys.call)
-        self.changed()
+        self._begin_anew()
 
     def watch_charset(self) -> None:
         """Paint in other glyphs."""
-        self._painter = Painter(self.charset, self.service, LOOKS_A_FRAME, self.keys.call)
+        self._begin_anew()
+
+    def _begin_anew(self) -> None:
+        """Have another painter, which remembers nothing."""
+        call, more = self.keys.call, self.keys.more
+        self._painter = Painter(self.charset, self.service, LOOKS_A_FRAME, call, more)
         self.changed()

@@ -5,10 +5,8 @@ from bisect import bisect_left
 from collections import deque
 from collections.abc import Sequence
 
-from rich.cells import cell_len
-
 from cbtui.widgets.log.filter import Filter, LogEvent
-from cbtui.widgets.log.line import line_of
+from cbtui.widgets.log.line import width_of
 from sim.trace.timeline import Timeline
 
 _REMEMBERED = 64
@@ -54,7 +52,7 @@ class Search:
             here = [place for place, event in enumerate(new) if self.wanted.passes(event, self.timeline)]
             self._found.extend(start + place for place in here)
             passed = [new[place] for place in here]
-        self.widest = max([self.widest, *(_width(line_of(event)) for event in passed)])
+        self.widest = max([self.widest, *map(width_of, passed)])
         return self._looked_at < len(logs)
 
     def _go_back_to_late_ones(self) -> None:
@@ -68,7 +66,3 @@ class Search:
         self._looked_at = first + same if same else 0
         self._last = deque(list(self._last)[:same], _REMEMBERED)
         del self._found[bisect_left(self._found, self._looked_at) :]
-
-
-def _width(line: str) -> int:
-    return len(line) if line.isascii() else cell_len(line)

@@ -3,7 +3,7 @@
 from cbtui.theme import Charset
 from cbtui.widgets.factory import FactoryPainter
 from sim.trace.timeline import Timeline
-from tests.support.runs import dummy_server_run, ns, shared_group_run, split_groups_run
+from tests.support.runs import Run, dummy_server_run, ns, shared_group_run, split_groups_run
 from tests.widgets.factory.scenes import (
     four_workers_one_seat,
     many_groups,
@@ -329,3 +329,20 @@ def test_the_most_telling_areas_come_first_in_a_short_pane() -> None:
         | · MainThread works in D  ☺ worker 2 never needed               |
         """
     )
+
+
+def test_a_client_is_told_from_the_service_of_its_name_by_the_replies_that_wait_on_its_belt() -> None:
+    run = Run()
+    thread, node = run.thread("MainThread"), run.node("/node")
+    ask = run.timer(run.exclusive(node), "ask", 9.0)
+    run.service(run.exclusive(node), "/weigh", "weigh")
+    client = run.client(run.exclusive(node), "/weigh")
+    run.callback(ask, thread, 1.0)
+    run.request(client, 2.0)
+    run.request(client, 2.5)
+    run.stop(3.0)
+    timeline = told(run)
+    assert "weigh 0/10   " in factory(timeline, 3.0, 64, 12)
+    assert "weigh client " in factory(timeline, 1.5, 64, 12)
+    assert "weigh 1 reply " in factory(timeline, 2.2, 64, 12)
+    assert "weigh 2 replies " in factory(timeline, 2.7, 64, 12)
