@@ -41,9 +41,9 @@ MARK = Ink(Role.MARK)
 LEAST_WIDTH = 20
 """Columns below which lanes are left blank."""
 
-LOOKS_A_FRAME = 2000
-"""Intervals that are looked at for one frame, more than a lesson has on screen: zoomed out on an hour the
-lanes fill in a few frames, and no key waits for all of it."""
+LOOKS_A_FRAME = 500
+"""Intervals that are looked at for one frame: a lesson's lanes fill in two or three frames, zoomed out on an
+hour in some twenty, and no key waits for all of it."""
 
 _TEXTURED_FROM = 20
 """The narrowest column of names that shows the textures of groups."""
