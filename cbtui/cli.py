@@ -30,10 +30,13 @@ from cbtui.commands import (
     serve,
     start,
 )
-from cbtui.commands.output import shown
+from cbtui.commands.output import CannotSayError, shown
 from cbtui.commands.ros2 import ros2
 from cbtui.commands.targets import refuse
 from cbtui.warden import BadCeilingError, ceiling
+
+_READ_ENOUGH = 141
+"""The exit code where the pipe behind is closed: a shell's for a program that SIGPIPE ended."""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -47,14 +50,15 @@ class _Parser(argparse.ArgumentParser):
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code.
 
-    0 is well, 1 the run failed, 2 the command was wrong, 130 it was interrupted.
+    0 is well, 1 the run failed, 2 the command was wrong, 130 it was interrupted, 141 who reads what it says
+    has read enough.
     """
     streams.make_whole()
     try:
         code = _carried_out(list(sys.argv[1:] if argv is None else argv))
     except OSError as error:
         trouble = streams.unwritable()
-        if trouble is None and not isinstance(error, BrokenPipeError):
+        if trouble is None and not isinstance(error, BrokenPipeError | CannotSayError):
             raise
         return _say_unwritable(trouble or error)
     trouble = streams.unwritable()
@@ -63,8 +67,9 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def _say_unwritable(trouble: OSError) -> int:
     """Say that standard output takes no more, unless who read it has just read enough; the exit code."""
-    if not isinstance(trouble, BrokenPipeError):
-        sys.stderr.write(f"cbtui: what it says cannot be written: {trouble.strerror}\n")
+    if isinstance(trouble, BrokenPipeError):
+        return _READ_ENOUGH
+    sys.stderr.write(f"cbtui: what it says cannot be written: {trouble.strerror}\n")
     return 1
 
 

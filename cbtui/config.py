@@ -8,13 +8,13 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import NamedTuple
 
-from platformdirs import user_config_path
 from textual.theme import BUILTIN_THEMES
 
 from cbtui.colour_themes import THEMES
 from cbtui.config_keys import read_keys
 from cbtui.keymap import Keymap
 from cbtui.theme import Charset
+from lessons.personal import config_folder
 
 AUTO = "auto"
 _TABLES = ("keys", "display")
@@ -42,7 +42,7 @@ class Reading(NamedTuple):
 
 def standard_path() -> Path:
     """Where a person's own configuration lies."""
-    return user_config_path("cbtui") / "config.toml"
+    return config_folder() / "config.toml"
 
 
 def read_file(path: Path) -> Reading:

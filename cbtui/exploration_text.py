@@ -43,6 +43,8 @@ def _result(result: Result, shown: Result) -> Iterator[str]:
         yield _wrapped(failure.what, 4)
         if failure.detail:
             yield _wrapped(failure.detail, 6)
+    for note in shown.notes:
+        yield _wrapped(f"note: {note}", 4)
     if result.problems:
         yield _wrapped(f"diagnosis: {', '.join(result.problems)}", 4)
     elif result.well:

@@ -2,7 +2,7 @@
 
 import multiprocessing
 import os
-from collections.abc import Iterable, Iterator
+from collections.abc import Generator, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from functools import partial
@@ -17,6 +17,7 @@ from cbtui.checking import Observed, observe
 from cbtui.session import Session, engine_environment
 from lessons.checks import problems
 from lessons.judge import Judge
+from sim.clean_start import without_current_folder
 from sim.engine.setup import RunSetup
 from sim.trace.events import Severity
 from sim.trace.model import Window
@@ -44,6 +45,8 @@ class Result:
 
     failures: tuple[Failure, ...] = ()
     problems: tuple[str, ...] = ()
+    notes: tuple[str, ...] = field(default=(), compare=False)
+    """What the engine warned of, in its words."""
 
     @property
     def well(self) -> bool:
@@ -60,7 +63,9 @@ class Exploration:
     judge: Judge | None
     limit: float
 
-    def results(self, seeds: Iterable[int], processes: int | None = None) -> Iterator[tuple[int, Result]]:
+    def results(
+        self, seeds: Iterable[int], processes: int | None = None
+    ) -> Generator[tuple[int, Result], None, None]:
         """Run the schedules of some seeds and yield what came of each, in the order in which they end.
 
         ``processes`` run at once, None: one for each core. Closing the iterator ends all of them.
@@ -80,7 +85,8 @@ class Exploration:
         setup = msgspec.structs.replace(self.setup, seed=seed)
         observed = observe(setup, self.name, self.limit, given_up, partial(Session, context=context))
         found = tuple(dict.fromkeys(each.rule.id for each in problems(observed.timeline)))
-        return Result(tuple(dict.fromkeys(self._failures(observed, found))), found)
+        failures = tuple(dict.fromkeys(self._failures(observed, found)))
+        return Result(failures, found, tuple(dict.fromkeys(_warnings(observed))))
 
     def _failures(self, observed: Observed, found: tuple[str, ...]) -> Iterator[Failure]:
         raised = [*_raised(observed)]
@@ -102,6 +108,10 @@ class Exploration:
                     yield Failure(f"check failed: {each.check.asks}", verdict_line(each))
 
 
+def _warnings(observed: Observed) -> Iterator[str]:
+    return (each.text for each in observed.timeline.notices if each.severity is Severity.WARN)
+
+
 def _raised(observed: Observed) -> Iterator[Failure]:
     """The exceptions that came out of callbacks, by callback and kind; with the place if the run ended so."""
     timeline, trouble = observed.timeline, observed.trouble or ""
@@ -118,7 +128,8 @@ def _engine_context() -> BaseContext:
     """Starts engines as copies of one process that has imported all; what a run changes stays in its copy."""
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(_PRELOADED)
-    resource_tracker.ensure_running()  # it lets SIGINT through when it has started, and forks must not
+    with without_current_folder():
+        resource_tracker.ensure_running()  # it lets SIGINT through when it has started, and forks must not
     with engine_environment():
         forkserver.ensure_running()
     return context

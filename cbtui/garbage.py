@@ -1,8 +1,8 @@
 """Python's collector of garbage, kept from walking through the whole console again and again.
 
 A full collection looks at every object there is: that takes a console a tenth of a second, in which no key is
-answered. What has outlived one is set aside here, so that the next looks at little; when a screen is left, all
-is looked at once more.
+answered. What has outlived one is set aside here, so that the next looks at little; when a screen is left,
+all is looked at once more.
 """
 
 import gc

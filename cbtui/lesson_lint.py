@@ -10,6 +10,7 @@ from cbtui.actions import ACTIONS, character_of
 from cbtui.check_text import verdict_line
 from cbtui.checking import Observed, observe, setup_to_judge
 from lessons.checks import problems
+from lessons.description import Prediction
 from lessons.judge import Judge
 from lessons.lesson import DESCRIPTION_FILE, EXPLANATION_FILE, GUIDE_FILE, BadLesson, Lesson, read_lesson
 from sim.diagnosis import RULES
@@ -112,7 +113,7 @@ def _faults_in_runs(lesson: Lesson, judge: Judge, limit: float) -> Iterator[str]
     node = observe(setup_to_judge(lesson), lesson.setup.node, limit)
     yield from _run_faults(lesson, lesson.setup.node, node, declared.node)
     for prediction in () if node.broken_off else lesson.predictions:
-        shown = judge.true_answer(prediction, node.timeline)
+        shown = _shown(lesson, judge, prediction, node)
         if shown != prediction.right:
             yield (
                 f"{_in(lesson, DESCRIPTION_FILE)}: {prediction.question!r}: right is {prediction.right}, "
@@ -132,6 +133,20 @@ def _faults_in_runs(lesson: Lesson, judge: Judge, limit: float) -> Iterator[str]
     for each in judge.verdicts(solution.timeline):
         if not each.verdict.passed:
             yield f"{lesson.solution_path}: fails '{each.check.asks}': {verdict_line(each)}"
+
+
+def _shown(lesson: Lesson, judge: Judge, prediction: Prediction, node: Observed) -> int:
+    """Which answer the node's run shows to be true.
+
+    Raises:
+        BadLesson: none can be read off it; of a run that failed the text says why.
+    """
+    try:
+        return judge.true_answer(prediction, node.timeline)
+    except BadLesson as error:
+        if node.trouble is None:
+            raise
+        raise BadLesson(f"{_in(lesson, lesson.setup.node)}: {node.trouble}") from error
 
 
 def _run_faults(lesson: Lesson, file: str, run: Observed, declared: Iterable[str]) -> Iterator[str]:

@@ -79,12 +79,12 @@ def page_of(lesson: Lesson, standing: Standing, signs: Signs) -> Page:
     return {part: parts[part] for part in Part if parts.get(part)}
 
 
-def page_of_exercise(lesson: Lesson, standing: Standing, signs: Signs) -> Page:
-    """Return the page beside the exercise: what it asks for, the hints, and what was explained already."""
+def page_of_exercise(lesson: Lesson, standing: Standing, signs: Signs, task: str) -> Page:
+    """Return the page beside the exercise: the task, the hints, and what was explained already."""
     assert lesson.exercise is not None, "it is on screen"
     told = page_of(lesson, standing, signs) if standing.progress.seen else {}
     return {
-        Part.EXERCISE: f"# {lesson.title}: exercise\n\n{lesson.exercise.asks.strip()}",
+        Part.EXERCISE: task,
         Part.HINTS: _hints(lesson.exercise, standing.progress, signs),
         **{part: told[part] for part in (Part.EXPLANATION, Part.GUIDE) if part in told},
     }

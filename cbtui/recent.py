@@ -8,7 +8,8 @@ from itertools import count, islice
 from pathlib import Path
 
 import msgspec
-import platformdirs
+
+from lessons.personal import state_folder
 
 FILE_NAME = "recent.jsonl"
 FILES_KEPT = 20
@@ -53,7 +54,7 @@ class Opened(msgspec.Struct, frozen=True):
 
 def usual_path() -> Path:
     """Where the file is kept: in the person's folder for the state of programs."""
-    return platformdirs.user_state_path("cbtui", appauthor=False) / FILE_NAME
+    return state_folder() / FILE_NAME
 
 
 class Recents:

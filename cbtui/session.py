@@ -22,6 +22,7 @@ from cbtui.interrupts import whole
 from cbtui.orphans import ENDS_ITSELF, watch_over
 from cbtui.silence import LOOK, Silence
 from cbtui.warden import Warden, ceiling
+from sim.clean_start import without_current_folder
 from sim.engine.commands import Command, Stop, encode
 from sim.engine.last_words import ASKED, overflowed, place_in
 from sim.engine.outbox import TRACE_CLOSED
@@ -82,7 +83,8 @@ class Session:
         mark = uuid4().hex
         # Starting a process hands on standard error, and Textual's stand-in for it has no descriptor.
         with _redirecting, redirect_stderr(sys.__stderr__):
-            resource_tracker.ensure_running()  # it is this process's own, and must not get the engine's mark
+            with without_current_folder():
+                resource_tracker.ensure_running()  # this process's own: it must not get the engine's mark
             with engine_environment(mark):
                 self._process.start()
         self._far_end.close()
@@ -203,7 +205,7 @@ def engine_environment(mark: str = "") -> Iterator[None]:
     Ctrl-C in the terminal is the console's: they do not hear it until they have a session of their own.
     """
     wanted = {**_ENVIRONMENT, MARK: mark}
-    with _starting:
+    with without_current_folder(), _starting:
         before = {name: os.environ.get(name) for name in wanted}
         os.environ.update(wanted)
         blocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})

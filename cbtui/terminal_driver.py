@@ -1,4 +1,4 @@
-"""What the console reads keys from and draws to, where that is a terminal: it may be closed at any moment."""
+"""What the console reads keys from and draws to in a terminal: it may be closed or stopped at any moment."""
 
 import os
 from collections.abc import Callable
@@ -14,6 +14,17 @@ class TerminalDriver(LinuxDriver):
         super().__init__(*args, **options)
         terminal: Any = self._file
         self._file = cast("Any", _Lasting(terminal))
+
+    def _sigcont_application(self, *signal_and_frame: Any) -> None:
+        """Go on; what was stopped without notice (SIGSTOP) has to give the terminal back before it takes it.
+
+        Else it would remember its own settings as the terminal's, and have two threads read the same keys, of
+        which one waits for ever.
+        """
+        if self._auto_restart and not self._must_signal_resume:
+            self.suspend_application_mode()
+            self._must_signal_resume = True
+        super()._sigcont_application(*signal_and_frame)
 
 
 class _Lasting:

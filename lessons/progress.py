@@ -11,6 +11,8 @@ from pathlib import Path
 import msgspec
 from msgspec import Struct, structs
 
+from lessons.personal import state_folder
+
 FILE_NAME = "progress.jsonl"
 _PATIENCE = 1.0
 """Seconds that another console may take to write; after that this one goes on without waiting for it."""
@@ -38,9 +40,7 @@ _decoder = msgspec.json.Decoder(LessonProgress)
 
 def usual_path() -> Path:
     """Where the file is kept: in the person's folder for the state of programs."""
-    import platformdirs
-
-    return platformdirs.user_state_path("cbtui", appauthor=False) / FILE_NAME
+    return state_folder() / FILE_NAME
 
 
 def faulty_line(path: Path) -> int | None:

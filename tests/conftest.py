@@ -1,9 +1,12 @@
 """What holds for every test: random examples are the same each time, so that a red run is red again."""
 
+import gc
 from collections.abc import Iterator
 
 import pytest
 from hypothesis import settings
+
+from tests.support import style_sheets
 
 settings.register_profile("same-each-time", derandomize=True, deadline=None, database=None)
 settings.load_profile("same-each-time")
@@ -17,8 +20,28 @@ def state_of_nobody(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
         yield
 
 
+@pytest.fixture(scope="session", autouse=True)
+def style_sheets_read_once() -> Iterator[None]:
+    """Spare every console but the first the reading of Textual's style sheets."""
+    with style_sheets.read_once():
+        yield
+
+
+def pytest_collection_finish(session: pytest.Session) -> None:
+    """Have a worker look for garbage seldom, and never among tests and modules: that took much of its time.
+
+    What no worker runs is left alone: benchmarks tell how long things take with Python's own ways.
+    """
+    if hasattr(session.config, "workerinput"):
+        gc.collect()
+        gc.freeze()
+        gc.set_threshold(10_000)
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """Let somebody who is going to look at them have the pictures of ``tests/app/goldens`` drawn anew."""
+    """Let somebody who is going to look at them have the pictures in folders ``goldens`` drawn anew."""
     parser.addoption(
-        "--accept-pictures", action="store_true", help="draw tests/app/goldens anew; look at them"
+        "--accept-pictures",
+        action="store_true",
+        help="draw tests/app/goldens and tests/widgets/goldens anew; look at them",
     )

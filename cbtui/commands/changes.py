@@ -1,13 +1,13 @@
 """The options that change a program's set-up without touching its file, and what they come to."""
 
 import argparse
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from cbtui.commands import values
-from cbtui.commands.seeds import add_seed
 
 if TYPE_CHECKING:
-    from cbtui.changes import Changes
+    from cbtui.changes import Changes, Place
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -43,7 +43,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         type=values.sensor_rate,
         help="how often a second the robot's sensors measure (20)",
     )
-    add_seed(parser)
 
 
 def changes_of(options: argparse.Namespace) -> "Changes":
@@ -51,9 +50,25 @@ def changes_of(options: argparse.Namespace) -> "Changes":
     from cbtui.changes import Changes
 
     return Changes(
-        options.threads,
-        dict(options.groups),
-        dict(options.periods),
-        sensor_rate=options.sensor_rate,
-        seed=options.seed,
+        options.threads, dict(options.groups), dict(options.periods), sensor_rate=options.sensor_rate
     )
+
+
+def seeded_changes_of(options: argparse.Namespace) -> "Changes":
+    """What the options change, and the order of threads that ``--seed`` chooses."""
+    return replace(changes_of(options), seed=options.seed)
+
+
+def words(changes: "Changes") -> list[str]:
+    """The options as they stand on a command line, without a seed."""
+    said = [] if changes.threads is None else ["--threads", str(changes.threads)]
+    for place, wish in changes.groups.items():
+        said += ["--group", f"{_spelt(place)}={wish}"]
+    for place, period in changes.periods.items():
+        said += ["--period", f"{_spelt(place)}={period / 1e9:.9g}"]
+    return said if changes.sensor_rate is None else [*said, "--sensor-rate", f"{changes.sensor_rate:g}"]
+
+
+def _spelt(place: "Place") -> str:
+    node, callback = place
+    return f"{node}:{callback}" if node else callback

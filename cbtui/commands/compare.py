@@ -5,7 +5,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cbtui.commands import appearance, values
+from cbtui.commands import appearance, inputs, values
 from cbtui.commands.run import DEFAULT_SECONDS
 from cbtui.commands.targets import file_of, is_file_name, lesson_of, refuse
 
@@ -46,24 +46,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
             type=values.threads,
             help=f"number of threads of {letter.upper()}'s executor, instead of its own",
         )
-    parser.add_argument(
-        "--call",
-        dest="calls",
-        metavar="SECONDS",
-        type=values.moment,
-        action="append",
-        default=[],
-        help="call the SetBool service of what is run at that time; may be given again",
-    )
-    parser.add_argument(
-        "--at",
-        dest="lines",
-        metavar=("SECONDS", "LINE"),
-        nargs=2,
-        action=values.TimedLine,
-        default=[],
-        help="carry out a ros2 line in what is run at that time; may be given again",
-    )
+    inputs.add_options(parser)
     parser.add_argument(
         "--inputs",
         metavar=f"FILE{_RECORDING}",

@@ -6,7 +6,7 @@ from pathlib import Path
 from cbtui.commands import changes
 from cbtui.commands.appearance import add_options, appearance, console_of
 from cbtui.commands.check import exercise_of
-from cbtui.commands.seeds import check_seed
+from cbtui.commands.seeds import add_seed, check_seed
 from cbtui.commands.targets import file_of, is_file_name, lesson_of, need_terminal, refuse
 
 
@@ -15,6 +15,7 @@ def add_open_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("target", metavar="LESSON|FILE.py", help="a lesson's id, see cbtui list, or a file")
     add_options(parser)
     changes.add_options(parser)
+    add_seed(parser)
     parser.add_argument(
         "--exercise",
         action="store_true",
@@ -48,7 +49,7 @@ def open_console(options: argparse.Namespace) -> int:
     look = appearance(options)
     need_terminal("cbtui run")
     _read_lessons()
-    changed = None if target is None else changes.changes_of(options)
+    changed = None if target is None else changes.seeded_changes_of(options)
     app = console_of(look, start_lesson=lesson, start_file=start_file, start_changes=changed)
     app.run()
     return app.return_code or 0
@@ -56,7 +57,7 @@ def open_console(options: argparse.Namespace) -> int:
 
 def _open_exercise(options: argparse.Namespace) -> int:
     lesson = exercise_of(options.target)
-    if changes.changes_of(options).words:
+    if changes.seeded_changes_of(options).words:
         refuse("an exercise is run as your file says: change that, and leave the options on threads and such")
     look = appearance(options)
     need_terminal("cbtui check")

@@ -3,12 +3,15 @@
 import argparse
 import shlex
 import sys
+from contextlib import closing
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
-from cbtui.commands import more_lessons, values
+from cbtui.commands import changes, inputs, more_lessons, values
 from cbtui.commands.check import add_limit, exercise_of
-from cbtui.commands.output import say
+from cbtui.commands.output import complain, say
 from cbtui.commands.targets import file_of, is_file_name, lesson_of, refuse
+from cbtui.interrupts import INTERRUPTED
 
 if TYPE_CHECKING:
     from cbtui.exploring import Exploration, Result
@@ -34,29 +37,34 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         type=values.duration,
         help=f"how long each run lasts in its own time ({DEFAULT_SECONDS:g}; a lesson: as it says)",
     )
-    parser.add_argument(
-        "--call",
-        dest="calls",
-        metavar="SECONDS",
-        type=values.moment,
-        action="append",
-        default=[],
-        help="call the SetBool service at that time; may be given again",
-    )
+    inputs.add_options(parser)
+    changes.add_options(parser)
     parser.add_argument("--check", metavar="LESSON", help="judge each run of the file by a lesson's checks")
     add_limit(parser, 60)
     more_lessons.add_option(parser)
 
 
 def explore(options: argparse.Namespace) -> int:
-    """Run other orders of a program; returns the exit code: 0 all went well, 1 some failed."""
+    """Run other orders of a program; returns the exit code: 0 all went well, 1 some failed.
+
+    Ctrl-C ends it early, with 130; what came of the orders that were tried is told all the same.
+    """
     _check(options)
     exploration, replays = _of_file(options) if is_file_name(options.target) else _of_lesson(options)
     from cbtui.exploration_text import exploration_text
 
     seeds = range(options.seed, options.seed + options.schedules)
-    found = _explored(exploration, seeds)
-    say(exploration_text(exploration.name, found, replays))
+    found: dict[int, Result] = {}
+    interrupted = False
+    try:
+        _explore(exploration, seeds, found)
+    except KeyboardInterrupt:
+        interrupted = True
+        complain(f"interrupted: {len(found)} of {len(seeds)} schedules were tried")
+    if found:
+        say(exploration_text(exploration.name, dict(sorted(found.items())), replays))
+    if interrupted:
+        return INTERRUPTED
     return 0 if all(result.well for result in found.values()) else 1
 
 
@@ -65,14 +73,26 @@ def _check(options: argparse.Namespace) -> None:
     is_file = is_file_name(options.target)
     if options.check is not None and not is_file:
         refuse(f"a lesson is judged by its own checks; leave out --check {options.check}, or give a file")
-    if (options.check is not None or not is_file) and (options.seconds is not None or options.calls):
-        refuse("a lesson's checks are about the run that it describes; leave out --for and --call")
-    if options.arguments and (options.check is not None or not is_file):
+    inputs.check(options, options.seconds or DEFAULT_SECONDS)
+    if is_file and options.check is None:
+        return
+    if others := [name for name, given in _of_files_only(options).items() if given]:
+        refuse(f"a lesson's checks are about the run that it describes; leave out {', '.join(others)}")
+    if options.arguments:
         refuse("a lesson has its own arguments; leave out what stands behind --")
-    seconds = options.seconds or DEFAULT_SECONDS
-    for at in options.calls:
-        if at >= seconds:
-            refuse(f"a call at {at:g} s comes when the run of {seconds:g} s is over; see --for")
+
+
+def _of_files_only(options: argparse.Namespace) -> dict[str, object]:
+    """What would make a lesson's run another one."""
+    return {
+        "--for": options.seconds,
+        "--call": options.calls,
+        "--at": options.lines,
+        "--threads": options.threads,
+        "--group": options.groups,
+        "--period": options.periods,
+        "--sensor-rate": options.sensor_rate,
+    }
 
 
 def _of_file(options: argparse.Namespace) -> "tuple[Exploration, list[str]]":
@@ -87,20 +107,24 @@ def _of_file(options: argparse.Namespace) -> "tuple[Exploration, list[str]]":
 
     from cbtui.exploring import Exploration
     from cbtui.lesson_setup import setup_for_files
-    from sim.engine.setup import TimedCall
+    from sim.engine.setup import TimedCall, TimedLine
 
     seconds = options.seconds or DEFAULT_SECONDS
+    changed = changes.changes_of(options)
+    lines = sorted(options.lines, key=itemgetter(0))
     setup = msgspec.structs.replace(
-        setup_for_files([path], options.arguments, speed=None),
+        changed.applied(setup_for_files([path], options.arguments, speed=None)),
         clock="virtual",
         until=round(seconds * _SECOND),
         calls=tuple(TimedCall(round(at * _SECOND), data=True) for at in sorted(options.calls)),
+        lines=tuple(TimedLine(round(at * _SECOND), text) for at, text in lines),
     )
-    calls = [word for at in options.calls for word in ("--call", f"{at:g}")]
+    given = inputs.words(options.calls, lines)
+    different = changes.words(changed)
     behind = ["--", *options.arguments] if options.arguments else []
     replays = [
-        ["cbtui", "run", options.target, "--for", f"{seconds:g}", *calls, *behind],
-        ["cbtui", "open", options.target, *behind],
+        ["cbtui", "run", options.target, "--for", f"{seconds:g}", *given, *different, *behind],
+        ["cbtui", "open", options.target, *different, *behind],
     ]
     return Exploration(setup, path.name, None, options.limit), [shlex.join(each) for each in replays]
 
@@ -112,8 +136,7 @@ def _of_lesson(options: argparse.Namespace) -> "tuple[Exploration, list[str]]":
     run = lesson.run
     words = ["cbtui", "run", lesson.id, "--for", f"{run.seconds:g}"]
     words += [] if run.threads is None else ["--threads", str(run.threads)]
-    words += [word for at in sorted(run.calls) for word in ("--call", f"{at:g}")]
-    words += [word for at, line in sorted(run.lines) for word in ("--at", f"{at:g}", line)]
+    words += inputs.words(run.calls, sorted(run.lines))
     return _judged(lesson, options, None), [shlex.join(words), shlex.join(["cbtui", "open", lesson.id])]
 
 
@@ -129,16 +152,17 @@ def _judged(lesson: "Lesson", options: argparse.Namespace, file: str | None) -> 
     return Exploration(setup_to_judge(lesson, path), name, judge, options.limit)
 
 
-def _explored(exploration: "Exploration", seeds: range) -> "dict[int, Result]":
-    """What came of each seed, in the order of the seeds; how far it has come shows on a terminal."""
+def _explore(exploration: "Exploration", seeds: range, found: "dict[int, Result]") -> None:
+    """Put into ``found`` what comes of each seed; how far it has come shows on a terminal."""
     tells = sys.stderr.isatty()
-    found = {}
-    for seed, result in exploration.results(seeds):
-        found[seed] = result
+    try:
+        with closing(exploration.results(seeds)) as results:
+            for seed, result in results:
+                found[seed] = result
+                if tells:
+                    failed = sum(not each.well for each in found.values())
+                    sys.stderr.write(f"\r{len(found)} of {len(seeds)} schedules, {failed} failed ")
+                    sys.stderr.flush()
+    finally:
         if tells:
-            failed = sum(not each.well for each in found.values())
-            sys.stderr.write(f"\r{len(found)} of {len(seeds)} schedules, {failed} failed ")
-            sys.stderr.flush()
-    if tells:
-        sys.stderr.write("\r\033[K")
-    return dict(sorted(found.items()))
+            sys.stderr.write("\r\033[K")

@@ -32,11 +32,20 @@ def shown(text: str) -> str:
     return "\n".join(visible(line, Charset.BRAILLE) for line in lines)
 
 
+class CannotSayError(OSError):
+    """A standard stream takes no more."""
+
+
 def _write(stream: TextIO, text: str) -> None:
     encoding = (stream.encoding or "ascii").lower().replace("-", "").replace("_", "")
     if not encoding.startswith("utf") and not text.isascii():
         from cbtui.ascii_filter import in_ascii  # with Textual, so only where it is needed
 
         text = in_ascii(text)
-    stream.write(text)
-    stream.flush()
+    try:
+        stream.write(text)
+        stream.flush()
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        raise CannotSayError(error.errno, error.strerror) from error

@@ -4,8 +4,8 @@ import argparse
 import math
 from pathlib import Path
 
-from cbtui.commands import changes, values
-from cbtui.commands.seeds import check_seed
+from cbtui.commands import changes, inputs, values
+from cbtui.commands.seeds import add_seed, check_seed
 from cbtui.commands.targets import file_of, is_file_name, lesson_of, refuse, setup_of_targets
 
 DEFAULT_SECONDS = 60.0
@@ -27,26 +27,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help=f"how long the run lasts in its own time ({DEFAULT_SECONDS:g})",
     )
     changes.add_options(parser)
-    parser.add_argument(
-        "--call",
-        dest="calls",
-        metavar="SECONDS",
-        type=values.moment,
-        action="append",
-        default=[],
-        help="call the SetBool service at that time; may be given again",
-    )
+    add_seed(parser)
+    inputs.add_options(parser)
     parser.add_argument(
         "--call-data", choices=("true", "false"), default="true", help="what the calls send (%(default)s)"
-    )
-    parser.add_argument(
-        "--at",
-        dest="lines",
-        metavar=("SECONDS", "LINE"),
-        nargs=2,
-        action=values.TimedLine,
-        default=[],
-        help="carry out a ros2 line at that time, such as 2 'ros2 topic list'; may be given again",
     )
     parser.add_argument(
         "--inputs",
@@ -103,8 +87,9 @@ def run(options: argparse.Namespace) -> int:
         program = setup_for_files(paths, options.arguments, threads=options.threads, speed=speed)
     robot = program.robot if options.robot else RobotUse.NEVER
     clock = options.clock or (program.clock if options.seed is None else "virtual")
+    setup = msgspec.structs.replace(program, clock=clock, robot=robot)
     return run_headless(
-        changes.changes_of(options).applied(msgspec.structs.replace(program, clock=clock, robot=robot)),
+        changes.seeded_changes_of(options).applied(setup),
         seconds=options.seconds,
         calls=options.calls,
         call_data=options.call_data == "true",
@@ -137,7 +122,7 @@ def _repeat(options: argparse.Namespace) -> int:
         refuse(str(error))
     if not options.robot:
         setup = msgspec.structs.replace(setup, robot=RobotUse.NEVER)
-    setup = changes.changes_of(options).applied(setup)
+    setup = changes.seeded_changes_of(options).applied(setup)
     return run_set_up(
         msgspec.structs.replace(setup, speed=speed, contents=setup.contents or options.record is not None),
         events_path=options.events,
@@ -148,10 +133,7 @@ def _repeat(options: argparse.Namespace) -> int:
 
 def _check_run(options: argparse.Namespace, *, is_file: bool) -> None:
     """Refuse what does not fit together."""
-    moments = [("call", at) for at in options.calls] + [("line", at) for at, _ in options.lines]
-    for what, at in moments:
-        if at >= options.seconds:
-            refuse(f"a {what} at {at:g} s comes when the run of {options.seconds:g} s is over; see --for")
+    inputs.check(options, options.seconds)
     if not is_file and len(options.targets) > 1:
         refuse("one lesson runs at a time; several targets must all be files")
     if options.force and options.record is None:

@@ -8,6 +8,7 @@ from urllib.parse import urlsplit
 
 from cbtui.commands import appearance, console
 from cbtui.commands.targets import file_of, is_file_name, lesson_of, refuse
+from cbtui.installing import install_command
 
 _VISITORS = 8
 _HIGHEST_PORT = 65535
@@ -38,9 +39,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def serve(options: argparse.Namespace) -> int:
     """Serve until ctrl+c; returns the exit code."""
     if find_spec("textual_serve") is None:
-        refuse("the browser needs textual-serve; install it with: pip install 'cbtui[serve]'")
+        refuse(f"the browser needs textual-serve; install it with: {install_command('cbtui[serve]')}")
     appearance.appearance(options)
-    command = [sys.executable, "-m", "cbtui", *appearance.given(options), *_opened(options.arguments)]
+    command = [sys.executable, "-P", "-m", "cbtui", *appearance.given(options), *_opened(options.arguments)]
     import asyncio  # no other command waits for it
 
     from cbtui.web.guard import is_loopback

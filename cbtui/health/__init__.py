@@ -3,6 +3,7 @@
 import os
 import shutil
 import sys
+import sysconfig
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -25,7 +26,7 @@ def examinations(charset: str, config: str | None = None) -> Iterator[Verdict]:
     try:
         yield python(sys.version_info[:3])
         yield from dependencies(importing)
-        yield bullet(world, sys.version_info[:2])
+        yield bullet(world, sys.version_info[:2], sysconfig.get_platform())
         yield engine()
         yield from lessons_found()
         yield from screen(Screen(os.environ, charset, _size()))

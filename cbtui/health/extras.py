@@ -8,6 +8,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 from cbtui.health.verdict import Verdict, note, well
+from cbtui.installing import install_command
 
 _PORT = 8000
 """The port that ``cbtui serve`` takes when none is named."""
@@ -32,7 +33,7 @@ def editor(environment: Mapping[str, str]) -> Verdict:
 def browser(port: int = _PORT) -> Verdict:
     """Look whether the console can be shown in a browser."""
     if find_spec("textual_serve") is None:
-        return well("browser", "left out; pip install 'cbtui[serve]' brings cbtui serve")
+        return well("browser", f"left out; {install_command('cbtui[serve]')} brings cbtui serve")
     with socket.socket() as tried:
         tried.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
         try:

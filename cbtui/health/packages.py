@@ -7,10 +7,12 @@ from importlib.metadata import PackageNotFoundError, version
 from cbtui.health.probes import Probe, module_of
 from cbtui.health.requirements import Requirement, in_range, requirements
 from cbtui.health.verdict import Verdict, fault, note, well
+from cbtui.installing import install_command
 
 _OLDEST = (3, 11)
-_WITH_WHEELS = (3, 11)
-"""The newest Python that PyBullet has ready-made wheels for."""
+_NEWEST_WITH_WHEEL = (3, 11)
+_MACHINE_WITH_WHEEL = "linux-x86_64"
+"""What PyBullet has ready-made wheels for."""
 
 
 def python(running: tuple[int, ...]) -> Verdict:
@@ -38,7 +40,7 @@ def dependencies(importing: Probe) -> Iterator[Verdict]:
 
 def _package(needed: Requirement, broken: Mapping[str, str]) -> Verdict | None:
     name, versions = needed
-    remedy = f"install it with {sys.executable} -m pip install '{name}{versions}'"
+    remedy = f"install it with {install_command(f'{name}{versions}')}"
     try:
         installed = version(name)
     except PackageNotFoundError:
@@ -46,7 +48,10 @@ def _package(needed: Requirement, broken: Mapping[str, str]) -> Verdict | None:
     if not in_range(installed, versions):
         return fault(name, f"is {installed}, and cbtui needs {versions}", remedy)
     if (why := broken.get(module_of(name))) is not None:
-        return fault(name, f"{installed} cannot be imported ({why})", f"{remedy} --force-reinstall")
+        remedy = (
+            f"install it again with {install_command('--force-reinstall', '--no-deps', f'{name}{versions}')}"
+        )
+        return fault(name, f"{installed} cannot be imported ({why})", remedy)
     return None
 
 
@@ -65,20 +70,24 @@ def _broken(importing: Probe) -> dict[str, str]:
     return broken
 
 
-def bullet(world: Probe, running: tuple[int, ...]) -> Verdict:
-    """Look whether PyBullet, which moves the robot, builds a world."""
+def bullet(world: Probe, running: tuple[int, ...], machine: str) -> Verdict:
+    """Look whether PyBullet, which moves the robot, builds a world.
+
+    ``machine`` is what ``sysconfig.get_platform`` calls this one.
+    """
     outcome = world.outcome()
     if outcome.code == 0:
         return well("PyBullet", "builds the robot's world")
     why = outcome.death or (outcome.complained.strip().splitlines() or ["it failed"])[-1]
-    return fault("PyBullet", f"builds no world ({why})", _bullet_remedy(running))
+    return fault("PyBullet", f"builds no world ({why})", _bullet_remedy(running, machine))
 
 
-def _bullet_remedy(running: tuple[int, ...]) -> str:
-    install = f"{sys.executable} -m pip install --force-reinstall --no-deps pybullet"
-    if running > _WITH_WHEELS:
-        return (
-            "Python 3.11 has a ready-made wheel; with this one, have a C++ compiler and Python's headers "
-            f"(apt install g++ python3-dev), and let pip build it: {install}"
-        )
-    return f"install it with {install}"
+def _bullet_remedy(running: tuple[int, ...], machine: str) -> str:
+    install = install_command("--force-reinstall", "--no-deps", "pybullet")
+    if running <= _NEWEST_WITH_WHEEL and machine == _MACHINE_WITH_WHEEL:
+        return f"install it with {install}"
+    instead = "use Python 3.11, which has a ready-made wheel, or " if machine == _MACHINE_WITH_WHEEL else ""
+    return (
+        f"{instead}have a C++ compiler and Python's headers (apt install g++ python3-dev) and let it be "
+        f"built, for ten minutes or more: {install}"
+    )

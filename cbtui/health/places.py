@@ -63,6 +63,10 @@ def configuration(named: Path | None) -> Iterator[Verdict]:
         there = path.exists()
     except OSError:
         there = True  # reading it says why it cannot be
+    if named is None and not path.is_absolute():
+        remedy = "set HOME or XDG_CONFIG_HOME, or name a file with --config, for keys and colours of your own"
+        yield note("config", "there is no home folder", remedy)
+        return
     if named is None and not there:
         yield well("config", f"none ({path} would be it; cbtui keys writes one to begin with)")
         return

@@ -26,7 +26,8 @@ class Screen(NamedTuple):
 def screen(shown_on: Screen) -> Iterator[Verdict]:
     """Look at the terminal."""
     yield _terminal(shown_on)
-    yield _colours(shown_on.environment)
+    if not is_dumb(shown_on.environment):
+        yield _colours(shown_on.environment)
     yield _signs(shown_on)
     yield from _between(shown_on.environment)
 
@@ -56,7 +57,7 @@ def _terminal(shown_on: Screen) -> Verdict:
 
 def _colours(environment: Mapping[str, str]) -> Verdict:
     if environment.get("NO_COLOR"):
-        return well("colours", "none, as NO_COLOR asks; letters and textures say the same")
+        return well("colours", "greys alone, as NO_COLOR asks; letters and textures say the rest")
     if environment.get("COLORTERM", "").lower() in {"truecolor", "24bit"}:
         return well("colours", "16 million")
     name = environment.get("TERM", "")

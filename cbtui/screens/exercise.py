@@ -17,7 +17,7 @@ from cbtui.checking import Checked, Observed, over
 from cbtui.exercise_sheet import ExerciseWords, Keys
 from cbtui.file_watch import CANNOT_WATCH, content_of, contents
 from cbtui.keymap import STANDARD, Keymap, keymap_of
-from cbtui.lesson_page import Part
+from cbtui.lesson_page import page_of_exercise
 from cbtui.live_run import Deliver, Ended, LiveRun, OpenSession
 from cbtui.screens.lesson import LessonScreen
 from cbtui.subject import of_exercise
@@ -41,8 +41,6 @@ _REFUSED = frozenset(
         "group",
         "set_up",
         "exercise",
-        "predict",
-        "explain",
     }
 )
 """Actions that would make the run another than the one that is judged."""
@@ -136,8 +134,8 @@ class ExerciseScreen(LessonScreen):
 
     @property
     def _page(self) -> Mapping[str, str]:
-        """The page of the exercise, with how to go about it."""
-        return {**super()._page, Part.EXERCISE: self._words_in(STANDARD, Charset.ASCII).page(self._file)}
+        lesson, task = self._judged_lesson, self._words_in(STANDARD, Charset.ASCII).page(self._file)
+        return page_of_exercise(lesson, self._standing_in(lesson), self._signs, task)
 
     # what there is to say
 

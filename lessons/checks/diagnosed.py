@@ -6,7 +6,7 @@ from lessons.checks.check import Check, Verdict
 from sim.diagnosis import RULES, Finding, Weight, diagnose
 from sim.trace.timeline import Timeline
 
-_STUCK = ("self-made-deadlock", "needs-one-more-worker")
+_STUCK = ("self-made-deadlock", "needs-one-more-worker", "endless-wait")
 
 
 def problems(run: Timeline) -> tuple[Finding, ...]:

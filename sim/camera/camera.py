@@ -12,6 +12,7 @@ import msgspec
 
 from sim.camera.process import serve
 from sim.camera.wire import NoCamera, Picture, Shot
+from sim.clean_start import without_current_folder
 
 _GRACE = 0.4
 """Seconds that the process gets to end by itself before it is killed."""
@@ -80,7 +81,7 @@ class Camera:
         )
         self._reader = threading.Thread(target=self._read, name="camera-reader", daemon=True)
         # Starting a process hands on standard error, and Textual's stand-in for it has no descriptor.
-        with redirect_stderr(sys.__stderr__):
+        with redirect_stderr(sys.__stderr__), without_current_folder():
             self._process.start()
         far_end.close()
         self._reader.start()

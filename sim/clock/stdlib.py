@@ -7,11 +7,12 @@ queues follow by themselves, since Python builds them from the locks replaced he
 """
 
 import queue
+import sys
 import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from types import TracebackType
+from types import CodeType, FrameType, TracebackType
 from typing import Any, TypeVar
 
 from sim.clock.outside import start_outside
@@ -22,6 +23,9 @@ _allocate_lock = threading.Lock
 _thread_start = threading.Thread.start
 _thread_join = threading.Thread.join
 _thread_is_alive = threading.Thread.is_alive
+_RLock: Any = threading._PyRLock  # type: ignore[attr-defined]
+_RLOCK_TAKES = _RLock.acquire.__code__
+_RLOCK_TAKES_AGAIN = _RLock._acquire_restore.__code__
 
 Number = TypeVar("Number", int, float)
 
@@ -40,13 +44,15 @@ class VirtualLock:
         self._waiters: deque[VirtualThread] = deque()
         self._granted: VirtualThread | None = None
         self.holder: VirtualThread | None = None
-        """The thread of the clock that has it."""
+        self.guards = False
+        self.taken_at: tuple[CodeType, int] | None = None
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Take the lock; False if it is not to be had at once (or within ``timeout`` seconds)."""
         self._clock.switch_point()
         if self._real.acquire(blocking=False):
-            self._note_holder()
+            if self._clock.owns_current_thread():
+                self._note_taking(sys._getframe(1))
             return True
         if not blocking:
             if timeout != -1:
@@ -55,14 +61,16 @@ class VirtualLock:
         if not self._clock.owns_current_thread():
             return self._real.acquire(timeout=timeout)
         deadline = None if timeout < 0 else self._clock.now() + int(timeout * 1e9)
-        return self._wait_in_line(deadline)
+        taken = self._wait_in_line(deadline)
+        if taken:
+            self._note_taking(sys._getframe(1))
+        return taken
 
     def _wait_in_line(self, deadline: int | None) -> bool:
         me = self._clock.current
         self._waiters.append(me)
         if self._real.acquire(blocking=False):  # a thread outside let go of it before it could see us
             self._waiters.remove(me)
-            self.holder = me
             return True
         if deadline is None:
             me.wants = self
@@ -80,8 +88,6 @@ class VirtualLock:
             self._granted = None
             return True
         self._waiters.remove(me)
-        if taken:
-            self.holder = me
         return taken
 
     def _give_up_place(self, me: VirtualThread) -> None:
@@ -122,9 +128,15 @@ class VirtualLock:
             self._real.release()
         self._clock.unpark(following)
 
-    def _note_holder(self) -> None:
-        if self._clock.owns_current_thread():
-            self.holder = self._clock.current
+    def _note_taking(self, frame: FrameType) -> None:
+        """Note who has taken the lock, and the line behind the library's own: ``frame`` is what took it."""
+        self.holder = self._clock.current
+        code = frame.f_code
+        self.guards = code is _ENTERS or code is _RLOCK_TAKES or code is _RLOCK_TAKES_AGAIN
+        while code.co_filename in _LIBRARY and frame.f_back is not None:
+            frame = frame.f_back
+            code = frame.f_code
+        self.taken_at = code, frame.f_lasti
 
     def locked(self) -> bool:
         """Whether somebody holds it."""
@@ -142,6 +154,10 @@ class VirtualLock:
         self._real = _allocate_lock()
         self._waiters.clear()
         self.holder = None
+
+
+_ENTERS = VirtualLock.__enter__.__code__
+_LIBRARY = {__file__, _RLOCK_TAKES.co_filename, queue.Queue.get.__code__.co_filename}
 
 
 def live_on(clock: VirtualClock) -> None:
@@ -199,7 +215,7 @@ def _replace_threads(clock: VirtualClock) -> None:
         inner: Any = thread
         if clock.owns_current_thread() and not inner._started.is_set():
             inner._virtual_end = _End(clock)
-            inner.run = clock.adopt(_ending(thread.run, inner._virtual_end), thread.name)
+            inner.run = clock.adopt(_ending(thread.run, inner._virtual_end, clock), thread.name)
             start_outside(thread)
         else:
             _thread_start(thread)
@@ -224,8 +240,12 @@ def _replace_threads(clock: VirtualClock) -> None:
 class _End:
     """When a thread ended in virtual time; any number of others may wait for it."""
 
+    guards: bool = True
+    taken_at: tuple[CodeType, int] | None = None
+
     def __init__(self, clock: VirtualClock) -> None:
         self.reached = False
+        self.holder: VirtualThread | None = None
         self._clock = clock
         self._waiters: list[VirtualSignal] = []
 
@@ -236,15 +256,23 @@ class _End:
 
     def wait(self, deadline: int | None) -> bool:
         if not self.reached:
+            me = self._clock.current
             waiter = self._clock.signal()
             self._waiters.append(waiter)
-            waiter.wait(deadline)
+            if deadline is None:
+                me.wants = self
+                self._clock.on_lock_wait(me)
+            try:
+                waiter.wait(deadline)
+            finally:
+                me.wants = None
             self._waiters.remove(waiter)
         return self.reached
 
 
-def _ending(body: Callable[[], None], end: _End) -> Callable[[], None]:
+def _ending(body: Callable[[], None], end: _End, clock: VirtualClock) -> Callable[[], None]:
     def run() -> None:
+        end.holder = clock.current
         try:
             body()
         finally:

@@ -17,7 +17,7 @@ So that such a run can be stopped and given inputs, a moment has a recess after 
 
 import threading
 from collections import deque
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Set
 from contextlib import contextmanager
 from heapq import heappop, heappush
 from itertools import count
@@ -75,7 +75,10 @@ class VirtualClock:
         self.on_recess: Callable[[int], None] = _ignore
         """Called in every recess, with its number, on the thread that waits; it must not wait."""
         self.on_lock_wait: Callable[[VirtualThread], None] = _pass
-        """Called when a thread begins to wait for a lock without an end, on that thread; it must not wait."""
+        """Called when a thread begins to wait without an end for a lock, or for another thread to end.
+
+        It is called on that thread, and must not wait.
+        """
         self.recess = 0
         """Which recess of its moment the run is in; 0: none."""
         self._recesses = 0
@@ -94,6 +97,11 @@ class VirtualClock:
     def now(self) -> int:
         """Virtual nanoseconds since the run began."""
         return self._now
+
+    @property
+    def threads(self) -> Set[VirtualThread]:
+        """The threads that live on it; to be asked for by the one that has the baton."""
+        return self._threads
 
     def sleep(self, duration: int) -> None:
         """Let ``duration`` virtual nanoseconds pass; 0 lets every other thread that can run go first."""

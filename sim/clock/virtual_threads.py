@@ -41,7 +41,7 @@ class VirtualThread:
         self.gate.acquire()
         self.waiting = False
         self.wants: Held | None = None
-        """The lock that it waits for without an end."""
+        """What it waits for without an end: a lock, or that a thread ends."""
         self.woken = False
         self.current_wait = 0
 

@@ -24,6 +24,13 @@ def failure(error: BaseException, path: str, folder: str) -> str:
     return f"{place}: the program raised {what}{advice_on(error, frame)}"
 
 
+def breakdown(error: Exception) -> str:
+    """The sentence for an exception of the engine's own, outside all programs."""
+    frames = traceback.extract_tb(error.__traceback__)
+    place = f" ({_place(frames[-1].filename, frames[-1].lineno or 0)})" if frames else ""
+    return f"the engine failed: {type(error).__name__}: {error}{place}; cbtui doctor may tell why"
+
+
 def place_of(error: BaseException, path: str, folder: str) -> str:
     """Where in the learner's own files an exception came up, as " (file:line)"; empty where it did not."""
     found = _innermost(error, path, folder)

@@ -3,11 +3,12 @@
 import sys
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
 from types import FrameType
 
 from sim.clock import Clock
+from sim.ros.own_code import is_own, outwards, place_of
 from sim.trace.events import AnyEvent, Notice, Severity
 
 # Kept from before a clock puts its own in their place.
@@ -60,7 +61,7 @@ class HeldUp:
 def _call_held_up(top: FrameType) -> FrameType | None:
     """The learner's call on a thread, if it runs or waits for something other than time; else None."""
     inner: FrameType | None = None
-    for frame in _outwards(top):
+    for frame in outwards(top):
         file = frame.f_code.co_filename
         if file == _CALLS:
             return inner
@@ -68,26 +69,13 @@ def _call_held_up(top: FrameType) -> FrameType | None:
             return None  # the model waits, which the trace tells of
         if file.startswith(_CLOCK) and frame.f_code.co_name in _FOR_TIME:
             return None
-        if _is_own(frame):
+        if is_own(frame):
             inner = frame
     return None
 
 
-def _outwards(frame: FrameType | None) -> Iterator[FrameType]:
-    while frame is not None:
-        yield frame
-        frame = frame.f_back
-
-
-def _is_own(frame: FrameType) -> bool:
-    module = str(frame.f_globals.get("__name__", "")).partition(".")[0]
-    return module not in {"sim", "runpy"} and (module == "__main__" or module not in sys.stdlib_module_names)
-
-
 def _sentence(call: FrameType, top: FrameType) -> str:
-    at = next(frame for frame in _outwards(top) if _is_own(frame))
-    place = f"{Path(at.f_code.co_filename).name}:{at.f_lineno}, in {at.f_code.co_name}"
     return (
-        f"{call.f_code.co_name} has not come back for {_LOOK * _PATIENCE:g} s ({place}): it computes without "
-        "end, or waits for something that does not come; its thread serves nothing else meanwhile"
+        f"{call.f_code.co_name} has not come back for {_LOOK * _PATIENCE:g} s ({place_of(top)}): it computes "
+        "without end, or waits for something that does not come; its thread serves nothing else meanwhile"
     )

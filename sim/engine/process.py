@@ -13,9 +13,11 @@ import time
 from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
+from typing import NoReturn
 
 import msgspec
 
+from sim import clean_start
 from sim.clock import Clock, PacedClock, VirtualClock
 from sim.clock.paced_stdlib import follow
 from sim.clock.schedule import schedule_of
@@ -23,10 +25,11 @@ from sim.clock.stdlib import live_on
 from sim.engine import commands
 from sim.engine.children import allow_children, refuse_children
 from sim.engine.descriptors import Descriptors, leave_terminal
+from sim.engine.endless_waits import EndlessWaits
+from sim.engine.failure import breakdown
 from sim.engine.held_up import HeldUp
 from sim.engine.last_words import keep_last_words
 from sim.engine.lines import Lines
-from sim.engine.lock_circles import LockCircles
 from sim.engine.outbox import Outbox
 from sim.engine.output import ProcessStream
 from sim.engine.program import Outcome, script
@@ -88,6 +91,7 @@ class Engine:
         )
         probe = Probe(self._clock, self._control.record, self._contents)
         self._host = Host(self._clock, probe, threads=setup.threads, tuning=tuning_of(setup))
+        self._endless: EndlessWaits | None = None
         self._requests = Requests(self._host, self._outbox.record)
         self._programs = Programs(self._host, self._outbox.record)
         self._starter = Starter(self._programs, self._setup)
@@ -115,10 +119,11 @@ class Engine:
         self._settle_children()
         provide_robot(self._setup, self._host, self._outbox.record, self._fail)
         if self._virtual is not None:
-            self._virtual.before_jump = self._host.explain_waits
+            self._endless = endless = EndlessWaits(self._virtual, self._host, self._outbox.record)
+            self._virtual.before_jump = self._look_at_waits
             Watchdog(self._virtual, self._outbox.record, self._give_up).start()
             self._virtual.on_recess = Standstill(self._virtual, self._outbox.record, self._give_up).look
-            self._virtual.on_lock_wait = LockCircles(self._virtual, self._outbox.record).look
+            self._virtual.on_lock_wait = endless.begins
             live_on(self._virtual)
             random.seed(0)
         elif isinstance(self._clock, PacedClock):
@@ -181,6 +186,8 @@ class Engine:
     def _finish_run(self, reason: str, *, failed: bool) -> None:
         if not self._over:
             self._over = True
+            if self._endless is not None:
+                self._endless.finish()
             with self._host.lock:
                 if self._host.tuning is not None and not failed:
                     for sentence in self._host.tuning.unmet():
@@ -218,6 +225,12 @@ class Engine:
         self._starter.close()
         _leave(0)
 
+    def _break_down(self, error: Exception) -> NoReturn:
+        self._descriptors.finish()
+        self._finish_run(breakdown(error), failed=True)
+        self._starter.close()
+        _leave(1)
+
     def _redirect_output(self) -> None:
         def stream(error: bool) -> ProcessStream:
             def take(process: Process, text: str) -> None:
@@ -254,6 +267,11 @@ class Engine:
             "its log goes to stderr and is shown"
         )
         self._outbox.record(Notice(self._clock.now(), Severity.INFO, text))
+
+    def _look_at_waits(self) -> int | None:
+        if self._endless is not None:
+            self._endless.look()
+        return self._host.explain_waits()
 
     def _look_at_waits_of_real_time(self) -> None:
         if self._virtual is None and not self._over:
@@ -321,6 +339,7 @@ def _nobody_waits(_end: object) -> None:
 def run(packed_setup: bytes, pipe: Connection, last_words: Connection) -> None:
     """Be the engine process of one run; where its threads stand as it crashes goes to ``last_words``."""
     leave_terminal()
+    clean_start.forget()
     setup = msgspec.msgpack.decode(packed_setup, type=RunSetup)
     os.set_inheritable(pipe.fileno(), False)
     engine = Engine(setup, pipe, last_words)
@@ -332,3 +351,5 @@ def run(packed_setup: bytes, pipe: Connection, last_words: Connection) -> None:
     except WorldUnavailable as error:
         engine._finish_run(str(error), failed=True)
         _leave(1)
+    except Exception as error:  # noqa: BLE001 - an error of the engine's own, which nobody else tells of
+        engine._break_down(error)

@@ -17,6 +17,7 @@ from sim.engine.advice import misplaced, silence
 from sim.engine.failure import failure, place_of, print_traceback
 from sim.engine.output import ProcessStream
 from sim.engine.source import NothingToRunError, read_source
+from sim.ros.process import current_process
 
 _INTERRUPTED = 130
 
@@ -77,7 +78,12 @@ def _outcome_of(program: Program) -> Outcome:
     except BaseException as error:  # noqa: BLE001 -- whatever a learner's program raises ends its run, not the engine
         print_traceback(error, program.path)
         return Outcome(failure(error, program.path, program.folder), failed=True, status=1)
-    return Outcome(silence() or "the program returned", failed=status != 0, status=status)
+    return Outcome(silence() or _returned(), failed=status != 0, status=status)
+
+
+def _returned() -> str:
+    at = current_process().shut_down_at
+    return f"the program returned, as rclpy was shut down ({at})" if at else "the program returned"
 
 
 def _load(program: Program) -> Callable[[], object]:

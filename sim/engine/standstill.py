@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from sim.clock import VirtualClock
 from sim.clock.virtual import WAITS_TO_RECESS
-from sim.engine.watchdog import place_of
+from sim.engine.places import place_of
 from sim.trace.events import AnyEvent, Notice, Severity
 
 _PATIENCE = 10

@@ -1,13 +1,11 @@
 """Notices a program that stands still outside virtual time, and names the place."""
 
-import sys
 import threading
 import time
 from collections.abc import Callable
-from pathlib import Path
 
 from sim.clock import VirtualClock
-from sim.clock.virtual_threads import VirtualThread
+from sim.engine.places import place_of
 from sim.trace.events import AnyEvent, Notice, Severity
 
 _RealThread = threading.Thread
@@ -56,15 +54,3 @@ class Watchdog:
             "or waits for something outside the virtual clock; mend it, "
             "or run the file by itself with --clock real"
         )
-
-
-def place_of(thread: VirtualThread) -> str:
-    """Where in the program a thread is, in a few words."""
-    frame = sys._current_frames().get(thread.ident)
-    while frame is not None:
-        file = frame.f_code.co_filename
-        module = frame.f_globals.get("__name__", "").partition(".")[0]
-        if (module not in {"sim", "runpy"} and module not in sys.stdlib_module_names) or module == "__main__":
-            return f"{Path(file).name}:{frame.f_lineno}, in {frame.f_code.co_name}"
-        frame = frame.f_back
-    return "somewhere"

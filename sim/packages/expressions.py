@@ -43,7 +43,7 @@ class Expressions:
         try:
             value = read(self, node)
         except (TypeError, ValueError, LookupError, AttributeError, OSError, NotImplementedError) as error:
-            raise PackageError(f"{self.place(node)}: {ast.unparse(node)} fails: {error}") from None
+            raise PackageError(f"{self.place(node)}: {_written(node)} fails: {error}") from None
         except (MemoryError, OverflowError, RecursionError):
             raise PackageError(f"{self.place(node)}: an expression in it becomes too large") from None
         if isinstance(value, (str, bytes, list, tuple, dict)) and len(value) > _LONGEST:
@@ -169,9 +169,16 @@ class Expressions:
     def trouble(self, node: ast.expr) -> PackageError:
         """What to tell about an expression that is too much."""
         return PackageError(
-            f"{self.place(node)}: {ast.unparse(node)} cannot be read without running the file; "
+            f"{self.place(node)}: {_written(node)} cannot be read without running the file; "
             "write it as constants, names, os.path.join and glob"
         )
+
+
+def _written(node: ast.expr) -> str:
+    try:
+        return ast.unparse(node)
+    except RecursionError:
+        return "an expression that is nested deeply"
 
 
 _READERS: Mapping[type[ast.expr], Callable[[Expressions, Any], Any]] = {

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from sim.robot.arena import ARENA, ROBOT_RADIUS
 from sim.robot.lidar import ANGLE_INCREMENT, ANGLE_MIN, RANGE_MAX, RANGE_MIN
+from sim.robot.velocity_commands import VelocityCommands
 from sim.robot.world import World
 from sim.ros.context import Context
 from sim.ros.executors import SingleThreadedExecutor
@@ -70,13 +71,13 @@ class Driver:
                 ROBOT_RADIUS,
             )
         )
-        self._host.clock.start_thread(self._drive, "robot_driver")
+        self._context.process.start_thread(self._drive, "robot_driver")
 
     def _offer(self) -> None:
         node = self._node
         self._odom = node.create_publisher(self._odometry, "odom", 10)
         self._scan = node.create_publisher(self._laser_scan, "scan", _SENSOR_QOS)
-        node.create_subscription(self._twist, "cmd_vel", self._on_velocity, 10)
+        VelocityCommands(node, self._twist, self._on_velocity, self._record).listen()
         node.create_service(service("std_srvs", "Empty"), "reset_world", self._on_reset)
         node.create_service(service("std_srvs", "SetBool"), "motor_power", self._on_motor_power)
 

@@ -24,6 +24,10 @@ if TYPE_CHECKING:
 EntityT = TypeVar("EntityT", bound="Entity")
 
 
+MANY = 1_000
+"""So many entities of a node, the last one made by a callback, are told of: it will not be the last."""
+
+
 class Agenda(WaitsExplained):
     """What an executor has to know of a node. Used with the host's lock held."""
 
@@ -73,7 +77,13 @@ class Agenda(WaitsExplained):
         if entity.traced and entity.shown_callback() is not None:
             entity.node.context.process.callbacks += 1
         self._probe.entity_made(entity)
+        self.has_now(len(self.entities), "timers, subscriptions, services or clients")
         self.wake_executor()
+
+    def has_now(self, number: int, kind: str) -> None:
+        """Tell, as the number grows to ``MANY``, of a node whose callbacks make ever more of a kind."""
+        if number == MANY and self._probe.callback_here():
+            self._probe.many_made(number, kind)
 
     def remove(self, entity: Entity) -> bool:
         """Let an entity go; whether it was there."""

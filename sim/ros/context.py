@@ -16,6 +16,7 @@ from sim.ros.exceptions import NotInitializedException, RCLError
 from sim.ros.handle import Handle
 from sim.ros.host import Host, current_host
 from sim.ros.network import Network
+from sim.ros.own_code import place_of_caller
 from sim.ros.probe import Probe
 from sim.ros.process import Process, current_process
 
@@ -125,6 +126,8 @@ class Context:
                 raise RuntimeError("Context must be initialized before it can be shutdown")
             if not self._valid:
                 raise RCLError("failed to shutdown: rcl_shutdown already called on the given context")
+            if self.probe.callback_here():
+                self.process.shut_down_at = place_of_caller()
             callbacks = self._end()
         for each in callbacks:
             _call(each)

@@ -221,6 +221,7 @@ class Node(NodeEntities, NodeParameters, GraphQueries):
         with self._agenda.host.lock:
             if self.destroyed:
                 return
+            self._tell_of_own_end()
             self.destroyed = True
             self.executor = None
             for publisher in tuple(self._publishers):
@@ -229,6 +230,14 @@ class Node(NodeEntities, NodeParameters, GraphQueries):
                 entity.destroy()
             withdraw_rosout(self, self._rosout_publisher)
             self._context.network.leave_node(self)
+
+    def _tell_of_own_end(self) -> None:
+        """Tell of it if one of the node's own callbacks is what destroys it."""
+        probe = self._context.probe
+        here = probe.callback_here()
+        running = (each for each in self._agenda.entities if each.trace_id == here)
+        if here and (entity := next(running, None)) is not None:
+            probe.node_destroyed_by_itself(self._node_names.full_name, entity)
 
     def _tuning(self) -> TunedNode | None:
         """What a person changed about the node; only what is on the screen can be changed there."""

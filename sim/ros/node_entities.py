@@ -141,6 +141,7 @@ class NodeEntities:
             callback_group=callback_group,
         )
         self._publishers.append(publisher)
+        self._agenda.has_now(len(self._publishers), "publishers")
         return publisher
 
     def create_subscription(

@@ -5,13 +5,13 @@ host's lock held or touches nothing shared, and does no more than append to the 
 """
 
 import inspect
-import sys
 import threading
 from collections.abc import Callable
 from functools import partial
 from itertools import count
 from typing import TYPE_CHECKING, Any
 
+from sim.ros.own_code import is_own, place_of_caller
 from sim.trace import events
 from sim.trace.events import AnyEvent, CallbackEnded, CallbackStarted, GroupKind, Reason, Severity
 
@@ -156,6 +156,24 @@ class Probe:
     def callback_here(self) -> int:
         """The entity whose callback runs on the calling thread; 0 for none."""
         return self._here.entity
+
+    def many_made(self, number: int, kind: str) -> None:
+        """A callback on the calling thread has given a node so many of a kind."""
+        text = (
+            f"a node has {number:,} {kind}, and its callbacks make more ({place_of_caller()}): each stays "
+            "until it is destroyed; make what the node needs once, in __init__"
+        )
+        self._sink(events.Notice(self._now(), Severity.WARN, text))
+
+    def node_destroyed_by_itself(self, name: str, entity: "Entity") -> None:
+        """A callback of a node's, which runs on the calling thread, destroys the node."""
+        callback = entity.shown_callback()
+        own = entity.name if callback is None else callback_name(callback)
+        text = (
+            f"{name} destroyed itself in its own callback {own} ({place_of_caller()}): this call goes on to "
+            "its end, and no callback of the node runs again; to end the program, call rclpy.shutdown() there"
+        )
+        self._sink(events.Notice(self._now(), Severity.WARN, text))
 
     def callback_suspended(self, entity: "Entity", outer: int) -> None:
         """A coroutine callback awaits something and leaves the calling thread."""
@@ -318,12 +336,7 @@ def _raised_at(error: BaseException) -> tuple[str, int]:
     trace = error.__traceback__
     while trace is not None:
         file = trace.tb_frame.f_code.co_filename
-        if not _is_ours_or_pythons(trace.tb_frame.f_globals.get("__name__", "")) or not found[0]:
+        if is_own(trace.tb_frame) or not found[0]:
             found = (file, trace.tb_lineno)
         trace = trace.tb_next
     return found
-
-
-def _is_ours_or_pythons(module: str) -> bool:
-    root = module.partition(".")[0]
-    return root == "sim" or (root in sys.stdlib_module_names and root != "__main__")

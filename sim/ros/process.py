@@ -32,7 +32,8 @@ class Process:
     ``take_output`` gets every line that it prints or logs, and whether it belongs on stderr, in place of the
     run; None: the run has them.
     ``pool_numbers`` numbers its thread pools in the order of their making; ``callbacks`` and ``spins`` count
-    the callbacks made and the spins begun so far.
+    the callbacks made and the spins begun so far; ``shut_down_at`` is where one of its own callbacks shut
+    rclpy down, empty as long as none did.
     """
 
     host: Host
@@ -46,6 +47,7 @@ class Process:
     pool_numbers: Iterator[int] = field(default_factory=count)
     callbacks: int = 0
     spins: int = 0
+    shut_down_at: str = ""
     _kept: dict[Callable[[], Any], Any] = field(default_factory=dict)
 
     def keep(self, make: Callable[[], KeptT]) -> KeptT:
@@ -75,7 +77,12 @@ _main: Process | None = None
 
 def current_process() -> Process:
     """The process that the calling thread belongs to: the host's first unless it was told otherwise."""
-    process: Process | None = getattr(_here(), "ros_process", None)
+    return process_of(_here())
+
+
+def process_of(thread: threading.Thread) -> Process:
+    """The process that a thread belongs to."""
+    process: Process | None = getattr(thread, "ros_process", None)
     return _main_process() if process is None else process
 
 

@@ -453,10 +453,14 @@ class LineCompleted(Event, frozen=True, tag="completion"):
 
 
 class Notice(Event, frozen=True, tag="notice"):
-    """The engine has something to say to the person about the run itself, in one sentence."""
+    """The engine has something to say to the person about the run itself, in one sentence.
+
+    ``entity`` is the callback that waits without an end, where that is what there is to say; 0: none.
+    """
 
     severity: Severity
     text: str
+    entity: EntityId = 0
 
 
 class EventsLost(Event, frozen=True, tag="lost"):

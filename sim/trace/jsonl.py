@@ -82,7 +82,7 @@ class JsonLines:
             ev.LineSaid: _line_said,
             ev.LineEnded: _line_ended,
             ev.LineCompleted: _line_completed,
-            ev.Notice: _notice,
+            ev.Notice: self._notice,
             ev.EventsLost: _lost,
             ev.ContentsLost: _lost,
         }
@@ -248,6 +248,10 @@ class JsonLines:
     def _printed(self, event: ev.Printed) -> Line:
         return {**self._process(event.process), "message": event.text, "error": event.error}
 
+    def _notice(self, event: ev.Notice) -> Line:
+        about = self._by_callback(event.entity)
+        return {**about, "message": event.text, "severity": event.severity.value}
+
     def _by_callback(self, entity: EntityId) -> Line:
         callback = self._callback(entity)
         return {} if callback is None else {"callback": callback}
@@ -333,10 +337,6 @@ def _line_ended(event: ev.LineEnded) -> Line:
 
 def _line_completed(event: ev.LineCompleted) -> Line:
     return {"line": event.line, "start": event.start, "words": event.words}
-
-
-def _notice(event: ev.Notice) -> Line:
-    return {"message": event.text, "severity": event.severity.value}
 
 
 def _lost(event: ev.EventsLost | ev.ContentsLost) -> Line:

@@ -207,6 +207,7 @@ async def test_nothing_is_offered_that_would_make_it_another_run_than_the_judged
             "reset_world",
             "exercise",
             "predict",
+            "explain",
         }
         assert not refused & offered(app)
         await pilot.press("s", "S", "t", "g", "p", "colon", "space")

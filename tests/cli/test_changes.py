@@ -9,6 +9,7 @@ from typing import Any
 import pytest
 
 from cbtui import cli
+from cbtui.commands import changes
 from cbtui.record import setup_of
 from sim.engine.setup import GroupChange, PeriodChange
 from sim.trace.recording import read
@@ -115,3 +116,10 @@ def test_a_change_that_cannot_be_made_is_refused_in_one_line(
     error = capsys.readouterr().err
     assert sentence in error
     assert len(error.splitlines()) == 1
+
+
+def test_changes_can_be_said_again_as_options() -> None:
+    said = [*CHANGES, "--threads", "3"]
+    options = cli._parser().parse_args(["explore", "mine.py", *said])
+    again = changes.words(changes.changes_of(options))
+    assert sorted(again) == sorted(said)

@@ -18,6 +18,8 @@ from cbtui.health.probes import Outcome, Probe
 from cbtui.health.requirements import Requirement, in_range, read_requirement, requirements
 from cbtui.health.screen import Screen, screen
 from cbtui.health.verdict import Sign, Verdict, fault, note, well
+from cbtui.installing import install_command
+from tests.support.nobody import without_home
 
 
 @pytest.fixture(autouse=True)
@@ -126,11 +128,31 @@ def test_what_cbtui_says_that_it_needs_is_looked_at() -> None:
     assert {"textual", "pybullet", "numpy"} < {each.name for each in requirements()}
 
 
-def test_newer_pythons_are_told_that_pybullet_has_to_be_built() -> None:
-    gone = _Ended(Outcome("", "No module named 'pybullet'\n", 1, ""))
-    assert "C++ compiler" in bullet(gone, (3, 13)).remedy
-    assert "C++ compiler" not in bullet(gone, (3, 11)).remedy
-    assert "No module named 'pybullet'" in bullet(gone, (3, 11)).what
+@pytest.mark.parametrize(
+    ("running", "machine", "older_does", "is_built"),
+    [
+        ((3, 11), "linux-x86_64", False, False),
+        ((3, 13), "linux-x86_64", True, True),
+        ((3, 11), "linux-aarch64", False, True),
+        ((3, 13), "macosx-14.0-arm64", False, True),
+    ],
+)
+def test_where_pybullet_has_no_wheel_one_is_told_how_it_is_built_or_spared(
+    running: tuple[int, int], machine: str, older_does: bool, is_built: bool
+) -> None:
+    found = bullet(_Ended(Outcome("", "No module named 'pybullet'\n", 1, "")), running, machine)
+    assert "No module named 'pybullet'" in found.what
+    assert ("use Python 3.11" in found.remedy) is older_does
+    assert ("C++ compiler" in found.remedy) is is_built
+    assert "pip install" in found.remedy
+
+
+def test_where_there_is_no_pip_as_in_an_environment_of_uvs_uv_is_to_install(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    assert install_command("rich>=13") == f"{sys.executable} -m pip install 'rich>=13'"
+    monkeypatch.setattr("cbtui.installing.find_spec", lambda _: None)
+    assert install_command("rich>=13") == f"uv pip install --python {sys.executable} 'rich>=13'"
 
 
 def test_an_old_python_is_at_fault() -> None:
@@ -181,7 +203,7 @@ _BIG = os.terminal_size((120, 40))
         ({"TERM": "xterm"}, "colours", Sign.NOTE, "16"),
         ({"TERM": "xterm-256color"}, "colours", Sign.WELL, "256"),
         ({"TERM": "xterm", "COLORTERM": "truecolor"}, "colours", Sign.WELL, "16 million"),
-        ({"TERM": "xterm", "NO_COLOR": "1"}, "colours", Sign.WELL, "none, as NO_COLOR asks"),
+        ({"TERM": "xterm", "NO_COLOR": "1"}, "colours", Sign.WELL, "greys alone, as NO_COLOR asks"),
         ({"TMUX": "/tmp/x", "SSH_TTY": "/dev/pts/1"}, "between", Sign.WELL, "ssh and tmux"),
         ({"TMUX": "/tmp/x"}, "clipboard", Sign.NOTE, "tmux keeps what is copied"),
         ({}, "clipboard", Sign.WELL, "OSC 52"),
@@ -193,6 +215,11 @@ def test_the_terminal_is_known_by_its_environment(
     found = _of(screen(Screen(environment, "braille", _BIG)), subject)
     assert found.sign is sign
     assert said in found.what
+
+
+def test_a_terminal_that_cannot_show_the_console_is_given_no_advice_on_colours() -> None:
+    found = list(screen(Screen({"TERM": "dumb"}, "braille", _BIG)))
+    assert "colours" not in {each.subject for each in found}
 
 
 def test_a_terminal_that_is_too_small_or_none_is_noted() -> None:
@@ -215,6 +242,13 @@ def test_a_folder_that_cannot_be_written_to_is_noted(tmp_path: Path, monkeypatch
         raise FileNotFoundError(2, "No such file")
 
     assert "not there any more" in _of(folders(nowhere), "this folder").what
+
+
+def test_who_has_no_home_is_told_what_it_would_be_good_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    without_home(monkeypatch)
+    assert "XDG_STATE_HOME" in _of(folders(Path.cwd), "state folder").remedy
+    assert [each.what for each in configuration(None)] == ["there is no home folder"]
+    assert progress().what == "none yet"
 
 
 def test_no_folder_for_temporary_files_is_a_fault(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from cbtui import cli
-from cbtui.commands.explore import _explored
+from cbtui import cli, exploring
+from cbtui.commands import explore as command
 from cbtui.exploration_text import exploration_text
 from cbtui.exploring import Exploration, Failure, Result
 from cbtui.family import Family
@@ -62,6 +62,17 @@ def test_a_program_in_order_has_one_outcome_and_ends_with_0(file: Path) -> None:
     assert explored.returncode == 0
 
 
+def test_a_changed_set_up_is_what_is_explored_and_shown_again(file: Path) -> None:
+    file.write_text(IN_ONE_GROUP)
+    words = ("--group", "ann=reentrant", "--group", "/seats:bob=reentrant", "--group", "eve=own")
+    explored = cbtui("explore", str(file), "--schedules", "4", "--for", "0.3", *words)
+    assert explored.returncode == 1
+    assert "taken twice" in explored.stdout
+    assert "    note: no callback is named eve; there are ann, bob\n" in explored.stdout
+    again = shlex.join(["cbtui", "run", str(file), "--for", "0.3", *words])
+    assert f"\n  {again} --seed " in explored.stdout
+
+
 def test_a_solution_passes_its_checks_in_every_order() -> None:
     solution = find("overlapping-timer").node_path.with_name("solution.py")
     explored = cbtui("explore", str(solution), "--check", "overlapping-timer", "--schedules", "2")
@@ -82,7 +93,10 @@ def test_checks_that_fail_are_named_with_what_was_seen() -> None:
         (["nowhere.py"], "there is no file nowhere.py"),
         (["no-lesson"], "no-lesson"),
         (["shared-group", "--check", "shared-group"], "leave out --check"),
-        (["shared-group", "--for", "3"], "leave out --for and --call"),
+        (["shared-group", "--for", "3"], "describes; leave out --for\n"),
+        (["shared-group", "--threads", "2", "--group", "a=own"], "leave out --threads, --group\n"),
+        (["mine.py", "--check", "split-groups", "--at", "1", "ros2 node list"], "leave out --at\n"),
+        (["mine.py", "--at", "11", "ros2 node list"], "a line at 11 s comes when the run of 10 s is over"),
         (["mine.py", "--call", "11"], "when the run of 10 s is over"),
         (["mine.py", "--schedules", "0"], "give 1 or more"),
         (["mine.py", "--seed", "x"], "'x' is not a whole number"),
@@ -101,8 +115,9 @@ def test_what_cannot_be_explored_is_refused_in_a_line(
     with pytest.raises(SystemExit) as caught:
         cli.main(["explore", *words])
     assert caught.value.code == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert sentence in line
+    said = capsys.readouterr().err
+    assert said.count("\n") == 1
+    assert sentence in said
 
 
 @pytest.mark.parametrize("command", ["run", "open"])
@@ -129,9 +144,24 @@ def test_ctrl_c_ends_it_and_every_process(file: Path) -> None:
         time.sleep(0.05)
     os.killpg(explore.pid, signal.SIGINT)  # as a terminal does
     said, complained = explore.communicate(timeout=20)
-    assert (explore.returncode, said, complained) == (130, b"", b"")
+    assert (explore.returncode, said) == (130, b"")
+    assert complained == b"cbtui: interrupted: 0 of 100 schedules were tried\n"
     for pid in children:
         assert Family(pid, "").wait_for_end(10)
+
+
+def test_who_has_read_enough_of_it_is_no_trouble(file: Path) -> None:
+    file.write_text(IN_ONE_GROUP)
+    words = ["explore", str(file), "--schedules", "1", "--for", "0.1"]
+    line = shlex.join([sys.executable, "-m", "cbtui", *words])
+    done = subprocess.run(
+        ["/bin/sh", "-c", f"({line}; echo ended with $? >&2) | true"],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=60,
+    )
+    assert done.stderr == "ended with 141\n"
 
 
 DEADLOCK = Result((Failure("deadlock", "a waits for b"),), ("no-free-worker",))
@@ -164,10 +194,33 @@ class _Results(Exploration):
         yield from {2: DEADLOCK, 1: WELL}.items()
 
 
+FINISHED = _Results(RunSetup(title="mine", programs=()), "mine.py", None, 1.0)
+
+
 def test_a_terminal_is_told_how_far_it_has_come(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    exploration = _Results(RunSetup(title="mine", programs=()), "mine.py", None, 1.0)
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    assert list(_explored(exploration, range(1, 3))) == [1, 2]
+    found: dict[int, Result] = {}
+    command._explore(FINISHED, range(1, 3), found)
+    assert found == {1: WELL, 2: DEADLOCK}
     assert capsys.readouterr().err == ("\r1 of 2 schedules, 1 failed \r2 of 2 schedules, 1 failed \r\033[K")
+
+
+class _Interrupted(_Results):
+    """One that is interrupted after its first run."""
+
+    def results(self, seeds, processes=None):  # type: ignore[no-untyped-def]
+        yield 2, DEADLOCK
+        raise KeyboardInterrupt
+
+
+def test_what_was_tried_until_ctrl_c_is_told(
+    file: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    file.write_text(IN_ONE_GROUP)
+    monkeypatch.setattr(exploring, "Exploration", _Interrupted)
+    assert cli.main(["explore", str(file), "--schedules", "9"]) == 130
+    said = capsys.readouterr()
+    assert said.err == "cbtui: interrupted: 1 of 9 schedules were tried\n"
+    assert said.out.startswith("mine.py: 1 schedule, 1 outcome, 1 schedule failed\n")

@@ -28,9 +28,10 @@ def test_streams_that_are_closed_are_as_if_nobody_read_them(closed: str, tmp_pat
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no device that is always full")
 def test_an_output_that_is_full_is_told_in_one_sentence() -> None:
-    done = _shell(f"{_CBTUI} list >/dev/full")
-    assert done.returncode == 1
-    assert done.stderr == "cbtui: what it says cannot be written: No space left on device\n"
+    for environment in ({}, {"PYTHONUNBUFFERED": "1"}):
+        done = _shell(f"{_CBTUI} list >/dev/full", **environment)
+        assert done.returncode == 1
+        assert done.stderr == "cbtui: what it says cannot be written: No space left on device\n"
 
 
 def test_a_reader_who_has_read_enough_is_no_trouble() -> None:

@@ -6,16 +6,17 @@ import signal
 from pathlib import Path
 from queue import Queue
 
+import msgspec
 import pytest
 
 from cbtui.lesson_setup import setup_for
 from cbtui.session import Session
 from lessons.catalogue import find
 from sim.engine.commands import CallService, Pause, ResetWorld, Resume, SetSpeed
+from sim.engine.setup import TimedInput
 from sim.trace.events import (
     AnyEvent,
     CommandGiven,
-    Logged,
     Notice,
     Printed,
     RobotMoved,
@@ -47,6 +48,28 @@ def test_a_run_ends_when_its_time_is_up(tmp_path: Path) -> None:
     run = run_program(tmp_path, SPIN.format(body="node.create_timer(1.0, lambda: None)"), seconds=3.5)
     assert run.loss is None
     assert run.ending == RunEnded(round(3.5 * SECOND), "its time was up", failed=False)
+
+
+def test_a_robot_that_cannot_be_there_from_the_beginning_is_told_of_with_what_to_do(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "pybullet.py").write_text("raise ImportError('no such thing')")
+    monkeypatch.syspath_prepend(tmp_path)
+    run = run_program(tmp_path, "", robot=True)
+    assert run.loss is None
+    assert run.ending.failed
+    assert run.ending.reason.startswith("The robot's world needs PyBullet, which this Python cannot import")
+
+
+def test_an_error_of_the_engines_own_is_told_with_its_place(tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    path.write_text("")
+    setup = msgspec.structs.replace(program_setup(path, 1.0), inputs=(TimedInput(0, "no input"),))
+    run = run_to_end(setup)
+    assert run.loss is None
+    assert run.ending.failed
+    assert run.ending.reason.startswith("the engine failed: DecodeError: JSON is malformed")
+    assert "(commands.py:" in run.ending.reason
 
 
 def test_a_sleeping_program_is_ended_like_by_ctrl_c(tmp_path: Path) -> None:
@@ -120,7 +143,7 @@ def test_printing_reaches_the_trace_line_by_line(tmp_path: Path) -> None:
     assert printed == [("ab", False), ("c", True), ("d", True)]
 
 
-def test_velocities_that_are_no_numbers_are_ignored_with_one_warning(tmp_path: Path) -> None:
+def test_velocities_that_are_no_numbers_are_ignored_and_told_of_once_with_their_place(tmp_path: Path) -> None:
     body = """
 from geometry_msgs.msg import Twist
 pub = node.create_publisher(Twist, "cmd_vel", 10)
@@ -133,9 +156,12 @@ def drive():
 node.create_timer(1.0, drive)
 """
     run = run_program(tmp_path, SPIN.format(body=body), seconds=3.5, robot=True)
-    warnings = [event for event in run.events if isinstance(event, Logged)]
-    assert len(warnings) == 1
-    assert "linear.x=nan" in warnings[0].text
+    (notice,) = (event.text for event in run.events if isinstance(event, Notice))
+    assert notice.startswith(
+        "the robot ignores velocities that are no numbers (node.py:12, in drive): linear"
+    )
+    (warning,) = (line.text for line in run.timeline.logs)
+    assert "linear.x=nan" in warning
     assert {event.linear for event in run.events if isinstance(event, VelocityCommanded)} == {0.22}
 
 
@@ -195,7 +221,8 @@ def test_a_call_takes_effect_at_the_moment_of_the_run() -> None:
     assert "motors off" in reply.response
     given = console.until(CommandGiven)
     assert given.t == reply.t
-    moved = console.until(RobotMoved, 30)
+    before = sum(isinstance(event, RobotMoved) for event in console.events)
+    moved = console.until(RobotMoved, before + 1)
     assert isinstance(moved, RobotMoved)
     assert not moved.motors
     console.session.stop()

@@ -21,6 +21,7 @@ from cbtui.playhead import Playhead
 from cbtui.screens.lesson import LessonScreen
 from cbtui.session import Session
 from cbtui.widgets.diagnosis import verdict
+from cbtui.widgets.diagnosis_line import DiagnosisLine
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
 from sim.trace.concurrency import Concurrency
 from sim.trace.events import AnyEvent, Logged
@@ -37,7 +38,7 @@ ANSWERED = 0.2
 _NODE = """\
 import os, signal, subprocess, sys, threading, time
 import rclpy
-from geometry_msgs.msg import Twist
+from geometry_msgs.msg import Twist, Vector3
 from rclpy.node import Node
 from std_msgs.msg import Int32, String
 from std_srvs.srv import SetBool
@@ -135,11 +136,9 @@ class Provoked:
 
 
 @contextmanager
-def provoked(path: Path, clock: str = "real") -> Iterator[Provoked]:
+def provoked(path: Path, clock: str = "real", robot: RobotUse = RobotUse.NEVER) -> Iterator[Provoked]:
     """Run a node file, recording from the beginning; nothing of it may be left, and the recording opens."""
-    setup = RunSetup(
-        title="fault", programs=(ProgramSetup(str(path)),), clock=clock, speed=None, robot=RobotUse.NEVER
-    )
+    setup = RunSetup(title="fault", programs=(ProgramSetup(str(path)),), clock=clock, speed=None, robot=robot)
     with nothing_left():
         run = Provoked(setup)
         run.live.start()
@@ -200,6 +199,12 @@ class Console:
         while not condition(self.screen.live_run):
             assert time.monotonic() < deadline, "it never came to it"
             await asyncio.sleep(0.01)
+
+    @property
+    def said(self) -> str:
+        """What the line of the diagnosis says."""
+        diagnosis = self.screen.query_one(DiagnosisLine).diagnosis
+        return "" if diagnosis is None else diagnosis.text
 
     async def answers(self, keys: int = 9) -> float:
         """Seconds that the console's own thread computes before it answers a key: the middle one of some.

@@ -8,9 +8,16 @@ from typing import NamedTuple
 import pytest
 
 from cbtui.live_run import State
-from tests.faults.support import FIRST, Provoked, node_with, provoked, still_here
+from sim.engine.setup import RobotUse
+from sim.trace.model import Window
+from tests.faults.support import FIRST, Provoked, console_on, node_with, provoked, still_here
 
 AT = f"node.py:{FIRST}"
+NO_NUMBERS = """\
+velocity = Twist(linear=Vector3(x=float('nan')), angular=Vector3(z=float('inf')))
+self.create_publisher(Twist, 'cmd_vel', 10).publish(velocity)
+"""
+ALL = Window(0, 1 << 62)
 
 
 class GoesOn(NamedTuple):
@@ -48,16 +55,18 @@ FAULTS = {
         "for each in (signal.SIGINT, signal.SIGTERM, signal.SIGUSR1, signal.SIGCHLD):\n"
         "    signal.signal(each, signal.SIG_IGN)"
     ),
+    "signals are handled": GoesOn(
+        "for each in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGUSR1):\n"
+        "    signal.signal(each, lambda number, _: print('got', number))\n"
+        "os.kill(os.getpid(), signal.SIGUSR1)",
+        line=f"got {int(signal.SIGUSR1)}",
+    ),
     "time is patched": GoesOn(
         "time.sleep = time.monotonic = time.time = time.perf_counter = lambda *_: 0.0\n"
         "threading.Lock = threading.Thread = None\nprint('patched')",
         line="patched",
     ),
     "its file is deleted": GoesOn("os.remove(__file__)"),
-    "velocities that are no numbers": GoesOn(
-        "velocity = Twist()\nvelocity.linear.x = float('nan')\n"
-        "self.create_publisher(Twist, '/cmd_vel', 10).publish(velocity)"
-    ),
 }
 
 
@@ -134,10 +143,42 @@ def test_a_callback_that_sleeps_long_is_not_taken_for_one_that_hangs(folder: Pat
         assert run.notices == []
 
 
-def test_a_node_that_destroys_itself_can_still_be_ended(folder: Path) -> None:
-    with provoked(node_with(folder, "self.destroy_node()\nprint('destroyed')")) as run:
+OWN_END = f"/n destroyed itself in its own callback tick ({AT}, in fault): this call goes on to its end"
+
+
+def test_a_node_that_destroys_itself_is_told_of_and_its_other_callbacks_run_no_more(folder: Path) -> None:
+    fault = "self.create_timer(0.01, lambda: print('again'))\nself.destroy_node()\nprint('destroyed')"
+    with provoked(node_with(folder, fault), "virtual") as run:
         run.until(lambda _: "destroyed" in run.printed)
+        (notice,) = run.notices
+        assert notice.startswith(OWN_END.replace(str(FIRST), str(FIRST + 1)))
+        assert run.sentence == notice
         _stop_in_time(run)
+        assert run.printed == ["destroyed"]
+
+
+async def test_a_node_that_destroys_itself_is_told_of_on_screen_and_can_be_run_again(folder: Path) -> None:
+    path = node_with(folder, "self.destroy_node()")
+    async with console_on(path) as console:
+        await console.until(lambda _: console.said.startswith(OWN_END))
+        node_with(folder, "pass")
+        await console.pilot.press("ctrl+r")
+        await console.until(still_here)
+
+
+def test_a_robot_that_is_sent_velocities_that_are_no_numbers_stands_still_and_tells_once(
+    folder: Path,
+) -> None:
+    with provoked(node_with(folder, NO_NUMBERS, again=True), "virtual", RobotUse.ALWAYS) as run:
+        run.until(lambda live: len(live.timeline.trail(ALL)) > 20)
+        stood = [(at.x, at.y, at.yaw) for at in run.live.timeline.trail(ALL)]
+        assert {place == pytest.approx(stood[0], abs=1e-3) for place in stood} == {True}
+        assert run.notices == [
+            f"the robot ignores velocities that are no numbers (node.py:{FIRST + 1}, in fault): "
+            "linear.x=nan, angular.z=inf; publish finite ones"
+        ]
+        assert run.sentence == run.notices[0]
+        assert len(run.printed) == 2  # the driver's warning, and that the node goes on
 
 
 def test_a_signal_that_ends_programs_ends_this_one_in_a_sentence(folder: Path) -> None:

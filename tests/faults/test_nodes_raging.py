@@ -8,10 +8,15 @@ import pytest
 from cbtui import warden
 from cbtui.live_run import LiveRun, State
 from sim.trace.recording import read
-from tests.faults.support import ANSWERED, FIRST, console_on, node_with
+from tests.faults.support import ANSWERED, FIRST, console_on, node_with, provoked, still_here
 
 CROWD = 2500
 """Entities of which each would cost a little of every frame."""
+HUNDRED_MB = "for _ in range(2000): print('x' * 50_000)"
+AT = f"node.py:{FIRST}, in fault"
+MANY_MADE = (
+    f"a node has 1,000 timers, subscriptions, services or clients, and its callbacks make more ({AT}): each"
+)
 
 
 class Rages(NamedTuple):
@@ -21,12 +26,14 @@ class Rages(NamedTuple):
     clock: str = "real"
     entities: int = 1
     """How many the console knows of when the first key is pressed."""
+    notice: str = ""
+    """What the engine has said of it by then."""
 
 
 FAULTS = {
     "loops for ever": Rages("while True: pass"),
     "loops for ever on virtual time": Rages("while True: pass", "virtual"),
-    "prints 100 MB": Rages("for _ in range(20): print('x' * 50_000)"),
+    "prints 100 MB": Rages(HUNDRED_MB),
     "publishes 1 MB at 1 kHz": Rages(
         "if not hasattr(self, 'big'):\n"
         "    self.big = self.create_publisher(String, 'big', 10)\n"
@@ -35,14 +42,18 @@ FAULTS = {
         "for _ in range(20): self.big.publish(self.message)"
     ),
     "makes 1,000 topics a second": Rages(
-        "for each in range(20): self.create_publisher(String, f't{self.count}_{each}', 10)"
+        "for each in range(20): self.create_publisher(String, f't{self.count}_{each}', 10)",
+        notice=f"a node has 1,000 publishers, and its callbacks make more ({AT}): each stays until",
     ),
     "makes timers without end": Rages(
-        "for _ in range(100): self.create_timer(1000.0, self.tick)", entities=CROWD
+        "for _ in range(100): self.create_timer(1000.0, self.tick)",
+        entities=CROWD,
+        notice=MANY_MADE,
     ),
     "makes services without end": Rages(
         "for each in range(100): self.create_service(SetBool, f's{self.count}_{each}', lambda _, r: r)",
         entities=CROWD,
+        notice=MANY_MADE,
     ),
 }
 
@@ -54,9 +65,10 @@ def begun(live: LiveRun) -> bool:
 
 @pytest.mark.parametrize("name", FAULTS)
 async def test_the_console_answers_while_a_node_rages_and_runs_it_again(folder: Path, name: str) -> None:
-    fault, clock, entities = FAULTS[name]
+    fault, clock, entities, notice = FAULTS[name]
     async with console_on(node_with(folder, fault, again=True), clock) as console:
         await console.until(lambda live: len(live.timeline.entities) >= entities)
+        await console.until(lambda _: notice in console.said)
         console.app.simulate_key("R")
         assert await console.answers() < ANSWERED
         first = console.screen.live_run
@@ -64,6 +76,13 @@ async def test_the_console_answers_while_a_node_rages_and_runs_it_again(folder: 
         await console.until(lambda live: live is not first and begun(live))
     (path,) = folder.glob("*.mcap")
     assert read(path).damage is None
+
+
+def test_a_hundred_megabytes_are_all_in_the_log(folder: Path) -> None:
+    with provoked(node_with(folder, HUNDRED_MB)) as run:
+        run.until(still_here)
+        assert sum(map(len, run.printed)) == 100_000_000 + len("still here")
+        assert max(map(len, run.printed)) == 4096
 
 
 async def test_a_loop_without_end_on_the_real_clock_is_told_on_screen_with_its_place(folder: Path) -> None:

@@ -53,7 +53,9 @@ FAULTS = {
         State.ENDED,
     ),
     "rclpy.shutdown in a callback": Ends(
-        "rclpy.shutdown()", "the run is over: the program returned", State.ENDED
+        "rclpy.shutdown()",
+        f"the run is over: the program returned, as rclpy was shut down {IN_FAULT}",
+        State.ENDED,
     ),
 }
 
@@ -70,7 +72,7 @@ def test_a_node_that_ends_its_process_is_told_of_with_its_place_and_its_recordin
     assert run.recorded is not None
 
 
-@pytest.mark.parametrize("name", ["os._exit", "a crash in C", "a recursion without end"])
+@pytest.mark.parametrize("name", ["os._exit", "a crash in C", "rclpy.shutdown in a callback"])
 def test_it_is_told_the_same_way_on_virtual_time(folder: Path, name: str) -> None:
     with provoked(node_with(folder, FAULTS[name].fault), "virtual") as run:
         run.to_its_end()

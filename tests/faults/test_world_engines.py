@@ -19,11 +19,11 @@ import pytest
 from cbtui.live_run import State
 from cbtui.session import Session
 from cbtui.silence import SILENT, Silence
-from cbtui.widgets.diagnosis_line import DiagnosisLine
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
-from sim.trace.events import AnyEvent, Notice, Printed, RunStarted, Severity
+from sim.trace.events import AnyEvent, Logged, Notice, Printed, RunStarted, Severity
 from sim.trace.recording import read
-from tests.faults.support import ANSWERED, PATIENCE, Console, console_on, node_with, nothing_left, still_here
+from tests.faults.support import ANSWERED, PATIENCE, console_on, node_with, nothing_left, still_here
+from tests.support.processes import engines_of
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc")
 
@@ -36,6 +36,16 @@ subprocess.Popen(['sleep', '300'], start_new_session=True)
 subprocess.Popen(['sh', '-c', 'setsid sleep 300 & exit'])
 open('reached', 'w')
 """
+AN_HOUR = 3_600_000_000_000
+"""In nanoseconds."""
+SET_AGAIN = f"""\
+import time
+monotonic, time_ns = time.monotonic, time.time_ns
+began = monotonic()
+time.time_ns = lambda: time_ns() + {AN_HOUR} * (0, 1, -2)[int((monotonic() - began) / 0.1) % 3]
+time.time = lambda set_ns=time.time_ns: set_ns() / 1e9
+"""
+"""For every Python that is started: its wall clock is set an hour ahead and two back, time and again."""
 MOST_IN_A_SOCKET = 50_000
 """Bytes of small batches that come to this in no test: only the beginning of a large one does."""
 
@@ -57,19 +67,13 @@ def comes_true(condition: Callable[[], bool]) -> bool:
     return True
 
 
-def said(console: Console) -> str:
-    """What the line of the diagnosis says."""
-    diagnosis = console.screen.query_one(DiagnosisLine).diagnosis
-    return "" if diagnosis is None else diagnosis.text
-
-
 async def test_an_engine_that_is_killed_is_told_of_and_can_be_run_again(folder: Path) -> None:
     async with console_on(node_with(folder, "pass")) as console:
         await console.until(still_here)
         os.kill(engine(), signal.SIGKILL)
         await console.until(lambda live: live.state is State.LOST)
         assert await console.answers() < ANSWERED
-        assert said(console) == "engine lost: killed by signal 9; r runs again"
+        assert console.said == "engine lost: killed by signal 9; r runs again"
         await console.pilot.press("r")
         await console.until(still_here)
 
@@ -84,7 +88,7 @@ async def test_an_engine_that_is_stopped_is_told_of_and_goes_on_when_it_may(
         os.kill(stopped, signal.SIGSTOP)
         await console.until(lambda live: live.state is State.SILENT)
         assert await console.answers() < ANSWERED
-        assert said(console) == "engine does not answer: its process was stopped; r runs again"
+        assert console.said == "engine does not answer: its process was stopped; r runs again"
         os.kill(stopped, signal.SIGCONT)
         await console.until(lambda live: live.state is State.LIVE)
         os.kill(stopped, signal.SIGSTOP)
@@ -101,7 +105,7 @@ async def test_an_engine_that_code_in_c_keeps_is_told_of(
     async with console_on(node_with(folder, IN_C)) as console:
         await console.until(lambda live: live.state is State.SILENT)
         assert await console.answers() < ANSWERED
-        assert said(console).startswith("engine does not answer: code in C keeps it")
+        assert console.said.startswith("engine does not answer: code in C keeps it")
 
 
 def test_a_machine_that_slept_says_nothing_of_the_engine() -> None:
@@ -170,7 +174,7 @@ def test_a_machine_that_slept_finishes_its_run(folder: Path) -> None:
     with nothing_left():
         console = _console(path, "--for", "1", "--record", "run.mcap")
         assert comes_true((folder / "reached").exists)
-        both = [console.pid, *_engines_of(console.pid)]
+        both = [console.pid, *engines_of(console.pid)]
         assert len(both) == 2
         for each in both:
             os.kill(each, signal.SIGSTOP)
@@ -186,12 +190,26 @@ def test_a_machine_that_slept_finishes_its_run(folder: Path) -> None:
     assert max(times) >= 1_000_000_000
 
 
+def test_a_wall_clock_that_is_set_again_and_again_changes_no_time_of_a_run(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder / "sitecustomize.py").write_text(SET_AGAIN)
+    monkeypatch.setenv("PYTHONPATH", str(folder), prepend=os.pathsep)
+    path = node_with(folder, "self.get_logger().info(str(self.get_clock().now().nanoseconds))", again=True)
+    with nothing_left():
+        console = _console(path, "--for", "1", "--record", "run.mcap")
+        console.communicate(timeout=PATIENCE)
+    assert console.returncode == 0
+    events = [event for batch in read(folder / "run.mcap").batches() for event in batch]
+    began = [
+        int(event.text) - event.t for event in events if isinstance(event, Logged) and event.text.isdecimal()
+    ]
+    assert len(began) > 5
+    assert max(began) - min(began) < AN_HOUR // 60
+    assert 1_000_000_000 <= max(event.t for event in events) < AN_HOUR // 60
+
+
 def _console(path: Path, *words: str) -> "subprocess.Popen[bytes]":
     """A console without a screen, on the real clock."""
     command = [sys.executable, "-m", "cbtui", "run", str(path), "--clock", "real", "--no-robot", *words]
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, start_new_session=True)
-
-
-def _engines_of(console: int) -> list[int]:
-    children = Path(f"/proc/{console}/task/{console}/children").read_text().split()
-    return [int(each) for each in children if b"spawn_main" in Path(f"/proc/{each}/cmdline").read_bytes()]

@@ -15,6 +15,7 @@ import pytest
 from lessons.catalogue import find
 from sim.trace.recording import About, Recorder, read
 from tests.faults.support import PATIENCE, node_with, nothing_left
+from tests.support.processes import engines_of
 from tests.support.runs import shared_group_run
 from tests.terminal.console import opened
 
@@ -82,8 +83,7 @@ class Command:
 
     def engines(self) -> list[int]:
         """Its engines' processes, from their first moment on."""
-        children = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text().split()
-        return [int(pid) for pid in children if b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes()]
+        return engines_of(self.process.pid)
 
     def told(self, number: signal.Signals) -> int:
         """Send its group a signal, as a terminal does; its exit code."""

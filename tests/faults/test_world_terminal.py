@@ -1,5 +1,6 @@
 """A terminal's window that is closed, and a terminal in which the console is told to hang up."""
 
+import os
 import signal
 import sys
 from collections.abc import Iterator
@@ -45,3 +46,15 @@ def test_a_console_that_is_told_to_hang_up_gives_the_terminal_back(tmp_path: Pat
         assert console.ended() == HUNG_UP
         assert console.left_on() == set()
         assert "Recorded" in console.said()
+
+
+def test_a_console_that_was_stopped_goes_on_and_gives_the_terminal_back(tmp_path: Path) -> None:
+    with nothing_left(within=PATIENCE), opened(80, 24, tmp_path) as console:
+        console.until("Split groups")
+        console.process.send_signal(signal.SIGSTOP)
+        os.waitpid(console.process.pid, os.WUNTRACED)
+        console.process.send_signal(signal.SIGCONT)
+        console.until("Split groups")
+        console.press("q")
+        assert console.ended() == 0
+        assert console.left_on() == set()

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from sim.ros.interfaces import find_definition_folders, workspace
+from tests.support.nobody import without_home
 
 
 def write(*files: Path) -> None:
@@ -74,3 +75,11 @@ def test_a_home_folder_is_not_searched_from_a_folder_in_it(
     monkeypatch.setattr(Path, "home", lambda: tmp_path)
     write(tmp_path / "course/node.py", tmp_path / "my_msgs/msg/A.msg", tmp_path / "src/x/msg/A.msg")
     assert find_definition_folders(tmp_path / "course" / "node.py") == []
+
+
+def test_packages_are_found_by_somebody_whose_home_nobody_knows(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    without_home(monkeypatch)
+    write(tmp_path / "course/node.py", tmp_path / "course/my_msgs/msg/A.msg")
+    assert find_definition_folders(tmp_path / "course" / "node.py") == [tmp_path / "course" / "my_msgs"]

@@ -113,6 +113,13 @@ def test_a_solution_that_fails_a_check_is_none(folder: Path) -> None:
     )
 
 
+def test_of_a_node_that_does_not_run_it_is_told_why(folder: Path) -> None:
+    change(folder / "node.py", "class Blinker(Node):", "class Blinker(Node)")
+    *_, said = faults_of(folder)
+    assert said.startswith(f"{folder}/node.py: node.py:")
+    assert "expected ':'" in said
+
+
 def test_a_solution_that_does_not_run_is_said_to_be_so(folder: Path) -> None:
     change(folder / "solution.py", "class Blinker(Node):", "class Blinker(Node)")
     faults = list(faults_of(folder))

@@ -352,6 +352,7 @@ def test_what_a_package_installs_stays_in_its_share_folder(workspace: Path, tmp_
         "from glob import glob\na = glob('../../**', recursive=True)",
         "a = " + "(" * 5000 + ")" * 5000,
         "a = " + "-" * 5000 + "1",
+        "a = " + "-" * 1000 + "1",
     ],
 )
 def test_a_setup_file_that_wants_much_is_refused(workspace: Path, statement: str) -> None:

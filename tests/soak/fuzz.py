@@ -6,12 +6,11 @@ that crashes is kept in ``tests/soak/found``; ``TARGET --again FILE`` gives it o
 
 import argparse
 import sys
-import time
 from pathlib import Path
 
 from tests.soak.fuzz_runs import Outcome, again, fuzz, keep
 from tests.soak.fuzz_targets import TARGETS
-from tests.soak.results import FILE, record
+from tests.soak.results import FILE, record, today
 
 
 def main() -> int:
@@ -48,7 +47,7 @@ def line_of(outcome: Outcome) -> str:
 def entry_of(outcome: Outcome, seed: int) -> dict[str, str | int | float]:
     """What is recorded of a target."""
     return {
-        "date": time.strftime("%Y-%m-%d", time.gmtime()),
+        "date": today(),
         "seed": seed,
         "inputs": outcome.inputs,
         "seconds": round(outcome.seconds, 1),

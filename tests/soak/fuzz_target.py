@@ -22,3 +22,8 @@ class Target:
 def text_of(data: bytes) -> str:
     """An input as text; bytes that are no UTF-8 become lone surrogates, as in names of files."""
     return data.decode("utf-8", "surrogateescape")
+
+
+def listed(words: bytes) -> tuple[bytes, ...]:
+    """Words that are written with a bar between them."""
+    return tuple(words.split(b"|"))

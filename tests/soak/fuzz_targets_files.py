@@ -23,7 +23,7 @@ from sim.ros.parameter_yaml import ParameterYamlError, read_nodes, read_value
 from sim.shell.messages import Outgoing, given_values
 from sim.shell.session import Failed
 from sim.trace.recording.about import About, from_metadata, to_metadata
-from tests.soak.fuzz_target import Target, text_of
+from tests.soak.fuzz_target import Target, listed, text_of
 
 DEFINITIONS = Path(plain_yaml.__file__).parent / "ros" / "interfaces" / "definitions"
 _FILES = ("guide.md", "explain.md", "checks.py", "node.py", "starter.py", "solution.py")
@@ -32,15 +32,7 @@ _FILES = ("guide.md", "explain.md", "checks.py", "node.py", "starter.py", "solut
 def lesson() -> Target:
     """The description of a lesson."""
     samples = tuple(path.read_bytes() for path in sorted(ROOT.glob("unit*/*/lesson.toml")))
-    words = (
-        b"[[prediction]]",
-        b"[setup]",
-        b"[run]",
-        b'id = "x"',
-        b'node = "../../x.py"',
-        b"1979-05-27",
-        b"'''",
-    )
+    words = listed(b'[[prediction]]|[setup]|[run]|id = "x"|node = "../../x.py"|1979-05-27|\'\'\'')
     return Target("lesson", _read_lesson, samples, words, (BadLesson,))
 
 
@@ -62,16 +54,7 @@ def config() -> Target:
         b'lesson.step = ["f5", "."]\n',
         b'[keys.lesson]\npause = "ctrl+g"\n[keys]\n"menu.open" = "o"\nscreen.help = []\n',
     )
-    words = (
-        b"[keys]",
-        b"lesson.pause",
-        b"lesson.step",
-        b'"space"',
-        b'"ctrl+q"',
-        b'"ctrl+i"',
-        b"theme",
-        b"= 3",
-    )
+    words = listed(b'[keys]|lesson.pause|lesson.step|"space"|"ctrl+q"|"ctrl+i"|theme|= 3')
     return Target("config", lambda data, _: _complaints(text_of(data)), samples, words)
 
 
@@ -196,20 +179,7 @@ def parameters() -> Target:
         b"[1, 2, 3]",
         b"0x1F",
     )
-    words = (
-        b"ros__parameters:",
-        b"/**:",
-        b"!!str ",
-        b"on",
-        b"Y",
-        b".nan",
-        b"0x",
-        b"017",
-        b"08",
-        b"~",
-        b"- ",
-        b"1_0",
-    )
+    words = listed(b"ros__parameters:|/**:|!!str |on|Y|.nan|0x|017|08|~|- |1_0")
     return Target("parameters", _read_parameters, samples, words, (ParameterYamlError,))
 
 
@@ -272,14 +242,7 @@ def packages() -> Target:
         b"project(my_pkg)\nfind_package(ament_cmake REQUIRED)\n"
         b"install(PROGRAMS scripts/a.py DESTINATION lib/${PROJECT_NAME})\n",
     )
-    words = (
-        b"glob('**')",
-        b"'x' * 10**9",
-        b"[0] * 9999999999",
-        b"for a in b",
-        b"lambda: 0",
-        b"__import__('os')",
-    )
+    words = listed(b"glob('**')|'x' * 10**9|[0] * 9999999999|for a in b|lambda: 0|__import__('os')")
     more = (
         b"install(",
         b"${X}",

@@ -2,6 +2,7 @@
 
 Lines tell how far it is; the last one says how much was tried and which screens were reached, also after
 ctrl+c. A walk that broke something is told with its last steps; ``--walk`` goes on that one alone, once more.
+``--record`` keeps what came of it.
 """
 
 import argparse
@@ -11,6 +12,7 @@ from collections import Counter
 from dataclasses import dataclass, field
 
 from tests.soak.interruption import until_interrupted
+from tests.soak.results import FILE, record, today
 from tests.soak.walks import Walk, walk
 
 _NEWS = 10.0
@@ -23,6 +25,7 @@ def main() -> int:
     """Walk until the steps are done; return 1 if anything broke, 130 if it was interrupted."""
     options = _parse()
     tally = _Tally()
+    began = time.monotonic()
     ended = False
     with until_interrupted():
         _walk_on(options, tally)
@@ -30,6 +33,8 @@ def main() -> int:
     print(f"{'' if ended else 'interrupted: '}{tally.steps} steps in {tally.walks} walks", end=" ")
     print(f"(seed {options.seed}), {tally.failures} broke something;", end=" ")
     print(f"begun at {_counted(tally.begun)}; reached {_counted(tally.reached)}")
+    if options.record:
+        _record(tally, options.seed, time.monotonic() - began)
     if tally.failures:
         return 1
     return 0 if ended else 130
@@ -67,6 +72,11 @@ def _walk_on(options: argparse.Namespace, tally: _Tally) -> None:
             break
 
 
+def _record(tally: _Tally, seed: int, seconds: float) -> None:
+    figures = {"steps": tally.steps, "walks": tally.walks, "seconds": round(seconds), "broke": tally.failures}
+    record("keys", "walks", {"date": today(), "seed": seed, **figures})
+
+
 def _told(done: Walk, number: int) -> str:
     last = ", ".join(map(repr, done.steps[-_TOLD:]))
     return f"walk {number} from {done.name}, {len(done.steps)} steps, the last {last}: {done.trouble}"
@@ -81,6 +91,7 @@ def _parse() -> argparse.Namespace:
     parser.add_argument("--steps", type=int, default=2000, help="how much is done in all (%(default)s)")
     parser.add_argument("--seed", type=int, default=0, help="what is done; the same seed, the same steps")
     parser.add_argument("--walk", type=int, help="go on this walk alone")
+    parser.add_argument("--record", action="store_true", help=f"put what came of it into {FILE.name}")
     return parser.parse_args()
 
 

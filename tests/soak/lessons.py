@@ -17,7 +17,7 @@ from dataclasses import dataclass, field
 from tests.soak.footprint import Footprint, footprint, growth
 from tests.soak.interruption import until_interrupted
 from tests.soak.lesson_runs import SECOND, choose, run_twice
-from tests.soak.results import FILE, Entry, record
+from tests.soak.results import FILE, Entry, record, today
 from tests.soak.walks import walk
 
 _NEWS = 10.0
@@ -136,7 +136,7 @@ def main() -> int:
 
 def _record(soak: Soak) -> None:
     """Keep what came of the runs, and of the walks, if there were any."""
-    common: Entry = {"date": time.strftime("%Y-%m-%d", time.gmtime()), "seed": soak.seed}
+    common: Entry = {"date": today(), "seed": soak.seed}
     if soak.runs:
         figures = {"hours": round(soak.virtual / 3600, 2), "runs": soak.runs, "events": soak.events}
         more = {"messages": soak.messages, "seconds": round(soak.running), "troubles": soak.run_troubles}

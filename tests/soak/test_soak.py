@@ -4,11 +4,13 @@ import signal
 import sys
 from collections import Counter
 from collections.abc import Callable
+from random import Random
 
 import pytest
 
 from sim.trace.events import AnyEvent, CallbackStarted, EntityReady, MessageDropped, Published
-from tests.soak import keys, lessons
+from tests.ros.schedules import Trouble, random_system
+from tests.soak import keys, lessons, schedules
 from tests.soak.footprint import footprint, growth
 from tests.soak.lesson_runs import SECOND, Came, choose, run_twice
 from tests.soak.message_counts import MessageCounts
@@ -108,8 +110,29 @@ def test_a_soak_of_keys_that_is_told_to_end_says_what_it_came_to(
 ) -> None:
     done = Walk("menu", steps=["a", "b"], reached=Counter(MenuScreen=2))
     monkeypatch.setattr(keys, "walk", _once(done))
-    monkeypatch.setattr(sys, "argv", ["soak", "--steps", "9"])
+    kept: list[tuple[str, str, dict[str, object]]] = []
+    monkeypatch.setattr(keys, "record", lambda *what: kept.append(what))
+    monkeypatch.setattr(sys, "argv", ["soak", "--steps", "9", "--record"])
     assert keys.main() == 130
     assert capsys.readouterr().out == (
         "interrupted: 2 steps in 1 walks (seed 0), 0 broke something; begun at menu 1; reached MenuScreen 2\n"
     )
+    ((soak, part, entry),) = kept
+    assert (soak, part) == ("keys", "walks")
+    assert {**entry, "date": ""} == {"date": "", "seed": 0, "steps": 2, "walks": 1, "seconds": 0, "broke": 0}
+
+
+def test_schedules_are_recorded_if_that_is_wanted(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    kept: list[tuple[str, str, dict[str, object]]] = []
+    trouble = Trouble(8, "a wake-up was lost", random_system(Random(8)))
+    monkeypatch.setattr(schedules, "_search", lambda *_: [trouble])
+    monkeypatch.setattr(schedules, "record", lambda *what: kept.append(what))
+    for words in (["soak", "--schedules", "4", "--seed", "7"], ["soak", "--schedules", "4", "--record"]):
+        monkeypatch.setattr(sys, "argv", words)
+        assert schedules.main() == 1
+    ((soak, part, entry),) = kept
+    assert (soak, part) == ("schedules", "executors")
+    assert {**entry, "date": ""} == {"date": "", "seed": 1, "schedules": 4, "seconds": 0, "faults": 1}
+    assert "4 schedules from seed 7, 1 with a fault" in capsys.readouterr().out

@@ -4,6 +4,7 @@ Calls may come in any order; queues (depths, drops, which message a callback tak
 worked out when ``events`` is asked for.
 """
 
+import copy
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -82,6 +83,7 @@ class Run:
         self._nodes: dict[GroupId, NodeId] = {}
         self._names: dict[EntityId, str] = {}
         self._given: dict[str, int] = {}
+        self._events: list[AnyEvent] | None = None
         self.add(RunStarted(0, target, clock, EPOCH))
 
     # the cast
@@ -356,17 +358,30 @@ class Run:
         self._steps = [step for step in self._steps if step[0] <= ns(at)]
         self.over(at)
 
+    def copy(self) -> "Run":
+        """The same run as it is now; what is planned for one from now on is not in the other."""
+        other = copy.copy(self)
+        other._events = self.events
+        other._steps = list(self._steps)
+        other._sizes, other._nodes = dict(self._sizes), dict(self._nodes)
+        other._names, other._given = dict(self._names), dict(self._given)
+        return other
+
     @property
     def events(self) -> list[AnyEvent]:
         """Every event in order of time; of one time, in the order they were written."""
-        belts = {entity: _Belt(size) for entity, size in self._sizes.items()}
-        return [event for _, _, step in sorted(self._steps, key=lambda s: s[:2]) for event in step(belts)]
+        if self._events is None:
+            belts = {entity: _Belt(size) for entity, size in self._sizes.items()}
+            steps = sorted(self._steps, key=lambda step: step[:2])
+            self._events = [event for _, _, step in steps for event in step(belts)]
+        return list(self._events)
 
     def until(self, at: float) -> list[AnyEvent]:
         """The events up to and including ``at``: the run as it is known live at that moment."""
         return [event for event in self.events if event.t <= ns(at)]
 
     def _plan(self, t: int, step: _Step) -> None:
+        self._events = None
         self._steps.append((t, len(self._steps), step))
 
     def _next(self, what: str) -> int:

@@ -2,6 +2,8 @@
 
 import math
 from dataclasses import dataclass
+from functools import cache, wraps
+from typing import Protocol
 
 import numpy as np
 
@@ -43,6 +45,24 @@ class _Leg:
     angular: float
 
 
+class _Play(Protocol):
+    """Writes a run of so many seconds, or of its own length."""
+
+    def __call__(self, seconds: float = ..., /) -> Run: ...
+
+
+def _written_once(play: _Play) -> _Play:
+    """Write each run a single time, since a hundred tests want the same ones; everybody gets a copy."""
+    written = cache(play)
+
+    @wraps(play)
+    def copied(*seconds: float) -> Run:
+        return written(*seconds).copy()
+
+    return copied
+
+
+@_written_once
 def shared_group_run(seconds: float = 30.0) -> Run:
     """The lesson with one shared group: all queue up behind the timer, which rotates from 4 to 24 s.
 
@@ -75,6 +95,7 @@ def shared_group_run(seconds: float = 30.0) -> Run:
     return run
 
 
+@_written_once
 def split_groups_run(seconds: float = 20.0) -> Run:
     """The lesson with three groups and four workers: the sensors go on while the timer rotates, 4 to 14 s.
 
@@ -104,6 +125,7 @@ def split_groups_run(seconds: float = 20.0) -> Run:
     return run
 
 
+@_written_once
 def dummy_server_run(seconds: float = 10.0) -> Run:
     """The DummyServer, reentrant, with two threads: it is called at 2.55 s and no tick is late."""
     run = Run("reentrant-2-threads")
@@ -117,6 +139,7 @@ def dummy_server_run(seconds: float = 10.0) -> Run:
     return run
 
 
+@_written_once
 def dummy_server_one_thread_run(seconds: float = 10.0) -> Run:
     """The DummyServer, reentrant, with one thread: no tick from 2.55 to 7.55 s, then a late one."""
     run = Run("reentrant-1-thread")

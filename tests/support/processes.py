@@ -12,6 +12,12 @@ def descendants(process: int) -> list[int]:
     return found[1:]
 
 
+def engines_of(console: int) -> list[int]:
+    """Return the numbers of a console's engines, from their first moment on."""
+    children = Path(f"/proc/{console}/task/{console}/children").read_text(encoding="utf-8").split()
+    return [int(each) for each in children if b"spawn_main" in Path(f"/proc/{each}/cmdline").read_bytes()]
+
+
 def alive(process: int) -> bool:
     """Tell whether a process still does something."""
     try:

@@ -1,12 +1,8 @@
 """A console in a pseudo-terminal: keys go in, what it draws comes out, and what it leaves behind shows."""
 
-import fcntl
 import os
-import pty
 import re
-import struct
 import subprocess
-import sys
 import termios
 import time
 from collections.abc import Iterator, Sequence
@@ -16,8 +12,8 @@ from select import select
 from typing import Any
 
 from tests.support.processes import descendants
+from tests.support.pseudo_terminal import start_in_terminal
 
-_TERMINAL = {"TERM": "xterm-256color", "COLORTERM": "truecolor", "LC_ALL": "C.UTF-8"}
 _PATIENCE = 60.0
 """Seconds after which what never comes is given up."""
 _LAST = 4000
@@ -108,20 +104,7 @@ def opened(
 
     ``words`` are of its command line, ``program`` is what Python gets to run it.
     """
-    screen, terminal = pty.openpty()
-    fcntl.ioctl(terminal, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
-    folders = {f"XDG_{kind}_HOME": str(home) for kind in ("CONFIG", "DATA", "STATE", "CACHE")}
-    environment = os.environ | _TERMINAL | folders | {"HOME": str(home)}
-    environment.pop("NO_COLOR", None)
-    process = subprocess.Popen(
-        [sys.executable, *program, *words],
-        stdin=terminal,
-        stdout=terminal,
-        stderr=terminal,
-        env=environment,
-        start_new_session=True,
-        preexec_fn=lambda: fcntl.ioctl(0, termios.TIOCSCTTY, 0),  # noqa: PLW1509 -- as a shell's, to hang up
-    )
+    process, screen, terminal = start_in_terminal((*program, *words), columns, rows, home)
     console = TerminalConsole(process, screen, terminal)
     try:
         yield console

@@ -100,7 +100,7 @@ FULL: list[AnyEvent] = [
     LineEnded(2_500_000_000, 1, 0),
     LineCompleted(2_500_000_000, 2, 5, ("list", "pub")),
     ProcessEnded(2_500_000_000, 1, "the program returned", 0),
-    Notice(2_600_000_000, Severity.WARN, "The robot touches the wall."),
+    Notice(2_600_000_000, Severity.WARN, "The robot touches the wall.", 1),
     EventsLost(2_700_000_000, 12),
     ContentsLost(2_700_000_000, 3),
     EntityGone(2_800_000_000, 1),
@@ -129,5 +129,6 @@ BARE: list[AnyEvent] = [
     CallbackFailed(2_250_000_000, 3, 1, "IndexError: no beam 720", "node.py", 60),
     CallbackEnded(2_250_000_000, 3, 1),
     Printed(2_800_000_000, "hello", True),
+    Notice(2_800_000_000, Severity.INFO, "The robot stands."),
     EntityGone(2_800_000_000, 3),
 ]

@@ -93,7 +93,8 @@ def test_golden_lines() -> None:
         '{"t":2.5,"event":"line_end","line":1,"status":0}',
         '{"t":2.5,"event":"completion","line":2,"start":5,"words":["list","pub"]}',
         '{"t":2.5,"event":"process_end","process":"talker-1","reason":"the program returned","status":0}',
-        '{"t":2.6,"event":"notice","message":"The robot touches the wall.","severity":"WARN"}',
+        '{"t":2.6,"event":"notice","callback":"odom_callback","message":"The robot touches the wall.",'
+        '"severity":"WARN"}',
         '{"t":2.7,"event":"lost","count":12}',
         '{"t":2.7,"event":"contents_lost","count":3}',
         f'{{"t":2.8,"event":"entity_gone",{about}}}',

@@ -29,8 +29,10 @@ if TYPE_CHECKING:
     from cbtui.app import CbtuiApp
 
 
+_AT_ONCE = 256
+"""Events that the screen takes before keys have their turn: of lines as long as they come, a megabyte."""
 _BACKLOG = 4
-"""Batches that may wait for the screen; the engine keeps what comes meanwhile, as far as it can."""
+"""Parts of batches that may wait for the screen; the engine keeps what comes meanwhile, as far as it can."""
 _PATIENCE = 1.0
 """Seconds for which a session waits for a screen that takes nothing: it may be gone."""
 
@@ -143,7 +145,11 @@ class RunningScreen(SizedScreen[None]):
             self._tell(sentence)
 
     def _deliver(self, run: int, events: list[AnyEvent]) -> None:
-        """Hand a batch over; another thread is held up while the screen has enough to do."""
+        """Hand a batch over, in parts; another thread is held up while the screen has enough to do."""
+        for first in range(0, len(events), _AT_ONCE):
+            self._deliver_part(run, events[first : first + _AT_ONCE])
+
+    def _deliver_part(self, run: int, events: list[AnyEvent]) -> None:
         message = self.Delivered(run, events)
         if threading.current_thread() is not threading.main_thread():
             message.counts = self._backlog.acquire(timeout=_PATIENCE)

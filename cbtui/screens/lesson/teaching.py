@@ -9,7 +9,7 @@ from textual.message import Message
 
 from cbtui.actions import Scope
 from cbtui.keymap import STANDARD, keymap_of
-from cbtui.lesson_page import Part, Signs, Standing, introduction, page_of, page_of_exercise, predicted
+from cbtui.lesson_page import Part, Signs, Standing, introduction, page_of, predicted
 from cbtui.outcome import Outcome, OutcomeRun
 from cbtui.screens.lesson.changing import ChangingScreen
 from cbtui.screens.prediction import PredictionScreen, Way
@@ -56,12 +56,13 @@ class TeachingScreen(ChangingScreen):
     @property
     def _page(self) -> Mapping[str, str]:
         lesson = self.lesson
-        if lesson is None:
-            return super()._page
+        return super()._page if lesson is None else page_of(lesson, self._standing_in(lesson), self._signs)
+
+    def _standing_in(self, lesson: Lesson) -> Standing:
+        """How far the learner is, read when it is first asked for."""
         if self._standing is None:
             self._standing = Standing(self._progress.of(lesson.id))
-        page = page_of_exercise if self._at_exercise else page_of
-        return page(lesson, self._standing, self._signs)
+        return self._standing
 
     @property
     def _at_exercise(self) -> bool:

@@ -2,6 +2,7 @@
 
 from sim.diagnosis.rule import Rule
 from sim.diagnosis.rules.deadlock import NeedsOneMoreWorker, SelfMadeDeadlock
+from sim.diagnosis.rules.endless import EndlessWait
 from sim.diagnosis.rules.errors import ExceptionSwallowed
 from sim.diagnosis.rules.gaps import GapsInTrace
 from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, StaleData
@@ -13,6 +14,7 @@ from sim.diagnosis.rules.waiting import GroupStarvation, NodeNeverSpins, NoFreeW
 RULES: tuple[Rule, ...] = (
     SelfMadeDeadlock(),
     NeedsOneMoreWorker(),
+    EndlessWait(),
     NodeNeverSpins(),
     NobodyOffers(),
     QosMismatch(),

@@ -71,11 +71,18 @@ def _folders_above(beside: Path) -> Iterator[Path]:
     # Not needed by most programs, and slow to import.
     import tempfile
 
-    ends = {Path.home(), Path(tempfile.gettempdir()), Path(beside.anchor)}
+    ends = {*_home(), Path(tempfile.gettempdir()), Path(beside.anchor)}
     for folder in list(beside.parents)[:MOST_STEPS_UP]:
         if folder in ends or beside in ends:
             return
         yield folder
+
+
+def _home() -> Iterator[Path]:
+    try:
+        yield Path.home()
+    except RuntimeError:  # a user number without a name, and no HOME
+        return
 
 
 def _packages_of_workspace(folder: Path) -> Path | None:

@@ -1,0 +1,52 @@
+"""The rule on callbacks that wait for a lock, an event or the like that nobody lets go of or sets."""
+
+from collections.abc import Iterator
+
+from sim.diagnosis.look import Look
+from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, place_of
+from sim.diagnosis.words import often, who
+from sim.trace.events import Notice
+from sim.trace.model import Window
+from sim.trace.timeline import Timeline
+
+_SURE = "deadlock: "
+
+
+class EndlessWait(Rule):
+    """A callback waits without a timeout, and what it waits for does not come.
+
+    The engine tells of it on virtual time, where it sees what all threads of a program wait for. Where it is
+    a deadlock, that is sure; else it is told of as long as the callback has not come back.
+    """
+
+    id = "endless-wait"
+    summary = "a callback waits for a lock or an event that does not come"
+
+    def check(self, look: Look) -> Iterator[Finding]:
+        """Yield each wait that the engine tells of."""
+        for notice in look.timeline.notices:
+            if notice.entity:
+                until = _until(notice, look)
+                yield Finding(self, notice.t, until, notice.entity, detail=notice.text)
+
+    def explain(self, found: Finding, timeline: Timeline) -> Explanation:
+        """Say it as the engine does."""
+        what, _, cure = found.detail.removeprefix(_SURE).rpartition("; ")
+        how = "is in a deadlock" if found.detail.startswith(_SURE) else "stands still"
+        return Explanation(
+            f"{who(found.subject, timeline)} {how}: {what}{often(found.count)}",
+            "a thread that waits serves nothing else, and without a timeout it may do so for ever",
+            cure,
+            place_of(found.subject, timeline),
+        )
+
+    def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
+        """Nothing, if it came to an end after all."""
+        over = found.until < timeline.end and not found.detail.startswith(_SURE)
+        return None if over else Weight.PROBLEM
+
+
+def _until(notice: Notice, look: Look) -> int:
+    """When the call ended that a notice is about, or until now."""
+    spans = look.timeline.spans_of(notice.entity, Window(notice.t, notice.t + 1))
+    return max((look.end if span.end is None else span.end for span in spans), default=look.end)

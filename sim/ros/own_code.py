@@ -1,0 +1,34 @@
+"""Which code on a thread's stack is the learner's own, and where it stands."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+from types import FrameType
+
+
+def outwards(frame: FrameType | None) -> Iterator[FrameType]:
+    """A frame, its caller, and so on."""
+    while frame is not None:
+        yield frame
+        frame = frame.f_back
+
+
+def is_own(frame: FrameType) -> bool:
+    """Whether a frame runs neither the model's code nor Python's."""
+    root = str(frame.f_globals.get("__name__", "")).partition(".")[0]
+    return root != "sim" and (root == "__main__" or root not in sys.stdlib_module_names)
+
+
+def place_of(frame: FrameType | None) -> str:
+    """The innermost line of the learner's own from a frame on, as ``node.py:12, in tick``; "" for none."""
+    own = next(filter(is_own, outwards(frame)), None)
+    return (
+        "" if own is None else f"{Path(own.f_code.co_filename).name}:{own.f_lineno}, in {own.f_code.co_name}"
+    )
+
+
+def place_of_caller() -> str:
+    """Where the learner's own code called from, on the calling thread; "" where it did not."""
+    return place_of(sys._getframe(1))

@@ -1,0 +1,26 @@
+"""What an engine tells at once is taken in parts, so that keys have their turn in between."""
+
+import pytest
+
+from cbtui.live_run import LiveRun
+from sim.trace.events import AnyEvent, Printed
+from tests.support.builder import ns
+from tests.support.console import WIDE, RecordedConsole, settle
+from tests.support.runs import shared_group_run
+
+
+async def test_a_long_batch_is_taken_in_parts_and_in_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    taken: list[list[AnyEvent]] = []
+
+    def take(_run: LiveRun, events: list[AnyEvent]) -> None:
+        taken.append(events)
+
+    app = RecordedConsole("shared-group", shared_group_run().events, 5.0)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        monkeypatch.setattr(LiveRun, "take", take)
+        batch: list[AnyEvent] = [Printed(ns(5) + number, "x" * 4096, error=False) for number in range(2000)]
+        app.lesson_screen._deliver(app.lesson_screen._runs, batch)
+        await settle(pilot)
+    assert [event for part in taken for event in part] == batch
+    assert max(map(len, taken)) <= 256
