@@ -3,6 +3,7 @@
 import hashlib
 import re
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from queue import Empty, Queue
 from random import Random
@@ -112,8 +113,9 @@ def _periods(chance: Random, lesson: Lesson) -> tuple[PeriodChange, ...]:
 
 
 def run_twice(chosen: Choice) -> Came:
-    """Run what was chosen, and once more; the second has to give the same bytes, if it can."""
-    first, second = (_Run(chosen.setup).whole() for _ in range(2))
+    """Run what was chosen in two engines at once; the second has to give the same bytes, if it can."""
+    with ThreadPoolExecutor(2) as pool:
+        first, second = pool.map(lambda run: run.whole(), [_Run(chosen.setup) for _ in range(2)])
     if chosen.repeats and first.digest != second.digest:
         first.troubles.append(f"the second run differs: {first.events} events, then {second.events}")
     first.troubles += [each for each in second.troubles if each not in first.troubles]
