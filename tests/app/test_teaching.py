@@ -20,6 +20,7 @@ from cbtui.widgets.guide import Guide
 from lessons.catalogue import find
 from lessons.progress import LessonProgress, Progress
 from sim.engine.setup import RunSetup
+from sim.trace.events import RunEnded
 from sim.trace.timeline import Timeline
 from tests.app.pictures import lines_of, text_of
 from tests.support.builder import ns
@@ -214,6 +215,15 @@ async def test_enough_of_a_run_unlocks_what_it_showed() -> None:
         await settle(pilot)
         await until_shown(pilot, app, "2 of 2 as you said")
         assert app.kept().seen
+
+
+@pytest.mark.parametrize("failed", [False, True])
+async def test_a_run_that_failed_has_shown_nothing(failed: bool) -> None:
+    async with console(3.0, observe=the_lessons_own_run()) as (app, pilot):
+        await press(pilot, "1", "enter", "2", "enter")
+        app.engines.latest._deliver([RunEnded(ns(3.1), "the program is over", failed)])
+        await settle(pilot)
+        assert app.kept().seen is not failed
 
 
 async def test_what_is_being_read_stays_in_its_place_when_the_run_unlocks_what_it_showed() -> None:

@@ -183,7 +183,7 @@ class TeachingScreen(ChangingScreen):
         """Whether the run has come to where its predictions can be told from."""
         timeline, terms = self._run.timeline, lesson.run
         if timeline.ended is not None:
-            return True
+            return not timeline.ended.failed
         if timeline.end < terms.seconds * _SECOND:
             return False
         return not terms.calls or any(call.service == lesson.service.name for call in timeline.calls)
