@@ -29,7 +29,8 @@ def main() -> None:
             measured[figure.name] = figure.median_of(options.rounds)
             print(row(figure, known, measured[figure.name]), flush=True)
     if options.record:
-        last, load = {**known.last, **measured}, {**known.load, **load}
+        measured, load = {**known.last, **measured}, {**known.load, **load}
+        last = {figure.name: measured[figure.name] for figure in FIGURES if figure.name in measured}
         records.write(replace(known, last=last, load=load, machine=machine))
 
 

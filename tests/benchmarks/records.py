@@ -30,7 +30,7 @@ def read(file: Path = FILE) -> Records:
 
 def write(records: Records, file: Path = FILE) -> None:
     """Put records into the file."""
-    rows = [_row(name, records) for name in {**records.before, **records.last}]
+    rows = [_row(name, records) for name in {**records.last, **records.before}]
     told = "# python -m tests.benchmarks --record measures last and load anew; nothing is written by hand."
     text = "\n".join([told, f'machine = "{records.machine}"', *rows])
     file.write_text(f"{text}\n", encoding="utf-8")

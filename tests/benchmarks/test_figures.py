@@ -28,7 +28,7 @@ def test_every_figure_has_a_name_of_its_own_and_every_record_is_one_s() -> None:
     names = [figure.name for figure in FIGURES]
     known = records.read()
     assert len(set(names)) == len(names)
-    assert list(known.last) == [name for name in names if name in known.last]
+    assert list(known.last) == names
     assert set(known.before) <= set(known.last)
 
 
