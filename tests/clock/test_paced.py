@@ -1,6 +1,7 @@
 """Wall time that is paused, slowed down and sped up: what it shows, and whom it lets go when."""
 
 import random
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -180,6 +181,16 @@ def test_an_interrupted_thread_wakes_from_its_sleep_even_in_a_pause(clock: Paced
     assert isinstance(sleeper.error, KeyboardInterrupt)
 
 
+@pytest.fixture
+def threads_in_turn() -> Iterator[None]:
+    """Interrupt threads that compute, a hundred times a millisecond, wherever they are."""
+    before = sys.getswitchinterval()
+    sys.setswitchinterval(0.00001)
+    yield
+    sys.setswitchinterval(before)
+
+
+@pytest.mark.usefixtures("threads_in_turn")
 def test_time_never_goes_back_for_anybody_whatever_is_done_to_it(clock: PacedClock) -> None:
     over = threading.Event()
 
