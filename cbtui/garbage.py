@@ -33,7 +33,8 @@ def collect_now() -> None:
 
 def look_at_all_again() -> None:
     """Have the next full collection look at everything: a screen's objects are of no use any more."""
-    gc.unfreeze()
+    if _set_survivors_aside in gc.callbacks:
+        gc.unfreeze()
 
 
 def _set_survivors_aside(phase: str, about: dict[str, int]) -> None:

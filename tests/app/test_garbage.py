@@ -23,11 +23,14 @@ class Knot:
 
 @pytest.fixture(autouse=True)
 def _as_before() -> Iterator[None]:
+    frozen = gc.get_freeze_count()
     gc.unfreeze()
     gc.collect()
     Knot.left = 0
     yield
     gc.unfreeze()
+    if frozen:
+        gc.freeze()
 
 
 def test_a_collection_takes_what_is_new_and_sets_the_rest_aside() -> None:
@@ -51,6 +54,12 @@ def test_nothing_is_collected_early_or_set_aside_without_being_asked() -> None:
     gc.collect()
     assert Knot.left == 0
     assert gc.get_freeze_count() == 0
+
+
+def test_what_others_set_aside_is_left_alone() -> None:
+    gc.freeze()
+    look_at_all_again()
+    assert gc.get_freeze_count() > 0
 
 
 def test_afterwards_all_is_as_before() -> None:
