@@ -81,14 +81,13 @@ def console(setup: RunSetup) -> Iterator[Console]:
 
 
 def test_a_lesson_that_is_paused_stepped_and_hurried_is_the_lesson_that_is_not() -> None:
-    setup = msgspec.structs.replace(setup_for(find("split-groups"), speed=20.0), until=12 * SECOND)
+    setup = msgspec.structs.replace(setup_for(find("split-groups"), speed=5.0), until=12 * SECOND)
     with console(setup) as run:
         for pause in range(4):
             run.until(RobotMoved, 3 + 5 * pause)
             run.give(Pause(), *[Step()] * 5)
             run.until(TimeHalted, 5 * (pause + 1))
-            run.give(Resume())
-        run.give(RunUntil(5 * SECOND))
+            run.give(Resume() if pause < 3 else RunUntil(5 * SECOND))
         run.until(TimeHalted, 21)
         run.give(RunUntilCallback(1, "it"))
         halted = run.until(TimeHalted, 22)

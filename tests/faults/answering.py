@@ -60,6 +60,8 @@ def waits(fault: Fault, presses: int) -> list[float]:
         chdir(folder),
     ):
         patch.setenv(CEILING, _MEMORY)
+        # A full disk would leave the beginnings of what Python compiles, which no later console can read.
+        patch.setenv("PYTHONDONTWRITEBYTECODE", "1")
         path = node_with(Path(folder), fault.code, again=fault.again)
         with opened("open", path.name, "--clock", fault.clock) as console:
             console.until(RUNS)

@@ -9,6 +9,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from threading import Barrier
 
+import pytest
+
 from cbtui.live_recording import LiveRecording
 from cbtui.live_run import State
 from sim.engine.setup import RunSetup
@@ -24,13 +26,19 @@ CONSOLES = 8
 
 @contextmanager
 def files_of_at_most(size: int) -> Iterator[None]:
-    """Let no file grow beyond a size, as if the disk were full; what is written beyond fails."""
+    """Let no file grow beyond a size, as if the disk were full; what is written beyond fails.
+
+    Python compiles nothing meanwhile: versions before 3.13 keep what they could only write the beginning of.
+    """
     before = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
-    try:
-        yield
-    finally:
-        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(sys, "dont_write_bytecode", True)
+        patch.setenv("PYTHONDONTWRITEBYTECODE", "1")
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, before[1]))
+        try:
+            yield
+        finally:
+            resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
 def events_in(path: Path) -> int:
