@@ -26,7 +26,7 @@ class History(Sequence[Item], Generic[Item]):
 
     ``kind`` is the type of the items, one that msgspec can encode, of values that never change. Adding the
     newest is an append; one that comes late finds its place. The newest one or two blocks stay in memory,
-    the others are spilled, and made anew when they are asked for.
+    more after one that came very late; the others are spilled, and made anew when they are asked for.
     """
 
     __slots__ = ("_blocks", "_full", "_items_in_block", "_spilled", "_tail", "_when")
@@ -50,10 +50,10 @@ class History(Sequence[Item], Generic[Item]):
     def add(self, item: Item) -> None:
         """Take in an item."""
         tail = self._tail
-        if not tail or self._when(tail[-1]) <= self._when(item):
-            tail.append(item)
-        else:
+        if tail and self._when(item) < self._when(tail[-1]):
             self._add_late(item)
+            return
+        tail.append(item)
         if len(tail) >= self._full:
             self._put_by()
 
@@ -133,9 +133,8 @@ class History(Sequence[Item], Generic[Item]):
         while self._spilled and at < self._when(self._tail[0]):
             self._tail[0:0] = self._blocks.pop()
             self._spilled -= self._items_in_block
+        # What was taken back stays until newer items come: the next is often as late.
         insort_right(self._tail, item, key=self._when)
-        while len(self._tail) >= self._full:
-            self._put_by()
 
     def _put_by(self) -> None:
         block = self._tail[: self._items_in_block]

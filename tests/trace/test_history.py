@@ -16,6 +16,17 @@ items = st.lists(st.builds(CommandGiven, times, st.text(max_size=3)), max_size=6
 spills = st.builds(Spill, at_hand=st.integers(1, 400), entries=st.integers(1, 7))
 
 
+class CountingSpill(Spill):
+    """Counts what is put by."""
+
+    count = 0
+
+    def put(self, data: bytes) -> int:
+        """Take it, and count."""
+        self.count += 1
+        return super().put(data)
+
+
 def history_of(spill: Spill, items: list[CommandGiven]) -> History[CommandGiven]:
     history: History[CommandGiven] = History(attrgetter("t"), CommandGiven, spill)
     for item in items:
@@ -54,3 +65,12 @@ def test_a_window_and_a_moment_are_found_by_time(
     assert history.until(start) == len(until)
     assert history.before(start) == len([item for item in naive if item.t < start])
     assert history.latest(start) == (until[-1] if until else None)
+
+
+def test_many_that_come_very_late_do_not_each_have_everything_spilled_anew() -> None:
+    spill = CountingSpill(at_hand=100, entries=4)
+    early = [CommandGiven(at, "early") for at in range(400)]
+    history = history_of(spill, [CommandGiven(at, "late") for at in range(400, 800)] + early)
+    assert spill.count <= 400 // 4
+    history.add(CommandGiven(800, "newest"))
+    assert history == [*early, *(CommandGiven(at, "late") for at in range(400, 800)), history[-1]]
