@@ -16,7 +16,8 @@ class Table:
     """Rows of so many 64-bit integers each; a row number stands for one of them.
 
     Searches go by the first column, in which the rows then have to ascend: ``add`` sees to that. The newest
-    one or two blocks stay in memory, so that what comes a little late finds its place there.
+    one or two blocks stay in memory, so that what comes a little late finds its place there, and more of them
+    after what came very late.
     """
 
     __slots__ = ("_blocks", "_cells", "_full", "_rows_in_block", "_spilled", "_tail", "_width")
@@ -60,9 +61,8 @@ class Table:
         cell = (place - self._spilled) * self._width
         cells = array("q")
         _put(row, cells)
+        # What was taken back stays until newer rows come: the next is often as late.
         self._tail[cell:cell] = cells
-        while len(self._tail) >= self._full:
-            self._put_by()
 
     def row(self, number: int) -> "array[int]":
         """The cells of a row."""
