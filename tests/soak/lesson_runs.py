@@ -115,7 +115,7 @@ def _periods(chance: Random, lesson: Lesson) -> tuple[PeriodChange, ...]:
 def run_twice(chosen: Choice) -> Came:
     """Run what was chosen in two engines at once; the second has to give the same bytes, if it can."""
     with ThreadPoolExecutor(2) as pool:
-        first, second = pool.map(lambda run: run.whole(), [_Run(chosen.setup) for _ in range(2)])
+        first, second = pool.map(_Run.whole, [_Run(chosen.setup) for _ in range(2)])
     if chosen.repeats and first.digest != second.digest:
         first.troubles.append(f"the second run differs: {first.events} events, then {second.events}")
     first.troubles += [each for each in second.troubles if each not in first.troubles]
