@@ -47,7 +47,7 @@ def _shown(character: str, charset: Charset) -> str:
     return "�" if unshowable else character
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=1024)
 def to_cells(text: str, charset: Charset) -> tuple[str, ...]:
     """Return one string a column; a wide character is followed by an empty one."""
     cells: list[str] = []
@@ -57,7 +57,7 @@ def to_cells(text: str, charset: Charset) -> tuple[str, ...]:
     return tuple(cells)
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=1024)
 def fit(text: str, width: int, charset: Charset) -> str:
     """Return the text in exactly ``width`` columns: padded, or cut with an ellipsis."""
     cells = to_cells(text, charset)

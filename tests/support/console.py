@@ -17,6 +17,7 @@ from cbtui.colour_themes import STANDARD
 from cbtui.keymap import Keymap
 from cbtui.outcome import Observe
 from cbtui.screens.lesson import LessonScreen
+from cbtui.widgets.lanes import Lanes
 from lessons.catalogue import find
 from sim.engine.setup import RunSetup
 from sim.trace.events import AnyEvent
@@ -82,6 +83,10 @@ def observed(events: Sequence[AnyEvent]) -> Observe:
     return observe
 
 
+_FRAMES = 100
+"""More than lanes take to fill."""
+
+
 async def settle(pilot: Pilot[None]) -> None:
     """Let everything that was delivered or pressed reach the screen; to be ``run_before`` of a snapshot."""
     await pilot.pause()
@@ -89,3 +94,8 @@ async def settle(pilot: Pilot[None]) -> None:
         pilot.app.screen.look_for_findings()
         pilot.app.screen.draw()
     await pilot.pause()
+    for lanes in pilot.app.screen.query(Lanes):
+        for _ in range(_FRAMES):
+            if lanes.picture is None or lanes.picture.complete:
+                break
+            await pilot.pause(0.02)

@@ -55,6 +55,8 @@ async def test_only_lines_that_changed_are_drawn_again() -> None:
         lanes.timeline = told(shared_group_run())
         lanes.window, lanes.now = Window(0, ns(10)), ns(3.0)
         await pilot.pause()
+        while lanes.picture is None or not lanes.picture.complete:
+            await pilot.pause(0.05)
         drawn: list[Region] = []
         refresh = lanes.refresh
 
