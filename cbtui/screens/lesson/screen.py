@@ -1,5 +1,6 @@
 """A lesson on screen: its run on lanes, the moment in words, and its panes."""
 
+from collections.abc import Iterable
 from math import inf
 from pathlib import Path
 from time import monotonic
@@ -32,6 +33,9 @@ _LANES_A_PANE = 6
 """Frames of the lanes for each of the other panes while a run goes on: those tell in words and figures, which
 nobody reads as fast as lanes are seen to move."""
 
+_LANES_A_TEXT = 12
+"""Frames of the lanes for each of log and code: lines that scroll past are read no faster."""
+
 _GLANCE = 150_000_000
 """Nanoseconds of a person's time for which a worker is seen walking."""
 
@@ -43,6 +47,9 @@ _ON_LINES = ("follow", "pick_line", "pick_callback", "copy", "let_go", "look_the
 
 _WITH_KEYS = (LogLines, CodeView, ChecksView)
 """Panes that know which of their own actions have a meaning."""
+
+_TEXTS = (CodeView, LogView)
+"""Panes that are lines of text."""
 
 _DISK = 1.0
 """Seconds after which the source's file is looked at again."""
@@ -62,6 +69,8 @@ class LessonScreen(ExportingScreen):
 
     _drawn_at = inf
     """When all panes were drawn last; the first time is the timer's."""
+    _texts_behind = False
+    """Whether log and code have been left out since."""
 
     def on_mount(self) -> None:
         """Start the run and the timer that draws it."""
@@ -82,6 +91,14 @@ class LessonScreen(ExportingScreen):
 
     def draw(self) -> None:
         """Show the moment that the playhead is at."""
+        self._draw_with(self.PANES_HERE)
+        self._texts_behind = False
+
+    def _draw_all_but_texts(self) -> None:
+        self._draw_with([name for name in self.PANES_HERE if not isinstance(self._widget(name), _TEXTS)])
+        self._texts_behind = True
+
+    def _draw_with(self, panes: Iterable[str]) -> None:
         self._stale = self._grown = False
         self._drawn_at = monotonic()
         if self.layout_now is Layout.SMALL:
@@ -99,7 +116,7 @@ class LessonScreen(ExportingScreen):
         line.diagnosis = with_worst(self._verdict(), told, way_on(run, keymap_of(self.app)))
         line.note = call_note(timeline, now)
         line.problems = problems_note(told, keymap_of(self.app), self._charset)
-        for name in self.PANES_HERE:
+        for name in panes:
             if self._widget(name).display:
                 self._draw_pane(name)
         self._offer_keys()
@@ -133,8 +150,11 @@ class LessonScreen(ExportingScreen):
         self._frames += 1
         if self._watch.look_when_due():
             self._stale = True
-        if self._stale or (self._grown and self._frames % _LANES_A_PANE == 0):
+        more = self._grown or self._texts_behind
+        if self._stale or (more and self._frames % _LANES_A_TEXT == 0):
             self.draw()
+        elif self._grown and self._frames % _LANES_A_PANE == 0:
+            self._draw_all_but_texts()
         elif self._grown and self.layout_now is not Layout.SMALL:
             self.draw_lanes()
 
