@@ -6,6 +6,7 @@ from itertools import takewhile
 from rich.cells import cell_len
 from rich.segment import Segment
 from rich.style import Style
+from textual.color import Color
 from textual.geometry import Region, Size
 from textual.strip import Strip
 from textual.widget import Widget
@@ -26,6 +27,8 @@ class Painted(Widget):
     _rows: Sequence[Sequence[Run]] = ()
     _rows_size: Size | None = None
     _stale = False
+    _background: Color | None = None
+    """The colour behind the text, as long as the styles do not change."""
     _sides: tuple[list[Segment], list[Segment]] | None = None
     """The frame and the room left and right of the painted lines, as long as the styles do not change."""
 
@@ -49,8 +52,10 @@ class Painted(Widget):
         Textual's own way to them cares for what no painted widget has, such as tinted lines, and takes longer
         than the painting.
         """
-        top, rows, width = self.gutter.top, self.size.height, self.outer_size.width
-        background, filters = self.background_colors[1], self.get_line_filters()
+        size = self.size
+        top, rows, width = self.gutter.top, size.height, self.outer_size.width
+        background, filters = self._background_now(), self.get_line_filters()
+        self._paint_for(size)
         lines: list[Strip] = []
         for y in crop.line_range:
             if top <= y < top + rows:
@@ -65,26 +70,35 @@ class Painted(Widget):
 
     def render_line(self, y: int) -> Strip:
         """Return one painted line."""
-        return Strip(self.segments(y), self.size.width)
+        size = self.size
+        self._paint_for(size)
+        return Strip(self.segments(y), size.width)
 
     def segments(self, y: int) -> list[Segment]:
-        """Return one painted line, as wide as the rows are."""
-        size = self.size
-        if self._rows_size != size:
-            self._rows, self._rows_size = self.rows(size), size
+        """Return one line of what was painted last, as wide as the rows are."""
         if y >= len(self._rows):
-            return [Segment(" " * size.width, self._style(BLANK))]
+            return [Segment(" " * self.size.width, self._style(BLANK))]
         return [Segment(run.text, self._style(run.ink)) for run in self._rows[y]]
 
     def notify_style_update(self) -> None:
         """Forget the look of the theme and of the frame before."""
         super().notify_style_update()
         self._styles.clear()
-        self._sides = None
+        self._background = self._sides = None
+
+    def _background_now(self) -> Color:
+        if self._background is None:
+            self._background = self.background_colors[1]
+        return self._background
+
+    def _paint_for(self, size: Size) -> None:
+        """Paint if that was not yet done for a size."""
+        if self._rows_size != size:
+            self._rows, self._rows_size = self.rows(size), size
 
     def _style(self, ink: Ink) -> Style:
         if ink not in self._styles:
-            ground = "#{:02x}{:02x}{:02x}".format(*self.background_colors[1].rgb)
+            ground = "#{:02x}{:02x}{:02x}".format(*self._background_now().rgb)
             self._styles[ink] = style_of(ink, palette_of(self.app.current_theme), ground)
         return self._styles[ink]
 
