@@ -4,8 +4,12 @@ import gc
 from collections.abc import Iterator
 
 import pytest
+from textual._styles_cache import StylesCache
 
-from cbtui.garbage import collect_now, look_at_all_again, survivors_set_aside
+from cbtui.garbage import collect_now, let_go_of_screen, survivors_set_aside
+from cbtui.screens.menu import MenuScreen
+from tests.support.console import WIDE, RecordedConsole, settle
+from tests.support.runs import shared_group_run
 
 
 class Knot:
@@ -42,7 +46,7 @@ def test_a_collection_takes_what_is_new_and_sets_the_rest_aside() -> None:
         del kept
         collect_now()
         assert Knot.left == 1  # set aside, and so not seen to be garbage
-        look_at_all_again()
+        let_go_of_screen()
         collect_now()
         assert Knot.left == 0
 
@@ -58,7 +62,7 @@ def test_nothing_is_collected_early_or_set_aside_without_being_asked() -> None:
 
 def test_what_others_set_aside_is_left_alone() -> None:
     gc.freeze()
-    look_at_all_again()
+    let_go_of_screen()
     assert gc.get_freeze_count() > 0
 
 
@@ -67,3 +71,14 @@ def test_afterwards_all_is_as_before() -> None:
         gc.collect()
         assert gc.get_freeze_count() > 0
     assert gc.get_freeze_count() == 0
+
+
+async def test_a_screen_that_was_left_is_not_kept_for_its_colours() -> None:
+    app = RecordedConsole("shared-group", shared_group_run().events, 2.0)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        shown = StylesCache.get_inner_outer.cache_info().currsize
+        await pilot.press("q")
+        await pilot.pause()
+        assert isinstance(app.screen, MenuScreen)
+        assert 0 < StylesCache.get_inner_outer.cache_info().currsize < shown

@@ -12,7 +12,7 @@ from cbtui.changes import Changes
 from cbtui.compositing import SparingCompositor
 from cbtui.contenders import Side
 from cbtui.findings import Watch
-from cbtui.garbage import collect_now, look_at_all_again
+from cbtui.garbage import collect_now, let_go_of_screen
 from cbtui.keymap import keymap_of
 from cbtui.live_recording import Finish
 from cbtui.live_run import Deliver, Ended, LiveRun, OpenSession
@@ -124,7 +124,7 @@ class RunningScreen(SizedScreen[None]):
     async def on_unmount(self) -> None:
         """End the engine and every recording, whatever way the screen is left."""
         self._left = True
-        look_at_all_again()
+        let_go_of_screen()
         saved = await asyncio.to_thread(self._run.stop)
         if saved is not None:
             cast("CbtuiApp", self.app).tell_saved(saved)
