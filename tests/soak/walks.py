@@ -59,7 +59,8 @@ def walk(seed: int, number: int, most: int = LONGEST) -> Walk:
         try:
             asyncio.run(_go(begin(chance, Path(home)), chance, done, min(most, chance.randint(10, LONGEST))))
         except Exception as error:  # noqa: BLE001 - whatever it is, it is what is looked for
-            troubles.insert(0, f"{type(error).__name__}: {error}")
+            last = f"at step {len(done.steps)}, {done.steps[-1:]}"
+            troubles.insert(0, f"{type(error).__name__}: {error} {last}")
         troubles += _left_behind()
     done.trouble = "; ".join(troubles) or None
     return done
