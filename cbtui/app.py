@@ -1,9 +1,6 @@
 """The application: opens the menu and the lessons, and knows what the terminal can show."""
 
-import asyncio
-import sys
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import suppress
 from pathlib import Path
 from time import time
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -17,10 +14,8 @@ from textual.types import CSSPathType
 from cbtui.actions import Scope, bindings_of
 from cbtui.ascii_filter import AsciiFilter
 from cbtui.colour_themes import STANDARD, THEMES
-from cbtui.commands.output import shown
-from cbtui.garbage import survivors_set_aside
+from cbtui.ending import EndingApp
 from cbtui.harmless_filter import HarmlessFilter
-from cbtui.interrupts import ENDING
 from cbtui.keymap import Keymap
 from cbtui.outcome import observe_engine
 from cbtui.recent import Kind, Opened, Recents
@@ -61,7 +56,7 @@ def _engine_session(setup: "RunSetup", deliver: "Deliver", ended: "Ended") -> "S
     return ListeningSession(setup, deliver, ended)
 
 
-class CbtuiApp(App[None]):
+class CbtuiApp(EndingApp):
     """The console.
 
     ``start_lesson`` is the id of a lesson to open at once, ``start_exercise`` of one whose exercise to open,
@@ -120,25 +115,6 @@ class CbtuiApp(App[None]):
         self.set_keymap(self.keys.for_textual())
         self._ascii = AsciiFilter()
         self._harmless = HarmlessFilter()
-        self.saved: list[str] = []
-        """Sentences on what was saved as screens were left."""
-
-    def run(self, *args: Any, **options: Any) -> Any:
-        """Run the console to its end, and say then what was saved as its screens were left."""
-        result = super().run(*args, **options)
-        sys.stderr.writelines(shown(f"{sentence}\n") for sentence in self.saved)
-        return result
-
-    async def run_async(self, *args: Any, **options: Any) -> Any:
-        """Run the console in a terminal, which gets back what it lent when the console is told to end.
-
-        It is by ``kill``, and by the terminal itself when its window is closed.
-        """
-        with suppress(NotImplementedError):  # Windows has no such signals
-            for number in ENDING:
-                asyncio.get_running_loop().add_signal_handler(number, self.exit, None, 128 + number)
-        with survivors_set_aside():
-            return await super().run_async(*args, **options)
 
     def get_driver_class(self) -> "type[Driver]":
         """Return what keys are read from and all is drawn to."""
@@ -148,6 +124,13 @@ class CbtuiApp(App[None]):
 
             return TerminalDriver
         return driver
+
+    def action_command_palette(self) -> None:
+        """Open the command palette, unless it is open."""
+        from cbtui.palette import Palette
+
+        if not isinstance(self.screen, Palette):
+            self.push_screen(Palette(id="--command-palette"))
 
     def tell_saved(self, sentence: str) -> None:
         """Say what was saved when a screen was left: now, and once more when the terminal is as it was."""

@@ -271,14 +271,7 @@ class _TellVersion(argparse.Action):
     """Tells the version and ends; looks it up only then, which takes as long as the rest of the help."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
-        sys.stdout.write(f"cbtui {_version()}\n")
+        from cbtui.version import own_version
+
+        sys.stdout.write(f"cbtui {own_version()}\n")
         parser.exit()
-
-
-def _version() -> str:
-    from importlib.metadata import PackageNotFoundError, version
-
-    try:
-        return version("cbtui")
-    except PackageNotFoundError:
-        return "(not installed)"

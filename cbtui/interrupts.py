@@ -31,25 +31,55 @@ _FRAGILE = ("<frozen importlib._bootstrap>", typing.__file__)
 _Handler: TypeAlias = Callable[[int, FrameType | None], Any]
 
 
+class Interruption:
+    """Ctrl-C that waits: whether it came yet."""
+
+    def __init__(self) -> None:
+        self.came = False
+
+    def __call__(self, _number: int, _frame: FrameType | None) -> None:
+        """Note that it came."""
+        self.came = True
+
+
 @contextmanager
-def whole() -> Iterator[None]:
-    """Let Ctrl-C wait until what is done inside is done; that should not take long."""
+def whole() -> Iterator[Interruption]:
+    """Let Ctrl-C wait until what is done inside is done; which is soon, or looks whether it came."""
+    waiting = Interruption()
     if threading.current_thread() is not threading.main_thread():
+        yield waiting
+        return
+    before = signal.signal(signal.SIGINT, waiting)
+    try:
+        yield waiting
+    finally:
+        signal.signal(signal.SIGINT, before)
+        if waiting.came:
+            signal.raise_signal(signal.SIGINT)
+
+
+@contextmanager
+def ending_heard(tell: Callable[[signal.Signals], None]) -> Iterator[None]:
+    """Have the running event loop call ``tell`` at each of ``ENDING``; what Ctrl-C did before, it does after.
+
+    The loop by itself leaves Python's own way with Ctrl-C behind, which breaks off what it comes upon.
+    """
+    import asyncio  # when the console opens: other commands need none of it
+
+    loop, before = asyncio.get_running_loop(), signal.getsignal(signal.SIGINT)
+    if not hasattr(signal, "pthread_sigmask"):  # Windows: its loop hears no signals
         yield
         return
-    came = False
-
-    def note(_number: int, _frame: FrameType | None) -> None:
-        nonlocal came
-        came = True
-
-    before = signal.signal(signal.SIGINT, note)
+    for number in ENDING:
+        loop.add_signal_handler(number, tell, number)
     try:
         yield
     finally:
+        blocked = signal.pthread_sigmask(signal.SIG_BLOCK, ENDING)
+        for number in ENDING:
+            loop.remove_signal_handler(number)
         signal.signal(signal.SIGINT, before)
-        if came:
-            signal.raise_signal(signal.SIGINT)
+        signal.pthread_sigmask(signal.SIG_SETMASK, blocked)
 
 
 @contextmanager

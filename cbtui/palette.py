@@ -1,14 +1,25 @@
-"""The registry's actions in the command palette."""
+"""The command palette, and the registry's actions in it."""
 
 from collections.abc import Coroutine, Iterator
 from functools import partial
 from typing import Any
 
-from textual.command import DiscoveryHit, Hit, Hits, Provider
+from textual.command import CommandList, CommandPalette, DiscoveryHit, Hit, Hits, Provider
 
 from cbtui.actions import Action, Scope, actions_of, method_of, signs_of, target_of
 from cbtui.keymap import keymap_of
 from cbtui.theme import Charset
+
+
+class Palette(CommandPalette):
+    """Textual's palette, except that keys do nothing to a list of which nothing is shown yet.
+
+    Textual looks for the lines of the highlighted command then, and there are none.
+    """
+
+    def _action_command_list(self, action: str) -> None:
+        if self.query_one(CommandList).scrollable_content_region.height > 0:
+            super()._action_command_list(action)
 
 
 class ActionsProvider(Provider):

@@ -1,8 +1,9 @@
-"""Runs ``cbtui`` and presses Ctrl-C at a moment: ``python interrupted.py CALLS WORDS …``.
+"""Runs ``cbtui`` and presses Ctrl-C at a moment: ``python interrupted.py MOMENT WORDS …``.
 
-The moment is the so-many-th call of a function on the main thread, from the command's first line on: the
-same each time, however busy the machine is. As in a terminal, every process of the group gets SIGINT. A file
-``interrupted`` tells that it came to that; not where the command had done all that it has to do.
+The moment is the so-many-th call of a function on the main thread, from the command's first line on, or the
+first call of a function that is named: the same each time, however busy the machine is. As in a terminal,
+every process of the group gets SIGINT. A file ``interrupted`` tells that it came to that; not where the
+command had done all that it has to do.
 """
 
 import os
@@ -15,7 +16,7 @@ from types import FrameType
 _FIRST = str(Path("cbtui", "__main__.py"))
 
 
-def run(moment: int) -> None:
+def run(moment: str) -> None:
     """Run ``sys.argv`` as the ``cbtui`` command."""
     calls = 0
 
@@ -23,7 +24,7 @@ def run(moment: int) -> None:
         nonlocal calls
         if event == "call" and (calls or frame.f_code.co_filename.endswith(_FIRST)):
             calls += 1
-            if calls == moment:
+            if moment in (str(calls), frame.f_code.co_qualname):
                 sys.setprofile(None)
                 if signal.getsignal(signal.SIGINT) != signal.SIG_IGN:
                     Path("interrupted").touch()
@@ -34,5 +35,5 @@ def run(moment: int) -> None:
 
 
 if __name__ == "__main__":
-    moment, sys.argv = int(sys.argv[1]), ["cbtui", *sys.argv[2:]]
+    moment, sys.argv = sys.argv[1], ["cbtui", *sys.argv[2:]]
     run(moment)

@@ -27,6 +27,9 @@ LATEST = 120_000
 """Calls of functions among which the moments are; the commands make some 60,000 to 250,000."""
 INTERRUPTED = 130
 EXERCISE = "split-groups"
+LOOPS_START = ["BaseSelectorEventLoop.__init__", "BaseSelectorEventLoop._make_self_pipe"]
+LOOPS_END = ["_UnixSelectorEventLoop.remove_signal_handler", "BaseSelectorEventLoop._close_self_pipe"]
+"""Functions of asyncio in which an exception leaves a loop that is neither open nor closed."""
 SCRIPT = str(Path(__file__).with_name("interrupted.py"))
 RUN = ("run", "node.py", "--no-robot", "--record", "run.mcap")
 COMMANDS = {
@@ -133,6 +136,35 @@ def test_ctrl_c_ends_a_console_that_starts_and_gives_the_terminal_back(moment: i
         assert console.ended() == INTERRUPTED
         assert console.left_on() == set()
         assert "Traceback" not in console.said()
+        assert "Exception" not in console.said()
+        assert "fault" not in console.said()
+
+
+@pytest.mark.parametrize("function", [*LOOPS_START, "EndingApp.run", "EndingApp.run_async", "ending_heard"])
+def test_ctrl_c_before_the_console_hears_it_ends_it_before_it_draws(function: str, tmp_path: Path) -> None:
+    with opened(80, 24, tmp_path, program=[SCRIPT, function]) as console:
+        assert console.ended() == INTERRUPTED
+        assert console.drawn == b""
+        assert console.left_on() == set()
+
+
+@pytest.mark.parametrize("function", ["MenuScreen.compose", "PanedScreen.compose", "LogView.on_mount"])
+def test_ctrl_c_while_the_console_puts_its_widgets_together_ends_it(function: str, tmp_path: Path) -> None:
+    with opened(80, 24, tmp_path, "open", EXERCISE, "--exercise", program=[SCRIPT, function]) as console:
+        assert console.ended() == INTERRUPTED
+        assert console.left_on() == set()
+        assert "fault" not in console.said()
+
+
+@pytest.mark.parametrize("function", LOOPS_END)
+def test_ctrl_c_as_a_console_that_was_left_ends_finds_all_of_it_whole(function: str, tmp_path: Path) -> None:
+    with opened(80, 24, tmp_path, program=[SCRIPT, function]) as console:
+        console.until("Unit 5")
+        console.press("q")
+        assert console.ended() == INTERRUPTED
+        assert console.left_on() == set()
+        assert "Traceback" not in console.said()
+        assert "Exception" not in console.said()
 
 
 def test_ctrl_c_as_an_engine_starts_is_not_the_engines() -> None:

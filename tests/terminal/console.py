@@ -29,7 +29,7 @@ class TerminalConsole:
         self.process = process
         self.drawn = b""
         self._screen = screen
-        self._terminal = terminal
+        self.terminal = terminal
         self._seen = 0
         self._closed = False
         self._settings = self.settings()
@@ -45,6 +45,13 @@ class TerminalConsole:
             assert time.monotonic() < end, f"no {text!r} in {self.said()}"
             self._read()
         self._seen = place + len(text)
+
+    def read_for(self, seconds: float) -> None:
+        """Read what is drawn, for so long."""
+        end = time.monotonic() + seconds
+        self._read()
+        while time.monotonic() < end and self.process.poll() is None:
+            self._read()
 
     def ended(self) -> int:
         """Read to the end; return the exit code."""
@@ -71,7 +78,7 @@ class TerminalConsole:
 
     def settings(self) -> list[Any]:
         """How the terminal is set: echo, line by line or key by key, ..."""
-        return termios.tcgetattr(self._terminal)
+        return termios.tcgetattr(self.terminal)
 
     def left_on(self) -> set[str]:
         """What the console has switched in the terminal, and not back."""

@@ -1,0 +1,100 @@
+"""How the console ends: whoever tells it to, not before it is whole, and not without a word on a fault."""
+
+import asyncio
+import platform
+import sys
+import traceback
+from functools import partial
+from time import monotonic
+from typing import Any
+
+from rich.console import RenderableType
+from textual.app import App
+from textual.css.query import NoMatches
+from textual.widget import MountError, Widget
+
+from cbtui.commands.output import shown
+from cbtui.garbage import survivors_set_aside
+from cbtui.interrupts import Interruption, ending_heard, whole
+from cbtui.version import own_version
+from lessons.personal import state_folder
+
+FAULT = "fault.txt"
+"""What a fault of the console's own is written to, in the folder for what cbtui remembers."""
+_MISSED = (NoMatches, MountError)
+"""What widgets come to that begin while an app ends: Textual gives them no children any more."""
+_AGAIN = 0.02
+"""Seconds after which it is looked again whether everything is mounted."""
+_LONGEST = 3.0
+"""Seconds that widgets may take to be mounted before the console ends all the same."""
+
+
+class EndingApp(App[None]):
+    """An app that ends in order, whoever tells it to and whatever it is at."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._unheard = Interruption()
+        self._told_at: float | None = None
+        self.saved: list[str] = []
+        """Sentences on what was saved as screens were left."""
+        self._fault: str | None = None
+
+    def run(self, *args: Any, **options: Any) -> Any:
+        """Run to the end, and say then what was saved as screens were left, and what ended it, if a fault.
+
+        Raises KeyboardInterrupt where Ctrl-C came before the app hears it, or after.
+        """
+        with whole() as self._unheard:
+            result = super().run(*args, **options)
+            said = [*self.saved, *([] if self._fault is None else [self._fault])]
+            sys.stderr.writelines(shown(f"{sentence}\n") for sentence in said)
+        return result
+
+    async def run_async(self, *args: Any, **options: Any) -> Any:
+        """Run in a terminal, which gets back what it lent when the app is told to end.
+
+        It is by Ctrl-C from elsewhere, by ``kill``, and by the terminal itself when its window is closed.
+        """
+        with ending_heard(lambda number: self.exit(None, 128 + number)), survivors_set_aside():
+            return None if self._unheard.came else await super().run_async(*args, **options)
+
+    def exit(self, result: None = None, return_code: int = 0, message: RenderableType | None = None) -> None:
+        """End, as soon as all widgets that are there have their children."""
+        self._told_at = self._told_at or monotonic()
+        if self._is_mounting() and monotonic() < self._told_at + _LONGEST:
+            again = partial(self.exit, result, return_code, message)
+            asyncio.get_running_loop().call_later(_AGAIN, again)
+        else:
+            super().exit(result, return_code, message)
+
+    def _is_mounting(self) -> bool:
+        if not self._is_mounted:
+            return self._running
+        screens = self.screen_stack
+        return not all(
+            node.is_mounted for screen in screens for node in [screen, *screen.walk_children(Widget)]
+        )
+
+    def _handle_exception(self, error: Exception) -> None:
+        if not (self._exit and isinstance(error, _MISSED)):
+            super()._handle_exception(error)
+
+    def _fatal_error(self) -> None:
+        # Of Textual: the exception that is being handled ends the app, which prints all of it.
+        self._fault = self._fault or _told_of_fault()
+        self._close_messages_no_wait()
+
+
+def _told_of_fault() -> str:
+    """Say what exception is being handled, and write what a developer wants to know of it into a file."""
+    kind, error, _ = sys.exc_info()
+    said = f"cbtui: a fault of its own ended the console ({getattr(kind, '__name__', kind)}: {error})."
+    details = f"cbtui {own_version()}, Python {platform.python_version()}\n{traceback.format_exc()}"
+    file = state_folder() / FAULT
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(details, encoding="utf-8")
+    except OSError:
+        return f"{said}\n{details}"
+    return f"{said} What a report of it needs is in {file}"
