@@ -9,13 +9,13 @@ from time import monotonic
 from typing import Any
 
 from rich.console import RenderableType
-from textual.app import App
 from textual.css.query import NoMatches
-from textual.widget import MountError, Widget
+from textual.widget import MountError
 
 from cbtui.commands.output import shown
 from cbtui.garbage import survivors_set_aside
 from cbtui.interrupts import Interruption, ending_heard, whole
+from cbtui.patience import LONGEST, PatientApp
 from cbtui.version import own_version
 from lessons.personal import state_folder
 
@@ -25,11 +25,9 @@ _MISSED = (NoMatches, MountError)
 """What widgets come to that begin while an app ends: Textual gives them no children any more."""
 _AGAIN = 0.02
 """Seconds after which it is looked again whether everything is mounted."""
-_LONGEST = 3.0
-"""Seconds that widgets may take to be mounted before the console ends all the same."""
 
 
-class EndingApp(App[None]):
+class EndingApp(PatientApp):
     """An app that ends in order, whoever tells it to and whatever it is at."""
 
     def __init__(self) -> None:
@@ -62,19 +60,11 @@ class EndingApp(App[None]):
     def exit(self, result: None = None, return_code: int = 0, message: RenderableType | None = None) -> None:
         """End, as soon as all widgets that are there have their children."""
         self._told_at = self._told_at or monotonic()
-        if self._is_mounting() and monotonic() < self._told_at + _LONGEST:
+        if self.is_mounting and monotonic() < self._told_at + LONGEST:
             again = partial(self.exit, result, return_code, message)
             asyncio.get_running_loop().call_later(_AGAIN, again)
         else:
             super().exit(result, return_code, message)
-
-    def _is_mounting(self) -> bool:
-        if not self._is_mounted:
-            return self._running
-        screens = self.screen_stack
-        return not all(
-            node.is_mounted for screen in screens for node in [screen, *screen.walk_children(Widget)]
-        )
 
     def _handle_exception(self, error: Exception) -> None:
         if not (self._exit and isinstance(error, _MISSED)):

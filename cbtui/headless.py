@@ -7,11 +7,12 @@ from operator import itemgetter
 from pathlib import Path
 from queue import Empty, Queue
 from signal import Signals
-from typing import BinaryIO, TypeAlias
+from typing import TypeAlias
 
 import msgspec
 
-from cbtui.commands.output import complain, say
+from cbtui.commands.output import CannotSayError, complain, say
+from cbtui.events_file import EventsFile
 from cbtui.interrupts import heard, whole
 from cbtui.listening import ListeningSession
 from cbtui.program_log import ProgramLog
@@ -20,7 +21,6 @@ from sim.diagnosis import diagnose, findings_text
 from sim.engine.commands import Stop
 from sim.engine.setup import RunSetup, TimedCall, TimedLine
 from sim.trace.events import AnyEvent
-from sim.trace.jsonl import JsonLines
 from sim.trace.recording import Recorder
 from sim.trace.summary import summarise
 from sim.trace.summary_text import plain_text
@@ -75,10 +75,12 @@ def run_set_up(
     """Run what is set up whole, as ``run_headless`` does."""
     with ExitStack() as files:
         try:
-            file = None if events_path is None else files.enter_context(Path(events_path).open("wb"))
+            file = None if events_path is None else EventsFile(Path(events_path))
         except OSError as error:
             complain(f"cannot write events to {events_path}: {error.strerror}")
             return 2
+        if file is not None:
+            files.callback(file.close)
         recorder: Recorder | None = None
         if recording_path is not None:
             try:
@@ -90,6 +92,8 @@ def run_set_up(
                 return 2
         try:
             return _Headless(setup, file, recorder).run()
+        except (BrokenPipeError, CannotSayError):
+            raise  # of what is said, not of the run
         except OSError as error:
             complain(f"the run was cut short: {error.strerror}")
             return 1
@@ -98,13 +102,12 @@ def run_set_up(
 class _Headless:
     """One run: takes the news of its session on this thread, one batch after another."""
 
-    def __init__(self, setup: RunSetup, events_file: BinaryIO | None, recorder: Recorder | None) -> None:
+    def __init__(self, setup: RunSetup, file: EventsFile | None, recorder: Recorder | None) -> None:
         self._news: Queue[News] = Queue(_BATCHES)
         self._session = ListeningSession(setup, self._news.put, self._news.put)
         self._timeline = Timeline()
-        self._file = events_file
+        self._file = file
         self._recorder = recorder
-        self._lines = JsonLines()
         self._log = ProgramLog()
         self._told: Signals | None = None
         self._patient_until = 0.0
@@ -141,7 +144,7 @@ class _Headless:
             self._recorder.take(events)
         self._timeline.extend(events)
         if self._file is not None:
-            self._file.writelines(self._lines.lines(events))
+            self._file.take(events)
 
     def _batches(self) -> Iterator[list[AnyEvent]]:
         while isinstance(news := self._next(), list):
@@ -164,7 +167,16 @@ class _Headless:
         if ended is not None and ended.failed:
             complain(ended.reason)
             return 1
-        return self._recording_verdict()
+        return max(self._events_verdict(), self._recording_verdict())
+
+    def _events_verdict(self) -> int:
+        if self._file is None:
+            return 0
+        self._file.close()
+        if self._file.failure is not None:
+            complain(f"the events in the file are not whole: {self._file.failure}")
+            return 1
+        return 0
 
     def _recording_verdict(self) -> int:
         if self._recorder is None:

@@ -60,9 +60,15 @@ async def test_a_disk_that_fills_up_ends_the_recording_and_the_run_goes_on(folde
     assert events_in(path) > 0
 
 
-def test_a_disk_that_fills_up_does_not_end_a_run_without_a_console(folder: Path) -> None:
+@pytest.mark.parametrize(
+    ("option", "file", "what"),
+    [("--record", "run.mcap", "the recording is"), ("--events", "run.jsonl", "the events in the file are")],
+)
+def test_a_disk_that_fills_up_does_not_end_a_run_without_a_console(
+    folder: Path, option: str, file: str, what: str
+) -> None:
     node_with(folder, LONG, again=True)
-    words = ["run", "node.py", "--no-robot", "--clock", "virtual", "--for", "20", "--record", "run.mcap"]
+    words = ["run", "node.py", "--no-robot", "--clock", "virtual", "--for", "20", option, file]
     with nothing_left(), files_of_at_most(ROOM):
         ended = subprocess.run(
             [sys.executable, "-m", "cbtui", *words],
@@ -72,9 +78,10 @@ def test_a_disk_that_fills_up_does_not_end_a_run_without_a_console(folder: Path)
             timeout=3 * PATIENCE,
         )
     assert ended.returncode == 1
-    assert ended.stderr.splitlines()[-1] == "cbtui: the recording is not whole: File too large"
+    assert ended.stderr.splitlines()[-1] == f"cbtui: {what} not whole: File too large"
     assert "tick" in ended.stdout
-    assert events_in(folder / "run.mcap") > 0
+    assert (folder / file).stat().st_size > ROOM / 2
+    assert file == "run.jsonl" or events_in(folder / file) > 0
 
 
 def test_consoles_that_record_the_same_lesson_at_once_get_a_file_each(folder: Path) -> None:

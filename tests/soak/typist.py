@@ -23,6 +23,7 @@ from unittest.mock import patch
 from textual._ansi_sequences import ANSI_SEQUENCES_KEYS
 from textual.keys import _character_to_key
 
+from cbtui.ending import FAULT
 from lessons.catalogue import lessons
 from tests.soak.interruption import until_interrupted
 from tests.soak.results import FILE, record, today
@@ -120,7 +121,9 @@ def _trouble(console: TerminalConsole, started: set[int]) -> str | None:
     except AssertionError as error:
         return str(error)
     if code or console.left_on() or "Traceback" in console.said():
-        return f"ended with {code}, left {console.left_on() or 'nothing'} switched on: {console.said()}"
+        fault = Path("cbtui", FAULT)
+        details = fault.read_text(encoding="utf-8") if fault.exists() else console.said()
+        return f"ended with {code}, left {console.left_on() or 'nothing'} switched on: {details}"
     end = time.monotonic() + _GRACE
     while (left := [each for each in started if alive(each)]) and time.monotonic() < end:
         time.sleep(0.05)

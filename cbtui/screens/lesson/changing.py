@@ -77,7 +77,8 @@ class ChangingScreen(TakingScreen):
         selection, timeline = self.query_one(Lanes).selection, self._run.timeline
         if selection is None or selection.entity is None:
             return None
-        return callbacks_of(timeline).get(place_of(timeline.entities[selection.entity], timeline))
+        entity = timeline.entities.get(selection.entity)  # a run that begins anew has yet to make it
+        return None if entity is None else callbacks_of(timeline).get(place_of(entity, timeline))
 
     def _ask(self, row: Row) -> None:
         """Ask for one thing, and run again with the answer at once."""

@@ -1,0 +1,36 @@
+"""The events of a run in a file, a line of JSON each, for programs that read them."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from sim.trace.events import AnyEvent
+from sim.trace.jsonl import JsonLines
+
+
+class EventsFile:
+    """Takes events as they come. One that takes no more keeps what it has, and says so in ``failure``.
+
+    Raises OSError if it cannot be opened, BrokenPipeError if it is a pipe and who read it has read enough.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._file = path.open("wb")
+        self._lines = JsonLines()
+        self.failure: str | None = None
+
+    def take(self, events: Sequence[AnyEvent]) -> None:
+        """Write events."""
+        if self.failure is None:
+            self._try(lambda: self._file.writelines(self._lines.lines(events)))
+
+    def close(self) -> None:
+        """Write what is left, once."""
+        self._try(self._file.close)
+
+    def _try(self, write: Callable[[], None]) -> None:
+        try:
+            write()
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            self.failure = self.failure or str(error.strerror)

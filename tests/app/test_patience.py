@@ -1,0 +1,110 @@
+import asyncio
+from contextlib import suppress
+from typing import ClassVar
+
+import pytest
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.containers import Vertical
+from textual.events import Key
+from textual.widget import Widget
+
+from cbtui.ending import EndingApp
+from cbtui.patience import LONGEST
+from cbtui.widgets.log.lines import LogLines
+from tests.support.console import WIDE, RecordedConsole
+from tests.support.runs import split_groups_run
+
+_SPLIT_GROUPS = "3"
+_LOG = "5"
+_OF_LANES = ("enter", "down", "z", "escape")
+_AT_MOST = 2.0
+
+
+class Slow(Widget):
+    """A widget whose children come when it is told."""
+
+    def __init__(self, told: asyncio.Event) -> None:
+        super().__init__()
+        self._told = told
+
+    async def on_mount(self) -> None:
+        """Wait, though not so long that a test that fails never ends."""
+        with suppress(TimeoutError):
+            async with asyncio.timeout(_AT_MOST):
+                await self._told.wait()
+
+
+class Console(EndingApp):
+    """One that notes keys."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [("x", "note", "")]
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.told = asyncio.Event()
+        self.noted = 0
+
+    def compose(self) -> ComposeResult:
+        yield Vertical()
+
+    def mount_slowly(self) -> None:
+        """Begin to mount a widget."""
+        self.query_one(Vertical).mount(Slow(self.told))
+
+    def action_note(self) -> None:
+        """Note that the key took effect."""
+        self.noted += 1
+
+
+async def test_keys_take_effect_when_the_widgets_that_are_there_are_mounted() -> None:
+    app = Console()
+    async with app.run_test() as pilot:
+        await pilot.press("x")
+        assert app.noted == 1
+        app.mount_slowly()
+        app.post_message(Key("x", "x"))
+        await asyncio.sleep(0.1)
+        assert app.is_mounting
+        assert app.noted == 1
+        app.told.set()
+        await pilot.pause()
+        assert app.noted == 2
+
+
+async def test_an_app_that_is_told_to_end_ends_when_its_widgets_are_mounted() -> None:
+    app = Console()
+    async with app.run_test() as pilot:
+        app.mount_slowly()
+        app.exit()
+        await asyncio.sleep(0.1)
+        ended = [app._exit]
+        app.told.set()
+        await asyncio.sleep(0.1)
+        ended.append(app._exit)
+        await pilot.pause()
+    assert ended == [False, True]
+
+
+async def test_a_widget_that_is_never_mounted_keeps_nobody_from_leaving(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("cbtui.ending.LONGEST", LONGEST / 100)
+    app = Console()
+    async with app.run_test():
+        app.mount_slowly()
+        app.exit()
+        await asyncio.sleep(0.1)
+        assert app._exit
+        app.told.set()
+
+
+async def test_keys_right_behind_the_one_that_opens_a_lesson_are_the_lessons() -> None:
+    app = RecordedConsole("split-groups", split_groups_run().events, 4.0)
+    async with app.run_test(size=WIDE) as pilot:
+        await pilot.press("q")
+        for key in (_SPLIT_GROUPS, *_OF_LANES, _LOG):
+            app.post_message(Key(key, None))
+            await asyncio.sleep(0)
+        await pilot.pause()
+        assert app.screen_stack[-1].query_one(LogLines).has_focus
