@@ -343,6 +343,9 @@ ACTIONS = (
     Action("go_to_time", "G", "go to", "Go to a moment", Scope.COMPARE),
     Action("live", "0", "end", "Go to the end", Scope.COMPARE),
     Action("maximise", "z", "table", "Let the table fill the screen; press again to go back", Scope.COMPARE),
+    Action(
+        "enlarge_lanes", "Z", "lanes", "Let the lanes fill the screen; press again to go back", Scope.COMPARE
+    ),
     Action("scroll_table_up", "up", "scroll", "Show what lies above in the table", Scope.COMPARE),
     Action("scroll_table_down", "down", "scroll", "Show what lies below in the table", Scope.COMPARE),
     Action("step_back", "comma", "event", "Go to the event before, of either run", Scope.COMPARE),

@@ -41,7 +41,7 @@ class PatientApp(App[None]):
             await super().on_event(event)
 
     def _is_gone(self, click: MouseDown) -> bool:
-        """Whether what is clicked on was removed, and is only still on screen; Textual asks for its parent."""
+        """Whether what is clicked on was removed, and is only still drawn; Textual asks for its parent."""
         try:
             widget, _ = self.get_widget_at(click.x, click.y)
         except NoWidget:

@@ -31,6 +31,9 @@ from sim.trace.slices import Slices
 _PLAIN = Ink(Role.TEXT)
 _STRONG = Ink(Role.STRONG)
 _FAINT = Ink(Role.FAINT)
+_TABLE_ALONE = "-table-alone"
+_LANES_ALONE = "-lanes-alone"
+"""Classes of the screen when the table, or the lanes, fill it."""
 _REST = 9
 """How many times as long as a comparison took the next one is put off: it may take a tenth of the time."""
 _SLICE = 0.008
@@ -84,10 +87,10 @@ class CompareScreen(SizedScreen[None]):
         for number, side in enumerate(self._sides):
             lanes = self._lanes(number)
             lanes.charset, lanes.service, lanes.can_focus = self._charset, side.service, False
-            lanes.keys = lane_keys(keymap_of(self.app), Scope.COMPARE, self._charset)
             for sentence in (side.damage, side.failure):
                 if sentence is not None:
                     self.notify(sentence, severity="warning", markup=False)
+        self._enlarge("")
         self.set_interval(1 / FRAMES_A_SECOND, self.draw)
 
     # drawing
@@ -332,7 +335,19 @@ class CompareScreen(SizedScreen[None]):
 
     def action_maximise(self) -> None:
         """Let the table fill the screen, or give the lanes their room back."""
-        self.toggle_class("-maximised")
+        self._enlarge("" if self.has_class(_TABLE_ALONE) else _TABLE_ALONE)
+
+    def action_enlarge_lanes(self) -> None:
+        """Let the lanes fill the screen, or give the table its room back."""
+        self._enlarge("" if self.has_class(_LANES_ALONE) else _LANES_ALONE)
+
+    def _enlarge(self, alone: str) -> None:
+        """Let the table or the lanes fill the screen; "" for neither."""
+        for name in (_TABLE_ALONE, _LANES_ALONE):
+            self.set_class(name == alone, name)
+        more = () if alone == _LANES_ALONE else ("enlarge_lanes",)
+        for lanes in self.query(Lanes):
+            lanes.keys = lane_keys(keymap_of(self.app), Scope.COMPARE, self._charset, *more)
 
     def action_leave(self) -> None:
         """Go back to where the comparison was opened."""

@@ -129,7 +129,7 @@ async def test_the_axis_goes_as_far_as_the_longer_run_and_the_table_as_far_as_th
 
 @pytest.mark.parametrize(
     "key",
-    ["left", "right", "[", "]", "{", "}", ",", ".", "<", ">", "G", "0", "z", "escape"],
+    ["left", "right", "[", "]", "{", "}", ",", ".", "<", ">", "G", "0", "z", "Z", "escape"],
 )
 def test_a_key_that_moves_through_time_does_the_same_as_in_a_lesson(key: str) -> None:
     here, there = (
@@ -212,6 +212,21 @@ async def test_a_narrow_screen_scrolls_the_table_and_z_lets_it_fill_the_screen()
         assert table.size.height > before + 6
         await press(app, pilot, "z")
         assert table.size.height == before
+
+
+async def test_a_narrow_screen_names_the_key_that_lets_all_lanes_be_seen() -> None:
+    async with compared(*sides(), size=NARROW) as (app, pilot):
+        table = app.comparison.query_one(ComparisonTable)
+        assert "+2 lanes Z" in text_of(app)
+        await press(app, pilot, "Z")
+        assert "lanes" not in text_of(app)
+        assert "ThreadPoolExecutor-0_3" in text_of(app) or "Pool-0_3" in text_of(app)
+        assert not table.display
+        await press(app, pilot, "z")
+        assert table.display
+        assert not app.comparison.query_one("#lanes0").display
+        await press(app, pilot, "z")
+        assert "+2 lanes Z" in text_of(app)
 
 
 async def test_a_wide_screen_has_room_for_everything() -> None:

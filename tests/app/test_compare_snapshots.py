@@ -28,6 +28,14 @@ def test_a_table_that_fills_the_screen_looks_as_it_did(snap_compare: Compare) ->
     assert snap_compare(ComparingConsole(*sides()), terminal_size=NARROW, run_before=enlarge)
 
 
+def test_lanes_of_two_runs_that_fill_the_screen_look_as_they_did(snap_compare: Compare) -> None:
+    async def enlarge(pilot: Pilot[None]) -> None:
+        await pilot.press("Z")
+        await settled(pilot)
+
+    assert snap_compare(ComparingConsole(*sides()), terminal_size=NARROW, run_before=enlarge)
+
+
 def test_two_runs_in_ascii_look_as_they_did(snap_compare: Compare) -> None:
     app = ComparingConsole(*sides(), charset=Charset.ASCII)
     assert snap_compare(app, terminal_size=WIDE, run_before=settled)
