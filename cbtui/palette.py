@@ -4,6 +4,7 @@ from collections.abc import Coroutine, Iterator
 from functools import partial
 from typing import Any
 
+from textual.await_complete import AwaitComplete
 from textual.command import CommandList, CommandPalette, DiscoveryHit, Hit, Hits, Provider
 
 from cbtui.actions import Action, Scope, actions_of, method_of, signs_of, target_of
@@ -12,12 +13,14 @@ from cbtui.theme import Charset
 
 
 class Palette(CommandPalette):
-    """Textual's palette, except that keys do nothing to a list of which nothing is shown yet.
+    """Textual's palette, for the hasty."""
 
-    Textual looks for the lines of the highlighted command then, and there are none.
-    """
+    def dismiss(self, result: None = None) -> AwaitComplete:
+        """Leave the palette; a second click beside it would take the screen below away too."""
+        return super().dismiss(result) if self.is_active else AwaitComplete()
 
     def _action_command_list(self, action: str) -> None:
+        # Where nothing of the list is shown yet, Textual finds no lines of the highlighted command.
         if self.query_one(CommandList).scrollable_content_region.height > 0:
             super()._action_command_list(action)
 

@@ -2,6 +2,7 @@
 
 from typing import TypeVar
 
+from textual.await_complete import AwaitComplete
 from textual.events import Resize
 from textual.geometry import Size
 from textual.screen import ModalScreen, Screen
@@ -25,6 +26,13 @@ class SizedScreen(Screen[Result]):
     def on_resize(self, event: Resize) -> None:
         """Take the layout for the new size."""
         self._lay_out(event.size)
+
+    def dismiss(self, result: Result | None = None) -> AwaitComplete:
+        """Leave the screen. Once more while that goes on, or below another, does nothing.
+
+        Textual takes away whatever screen is on top then.
+        """
+        return super().dismiss(result) if self.is_active else AwaitComplete()
 
     def laid_out(self) -> None:
         """Do what a screen has to do when its layout or size is another."""

@@ -17,7 +17,6 @@ from tests.support.runs import split_groups_run
 
 _SPLIT_GROUPS = "3"
 _LOG = "5"
-_OF_LANES = ("enter", "down", "z", "escape")
 _AT_MOST = 2.0
 
 
@@ -103,8 +102,21 @@ async def test_keys_right_behind_the_one_that_opens_a_lesson_are_the_lessons() -
     app = RecordedConsole("split-groups", split_groups_run().events, 4.0)
     async with app.run_test(size=WIDE) as pilot:
         await pilot.press("q")
-        for key in (_SPLIT_GROUPS, *_OF_LANES, _LOG):
+        for key in (_SPLIT_GROUPS, _LOG):
             app.post_message(Key(key, None))
-            await asyncio.sleep(0)
         await pilot.pause()
-        assert app.screen_stack[-1].query_one(LogLines).has_focus
+        assert app.screen.query_one(LogLines).has_focus
+
+
+@pytest.mark.parametrize("window", ["question_mark", "ctrl+p", "d", "t"])
+async def test_a_window_that_is_left_twice_at_once_does_not_take_the_lesson_with_it(window: str) -> None:
+    app = RecordedConsole("split-groups", split_groups_run().events, 4.0)
+    async with app.run_test(size=WIDE) as pilot:
+        lesson = app.screen
+        await pilot.press(window)
+        opened = app.screen
+        assert opened is not lesson
+        opened.dismiss(None)
+        opened.dismiss(None)
+        await pilot.pause()
+        assert app.screen is lesson

@@ -135,7 +135,7 @@ def _chosen(chance: Random) -> str:
     while True:
         if chance.random() < _CLICKS:
             place = f"0;{chance.randint(1, 140)};{chance.randint(1, 40)}"
-            return f"\x1b[<{place}M\x1b[<{place}m"
+            return f"\x1b[<{place}M\x1b[<{place}m" * chance.randint(1, 2)
         key = chance.choice(_KEYS)
         if key not in _WAYS_OUT or chance.random() < _OUT:
             return key
