@@ -9,13 +9,16 @@ from collections.abc import Iterable
 from enum import StrEnum
 from itertools import groupby
 from operator import attrgetter
-from typing import NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from textual.actions import parse
 from textual.binding import Binding
 from textual.keys import format_key, key_to_character
 
 from cbtui.theme import Charset
+
+if TYPE_CHECKING:
+    from textual.app import App
 
 
 class Scope(StrEnum):
@@ -458,9 +461,11 @@ _PLACES = {
 """What implements the actions of a scope, where it is not the screen."""
 
 
-def target_of(action: Action) -> str:
-    """Return the action with the place that implements it, as a click or the palette has to name it."""
-    return f"{_PLACES.get(action.scope, 'screen')}.{action.id}"
+async def perform(app: "App[Any]", action: Action) -> None:
+    """Do an action for a click or the palette; nothing if it is the focused widget's, and none is focused."""
+    place = _PLACES.get(action.scope, "screen")
+    if place != "focused" or app.focused is not None:
+        await app.run_action(f"{place}.{action.id}")
 
 
 def key_id(action: Action) -> str:

@@ -11,6 +11,7 @@ from typing import Any
 from rich.console import RenderableType
 from textual.css.query import NoMatches
 from textual.widget import MountError
+from textual.worker import WorkerFailed
 
 from cbtui.commands.output import shown
 from cbtui.garbage import survivors_set_aside
@@ -67,7 +68,8 @@ class EndingApp(PatientApp):
             super().exit(result, return_code, message)
 
     def _handle_exception(self, error: Exception) -> None:
-        if not (self._exit and isinstance(error, _MISSED)):
+        cause = error.error if isinstance(error, WorkerFailed) else error
+        if not (self._exit and isinstance(cause, _MISSED)):
             super()._handle_exception(error)
 
     def _fatal_error(self) -> None:

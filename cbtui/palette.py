@@ -7,7 +7,7 @@ from typing import Any
 from textual.await_complete import AwaitComplete
 from textual.command import CommandList, CommandPalette, DiscoveryHit, Hit, Hits, Provider
 
-from cbtui.actions import Action, Scope, actions_of, method_of, signs_of, target_of
+from cbtui.actions import Action, Scope, actions_of, method_of, perform, signs_of
 from cbtui.keymap import keymap_of
 from cbtui.theme import Charset
 
@@ -50,5 +50,5 @@ class ActionsProvider(Provider):
             if action.id != "command_palette" and self.screen.check_action(*method_of(action)) is not False:
                 yield action
 
-    def _run(self, action: Action) -> "partial[Coroutine[Any, Any, bool]]":
-        return partial(self.app.run_action, target_of(action))
+    def _run(self, action: Action) -> "partial[Coroutine[Any, Any, None]]":
+        return partial(perform, self.app, action)

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from textual.events import Click
 from textual.geometry import Size
 
-from cbtui.actions import Action, Scope, actions_of, method_of, signs_of, target_of, together
+from cbtui.actions import Action, Scope, actions_of, method_of, perform, signs_of, together
 from cbtui.keymap import keymap_of
 from cbtui.theme import GLYPHS, Charset, Ink, Role, Run
 from cbtui.widgets.painted import Painted
@@ -58,12 +58,17 @@ class KeyBar(Painted):
         return [key_row(self._entries(size.width), size.width)]
 
     async def on_click(self, event: Click) -> None:
-        """Do what the key under the pointer does; of several keys, the one that is nearest."""
+        """Do what the key under the pointer does; of several keys, the one that is nearest.
+
+        The second of two quick clicks finds another screen; what it would do there was not asked for.
+        """
+        if not self.screen.is_active:
+            return
         start = 1
         for entry in self._entries(self.size.width):
             if start <= event.x < start + entry.width:
                 place = max(0, (event.x - start) * len(entry.actions) // max(1, len(entry.keys)))
-                await self.app.run_action(target_of(entry.actions[min(place, len(entry.actions) - 1)]))
+                await perform(self.app, entry.actions[min(place, len(entry.actions) - 1)])
                 return
             start += entry.width
 

@@ -6,11 +6,14 @@ import pytest
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Vertical
-from textual.events import Key
+from textual.events import Click, Key, MouseDown, MouseUp
 from textual.widget import Widget
 
+from cbtui.actions import Scope, actions_of, perform
 from cbtui.ending import EndingApp
 from cbtui.patience import LONGEST
+from cbtui.screens.menu import MenuScreen
+from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.log.lines import LogLines
 from tests.support.console import WIDE, RecordedConsole
 from tests.support.runs import split_groups_run
@@ -120,3 +123,27 @@ async def test_a_window_that_is_left_twice_at_once_does_not_take_the_lesson_with
         opened.dismiss(None)
         await pilot.pause()
         assert app.screen is lesson
+
+
+async def test_two_quick_clicks_on_the_key_that_leaves_a_lesson_leave_the_lesson_alone() -> None:
+    app = RecordedConsole("split-groups", split_groups_run().events, 4.0)
+    async with app.run_test(size=WIDE) as pilot:
+        bar = app.screen.query_one(KeyBar)
+        row = "".join(run.text for run in bar.rows(bar.size)[0])
+        place = row.index("menu")
+        down, up = (kind(bar, place, 0, 0, 0, 1, False, False, False) for kind in (MouseDown, MouseUp))
+        click = Click.from_event(bar, up)
+        for event in (down, up, click, click):
+            bar.post_message(event)
+        await pilot.pause()
+        left = app.screen
+    assert isinstance(left, MenuScreen)
+    assert app.return_code is None
+
+
+async def test_an_action_of_a_widget_that_has_the_keys_no_more_is_not_done() -> None:
+    app = RecordedConsole("split-groups", split_groups_run().events, 4.0)
+    async with app.run_test(size=WIDE):
+        app.screen.set_focus(None)
+        for action in actions_of(Scope.LOG):
+            await perform(app, action)

@@ -47,6 +47,7 @@ class _Tally:
     steps: int = 0
     walks: int = 0
     failures: int = 0
+    in_vain: int = 0
     reached: Counter[str] = field(default_factory=Counter)
     begun: Counter[str] = field(default_factory=Counter)
 
@@ -57,6 +58,7 @@ def _walk_on(options: argparse.Namespace, tally: _Tally) -> None:
         number = tally.walks if options.walk is None else options.walk
         done = walk(options.seed, number, options.steps)
         tally.steps += max(len(done.steps), 1)
+        tally.in_vain += done.in_vain
         tally.reached += done.reached
         tally.begun[done.name] += 1
         tally.walks += 1
@@ -73,8 +75,9 @@ def _walk_on(options: argparse.Namespace, tally: _Tally) -> None:
 
 
 def _record(tally: _Tally, seed: int, seconds: float) -> None:
-    figures = {"steps": tally.steps, "walks": tally.walks, "seconds": round(seconds), "broke": tally.failures}
-    record("keys", "walks", {"date": today(), "seed": seed, **figures})
+    figures = {"steps": tally.steps, "walks": tally.walks, "seconds": round(seconds)}
+    came = {"in_vain": tally.in_vain, "broke": tally.failures}
+    record("keys", "walks", {"date": today(), "seed": seed, **figures, **came})
 
 
 def _told(done: Walk, number: int) -> str:

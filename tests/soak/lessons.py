@@ -39,6 +39,7 @@ class Soak:
     messages: int = 0
     walks: int = 0
     steps: int = 0
+    in_vain: int = 0
     troubles: int = 0
     run_troubles: int = 0
     running: float = 0.0
@@ -71,6 +72,7 @@ class Soak:
             self.walking = time.monotonic() - began
             self.walks += 1
             self.steps += len(done.steps)
+            self.in_vain += done.in_vain
             self._complain(f"walk {self.walks - 1} from {done.name}", filter(None, [done.trouble]))
             self._look(
                 f"{self.walking / 60:.1f} of {minutes:g} min, {self.steps} steps in {self.walks} walks"
@@ -143,7 +145,8 @@ def _record(soak: Soak) -> None:
         record("lessons", "runs", {**common, **figures, **more})
     if soak.walks:
         walked = {"minutes": round(soak.walking / 60, 1), "walks": soak.walks, "steps": soak.steps}
-        record("lessons", "walks", {**common, **walked, "troubles": soak.troubles - soak.run_troubles})
+        came = {"in_vain": soak.in_vain, "troubles": soak.troubles - soak.run_troubles}
+        record("lessons", "walks", {**common, **walked, **came})
 
 
 def _say(line: str) -> None:
