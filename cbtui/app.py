@@ -9,6 +9,7 @@ from textual.app import App, SystemCommand
 from textual.binding import BindingType
 from textual.filter import LineFilter
 from textual.screen import Screen
+from textual.theme import ThemeProvider
 from textual.types import CSSPathType
 
 from cbtui.actions import Scope, bindings_of
@@ -115,6 +116,12 @@ class CbtuiApp(EndingApp):
         self.set_keymap(self.keys.for_textual())
         self._ascii = AsciiFilter()
         self._harmless = HarmlessFilter()
+
+    def search_themes(self) -> None:
+        """Open a palette of the themes."""
+        from cbtui.palette import Palette
+
+        self.push_screen(Palette(providers=[ThemeProvider], placeholder="Search for themes…"))
 
     def get_driver_class(self) -> "type[Driver]":
         """Return what keys are read from and all is drawn to."""

@@ -1,4 +1,5 @@
 import asyncio
+from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from typing import ClassVar
 
@@ -7,6 +8,7 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Vertical
 from textual.events import Click, Key, MouseDown, MouseUp
+from textual.pilot import Pilot
 from textual.widget import Widget
 
 from cbtui.actions import Scope, actions_of, perform
@@ -111,12 +113,25 @@ async def test_keys_right_behind_the_one_that_opens_a_lesson_are_the_lessons() -
         assert app.screen.query_one(LogLines).has_focus
 
 
-@pytest.mark.parametrize("window", ["question_mark", "ctrl+p", "d", "t"])
-async def test_a_window_that_is_left_twice_at_once_does_not_take_the_lesson_with_it(window: str) -> None:
+async def search_themes(app: RecordedConsole, pilot: Pilot[None]) -> None:
+    app.search_themes()
+    await pilot.pause()
+
+
+@pytest.mark.parametrize(
+    "open_window",
+    [
+        *(lambda _, pilot, key=key: pilot.press(key) for key in ("question_mark", "ctrl+p", "d", "t")),
+        search_themes,
+    ],
+)
+async def test_a_window_that_is_left_twice_at_once_does_not_take_the_lesson_with_it(
+    open_window: Callable[[RecordedConsole, Pilot[None]], Awaitable[None]],
+) -> None:
     app = RecordedConsole("split-groups", split_groups_run().events, 4.0)
     async with app.run_test(size=WIDE) as pilot:
         lesson = app.screen
-        await pilot.press(window)
+        await open_window(app, pilot)
         opened = app.screen
         assert opened is not lesson
         opened.dismiss(None)

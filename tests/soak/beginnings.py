@@ -31,24 +31,24 @@ def _menu(chance: Random, folder: Path) -> CbtuiApp:
 
 
 def _lesson(chance: Random, folder: Path) -> CbtuiApp:
-    return RecordedConsole(_any_lesson(chance), chance.choice(RUNS), BEGUN)
+    return RecordedConsole(any_lesson(chance), chance.choice(RUNS), BEGUN)
 
 
 def _ascii_lesson(chance: Random, folder: Path) -> CbtuiApp:
-    return RecordedConsole(_any_lesson(chance), chance.choice(RUNS), BEGUN, charset="ascii", theme="light")
+    return RecordedConsole(any_lesson(chance), chance.choice(RUNS), BEGUN, charset="ascii", theme="light")
 
 
 def _file(chance: Random, folder: Path) -> CbtuiApp:
-    return CbtuiApp(start_file=(_program(folder), ["-v"], "real"), open_session=_engines(chance))
+    return CbtuiApp(start_file=(program(folder), ["-v"], "real"), open_session=_engines(chance))
 
 
 def _recording(chance: Random, folder: Path) -> CbtuiApp:
-    return CbtuiApp(start_recording=_recorded(chance, folder / "run.mcap"), open_session=_engines(chance))
+    return CbtuiApp(start_recording=recorded(chance, folder / "run.mcap"), open_session=_engines(chance))
 
 
 def _comparison(chance: Random, folder: Path) -> CbtuiApp:
     first, second = (
-        Contender(name, _recorded(chance, folder / f"{name}.mcap").path) for name in ("before", "after")
+        Contender(name, recorded(chance, folder / f"{name}.mcap").path) for name in ("before", "after")
     )
     return CbtuiApp(start_comparison=(first, second, Terms()))
 
@@ -58,24 +58,27 @@ def _menu_with_engines(chance: Random, folder: Path) -> CbtuiApp:
 
 
 def _lesson_with_engine(chance: Random, folder: Path) -> CbtuiApp:
-    return CbtuiApp(start_lesson=_any_lesson(chance))
+    return CbtuiApp(start_lesson=any_lesson(chance))
 
 
 def _file_with_engine(chance: Random, folder: Path) -> CbtuiApp:
-    return CbtuiApp(start_file=(_program(folder), [], "real"))
+    return CbtuiApp(start_file=(program(folder), [], "real"))
 
 
-def _any_lesson(chance: Random) -> str:
+def any_lesson(chance: Random) -> str:
+    """The id of a lesson."""
     return chance.choice([lesson.id for lesson in lessons()])
 
 
-def _program(folder: Path) -> Path:
+def program(folder: Path) -> Path:
+    """A file with a node of somebody's own."""
     path = folder / "my_node.py"
     path.write_text(_PROGRAM)
     return path
 
 
-def _recorded(chance: Random, path: Path) -> Recording:
+def recorded(chance: Random, path: Path) -> Recording:
+    """A recording at a place."""
     recorder = Recorder(path, About(title="shared-group", clock="virtual"))
     recorder.take(chance.choice(RUNS))
     recorder.close()

@@ -13,6 +13,7 @@ import struct
 import sys
 import termios
 import time
+from collections.abc import Callable
 from contextlib import AbstractContextManager
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -24,7 +25,7 @@ from textual._ansi_sequences import ANSI_SEQUENCES_KEYS
 from textual.keys import _character_to_key
 
 from cbtui.ending import FAULT
-from lessons.catalogue import lessons
+from tests.soak.beginnings import any_lesson, program, recorded
 from tests.soak.interruption import until_interrupted
 from tests.soak.results import FILE, record, today
 from tests.support.keys import KEYS, LEAVES, OTHERS, SIZES
@@ -61,6 +62,18 @@ _TYPED = _typed()
 _KEYS = [key for key in (*KEYS, *OTHERS) if key in _TYPED and key not in _SHELLS]
 
 
+_BEGINNINGS: list[Callable[[Random], tuple[str, ...]]] = [
+    lambda chance: (),
+    lambda chance: ("open", any_lesson(chance)),
+    lambda chance: ("open", any_lesson(chance), "--threads", str(chance.randint(1, 8))),
+    lambda chance: ("open", "split-groups", "--exercise"),
+    lambda chance: ("open", "my_node.py"),
+    lambda chance: ("replay", "run.mcap"),
+    lambda chance: ("compare", "run.mcap", any_lesson(chance), "--to", "5"),
+]
+"""What a console is opened with."""
+
+
 @dataclass
 class _Walk:
     """What was typed, and what went wrong, if anything."""
@@ -73,20 +86,18 @@ class _Walk:
 def walk(seed: int, number: int) -> _Walk:
     """Open a console and type into it; the same seed and number type the same."""
     chance = Random(f"{seed}/{number}")
-    done = _Walk(chance.choice([(), ("open", _any_lesson(chance)), ("open", _any_lesson(chance))]))
+    done = _Walk(chance.choice(_BEGINNINGS)(chance))
     with TemporaryDirectory() as home, _editing_nothing():
         before = Path.cwd()
         os.chdir(home)
         try:
+            program(Path(home))
+            recorded(chance, Path("run.mcap"))
             with opened(*chance.choice(SIZES[:3]), Path(home), *done.words) as console:
                 done.trouble = _type(console, chance, done.keys)
         finally:
             os.chdir(before)
     return done
-
-
-def _any_lesson(chance: Random) -> str:
-    return chance.choice([lesson.id for lesson in lessons()])
 
 
 def _editing_nothing() -> AbstractContextManager[object]:
