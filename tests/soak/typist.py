@@ -43,6 +43,8 @@ _OUT = 0.1
 _CLICKS = 0.1
 """The share of what is done that is a click."""
 _WAYS_OUT = {"q", "ctrl+q"}
+_LAST = 1500
+"""How many of the characters that it drew last are told of a console that broke."""
 _GRACE = 5.0
 """Seconds in which engines have to be gone when a console has been left."""
 _SHELLS = {"ctrl+z"}
@@ -133,7 +135,7 @@ def _trouble(console: TerminalConsole, started: set[int]) -> str | None:
         return str(error)
     if code or console.left_on() or "Traceback" in console.said():
         fault = Path("cbtui", FAULT)
-        details = fault.read_text(encoding="utf-8") if fault.exists() else console.said()
+        details = fault.read_text(encoding="utf-8") if fault.exists() else console.said()[-_LAST:]
         return f"ended with {code}, left {console.left_on() or 'nothing'} switched on: {details}"
     end = time.monotonic() + _GRACE
     while (left := [each for each in started if alive(each)]) and time.monotonic() < end:

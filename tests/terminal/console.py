@@ -59,7 +59,8 @@ class TerminalConsole:
         while self.process.poll() is None:
             assert time.monotonic() < end, "the console does not end"
             self._read()
-        self._read()
+        while self._read():  # what was said last, bit by bit
+            pass
         return self.process.returncode
 
     def said(self) -> str:
@@ -90,13 +91,15 @@ class TerminalConsole:
         left |= {"keyboard"} if keyboard.count(b">") != keyboard.count(b"<") else set()
         return left | (set() if self.settings() == self._settings else {"settings"})
 
-    def _read(self) -> None:
+    def _read(self) -> bool:
+        """Take in what was drawn, for a moment; whether there was anything."""
         if self._closed:
             time.sleep(0.01)
-            return
+            return False
         ready, _, _ = select([self._screen], [], [], 0.1)
         if ready:
             self.drawn += os.read(self._screen, 1 << 16)
+        return bool(ready)
 
 
 _WRAPS = 7
