@@ -462,7 +462,7 @@ _PLACES = {
 
 
 async def perform(app: "App[Any]", action: Action) -> None:
-    """Do an action for a click or the palette; nothing if it is the focused widget's, and none is focused."""
+    """Do an action for a click or the palette; one of the widget with the keys not, if none has them."""
     place = _PLACES.get(action.scope, "screen")
     if place != "focused" or app.focused is not None:
         await app.run_action(f"{place}.{action.id}")

@@ -221,9 +221,10 @@ async def test_a_narrow_screen_names_the_key_that_lets_all_lanes_be_seen() -> No
         await press(app, pilot, "Z")
         assert "lanes" not in text_of(app)
         assert "ThreadPoolExecutor-0_3" in text_of(app) or "Pool-0_3" in text_of(app)
-        assert not table.display
+        shown = [table.display]
         await press(app, pilot, "z")
-        assert table.display
+        shown.append(table.display)
+        assert shown == [False, True]
         assert not app.comparison.query_one("#lanes0").display
         await press(app, pilot, "z")
         assert "+2 lanes Z" in text_of(app)
