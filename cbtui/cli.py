@@ -6,6 +6,8 @@ Whatever a command needs is imported when it runs: ``cbtui --help`` must answer 
 import argparse
 import sys
 from collections.abc import Callable, Sequence
+from contextlib import suppress
+from pathlib import Path
 from typing import NoReturn
 
 from cbtui import streams
@@ -30,21 +32,14 @@ from cbtui.commands import (
     serve,
     start,
 )
-from cbtui.commands.output import CannotSayError, shown
+from cbtui.commands.output import CannotSayError, say
+from cbtui.commands.parsing import Parser
 from cbtui.commands.ros2 import ros2
-from cbtui.commands.targets import refuse
+from cbtui.commands.targets import is_text, refuse
 from cbtui.warden import BadCeilingError, ceiling
 
 _READ_ENOUGH = 141
 """The exit code where the pipe behind is closed: a shell's for a program that SIGPIPE ended."""
-
-
-class _Parser(argparse.ArgumentParser):
-    """A parser whose complaints are one line."""
-
-    def error(self, message: str) -> NoReturn:
-        """Say what was wrong and where to read more, and exit with 2."""
-        self.exit(2, shown(f"{self.prog}: {message} (see {self.prog} --help)\n"))
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -56,6 +51,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     streams.make_whole()
     try:
         code = _carried_out(list(sys.argv[1:] if argv is None else argv))
+    except SystemExit:
+        streams.unwritable()
+        raise
     except OSError as error:
         trouble = streams.unwritable()
         if trouble is None and not isinstance(error, BrokenPipeError | CannotSayError):
@@ -69,7 +67,9 @@ def _say_unwritable(trouble: OSError) -> int:
     """Say that standard output takes no more, unless who read it has just read enough; the exit code."""
     if isinstance(trouble, BrokenPipeError):
         return _READ_ENOUGH
-    sys.stderr.write(f"cbtui: what it says cannot be written: {trouble.strerror}\n")
+    with suppress(OSError):
+        sys.stderr.write(f"cbtui: what it says cannot be written: {trouble.strerror}\n")
+    streams.unwritable()
     return 1
 
 
@@ -79,6 +79,9 @@ def _carried_out(words: list[str]) -> int:
     split = words.index("--") if "--" in words else len(words)
     options = _parser().parse_args(words[:split])
     options.arguments = words[split + 1 :]
+    if not all(map(is_text, options.arguments)):
+        refuse("what stands behind -- has to be text in UTF-8")
+    _check_folder()
     _check_ceiling()
     action: Callable[[argparse.Namespace], int] = options.action
     with more_lessons.brought_in(options):
@@ -89,6 +92,14 @@ def _carried_out(words: list[str]) -> int:
         except ValueError as error:
             _refuse_bad_lesson(error)
             raise
+
+
+def _check_folder() -> None:
+    """End the program with one line and 2, if the folder that it was started in is gone."""
+    try:
+        Path.cwd()
+    except OSError as error:
+        refuse(f"the current folder cannot be used: {error.strerror}; go to another one")
 
 
 def _check_ceiling() -> None:
@@ -108,7 +119,7 @@ def _refuse_bad_lesson(error: ValueError) -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = _Parser(
+    parser = Parser(
         prog="cbtui",
         description="A terminal teaching console for ROS 2 callback groups and executors.",
         epilog="Without a command the console opens on its menu of lessons.",
@@ -224,7 +235,7 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _add_exercises(commands: "argparse._SubParsersAction[_Parser]") -> None:
+def _add_exercises(commands: "argparse._SubParsersAction[Parser]") -> None:
     starting = commands.add_parser("start", help="begin a lesson's exercise in a file of your own")
     start.add_options(starting)
     starting.set_defaults(action=start.start)
@@ -252,7 +263,7 @@ def _add_exercises(commands: "argparse._SubParsersAction[_Parser]") -> None:
     resetting.set_defaults(action=reset.reset)
 
 
-def _add_authoring(commands: "argparse._SubParsersAction[_Parser]") -> None:
+def _add_authoring(commands: "argparse._SubParsersAction[Parser]") -> None:
     making = commands.add_parser("new-lesson", help="make a lesson of your own to begin with")
     new_lesson.add_options(making)
     making.set_defaults(action=new_lesson.new_lesson)
@@ -273,5 +284,5 @@ class _TellVersion(argparse.Action):
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
         from cbtui.version import own_version
 
-        sys.stdout.write(f"cbtui {own_version()}\n")
+        say(f"cbtui {own_version()}\n")
         parser.exit()

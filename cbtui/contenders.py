@@ -141,7 +141,7 @@ def compare_runs(first: Contender, second: Contender, terms: Terms) -> int:
     compared = compare(one.timeline, other.timeline, found.window)
     say(comparison_text(compared, one.name, other.name))
     failures = [side.failure for side in (one, other) if side.failure is not None]
-    for sentence in [*(side.damage for side in (one, other)), *failures]:
+    for sentence in dict.fromkeys([one.damage, other.damage, *failures]):
         if sentence is not None:
             complain(sentence)
     return 1 if failures else 0
@@ -161,7 +161,7 @@ def gather(first: Contender, second: Contender, terms: Terms, tell: Tell, given_
     until = _until([side.timeline.end for side in known if side is not None], terms, tell, given_up)
     _check(terms, until)
     one, other = (
-        side or _run(each, _prepared(each, terms, until), tell, given_up)
+        side or _run(each, terms, until, tell, given_up)
         for each, side in zip((first, second), known, strict=True)
     )
     return Gathered(one, other, Window(terms.start, until))
@@ -202,17 +202,23 @@ def _recorded(name: str, path: Path, tell: Tell, given_up: Event) -> Side:
         raise CannotCompareError(str(error)) from None
     except OSError as error:
         raise CannotCompareError(f"{path} cannot be read to its end: {error.strerror}") from None
-    return Side(name, timeline, damage=recording.damage)
+    damage = None if recording.damage is None else f"{name}: {recording.damage}"
+    return Side(name, timeline, damage=damage)
 
 
-def _prepared(contender: Contender, terms: Terms, until: Nanoseconds) -> RunSetup:
-    """A set-up for the contender's own clock, as fast as it goes; for virtual time, if it gets inputs."""
+def _prepared(
+    contender: Contender, terms: Terms, until: Nanoseconds, missing: Callable[[str], None]
+) -> RunSetup:
+    """A set-up for the contender's own clock, as fast as it goes; for virtual time, if it gets inputs.
+
+    ``missing`` gets a sentence if some of these cannot be read.
+    """
     assert isinstance(contender.what, RunSetup)
     clock = contender.what.clock if terms.inputs is None else "virtual"
     program = msgspec.structs.replace(contender.what, clock=clock, speed=None)
     if terms.inputs is not None:
         try:
-            return repeated(terms.inputs, program, seconds=until / _SECOND, threads=None)
+            return repeated(terms.inputs, program, seconds=until / _SECOND, threads=None, tell=missing)
         except CannotRepeatError as error:
             raise CannotCompareError(str(error)) from None
     return msgspec.structs.replace(
@@ -223,8 +229,10 @@ def _prepared(contender: Contender, terms: Terms, until: Nanoseconds) -> RunSetu
     )
 
 
-def _run(contender: Contender, setup: RunSetup, tell: Tell, given_up: Event) -> Side:
+def _run(contender: Contender, terms: Terms, until: Nanoseconds, tell: Tell, given_up: Event) -> Side:
     name = contender.name
+    damage: list[str] = []
+    setup = _prepared(contender, terms, until, damage.append)
     news: Queue[list[AnyEvent] | str | None] = Queue(_BATCHES)
     session = Session(setup, news.put, news.put)
     timeline = Timeline()
@@ -238,7 +246,7 @@ def _run(contender: Contender, setup: RunSetup, tell: Tell, given_up: Event) -> 
         _drain(news)
     if batch is not None:
         raise CannotCompareError(f"{name} could not be run to its end: {batch}")
-    return Side(name, timeline, contender.service)
+    return Side(name, timeline, contender.service, damage=next(iter(damage), None))
 
 
 def _next(news: "Queue[list[AnyEvent] | str | None]", given_up: Event) -> list[AnyEvent] | str | None:

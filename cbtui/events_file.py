@@ -1,6 +1,7 @@
 """The events of a run in a file, a line of JSON each, for programs that read them."""
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from sim.trace.events import AnyEvent
@@ -10,13 +11,20 @@ from sim.trace.jsonl import JsonLines
 class EventsFile:
     """Takes events as they come. One that takes no more keeps what it has, and says so in ``failure``.
 
+    A file that is there keeps its content until ``begin``.
+
     Raises OSError if it cannot be opened, BrokenPipeError if it is a pipe and who read it has read enough.
     """
 
     def __init__(self, path: Path) -> None:
-        self._file = path.open("wb")
+        self._file = path.open("ab")
         self._lines = JsonLines()
         self.failure: str | None = None
+
+    def begin(self) -> None:
+        """Empty the file."""
+        with suppress(OSError):  # a pipe or a device has nothing to be emptied of
+            self._file.truncate(0)
 
     def take(self, events: Sequence[AnyEvent]) -> None:
         """Write events."""

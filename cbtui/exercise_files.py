@@ -58,18 +58,28 @@ def place_starter(lesson: Lesson, folder: Path) -> Placed:
     starter = lesson.starter_path
     if starter is None:
         raise CannotPlaceError(f"the lesson {lesson.id} has no exercise")
-    if not folder.is_dir():
-        raise CannotPlaceError(f"there is no folder {folder}")
     path = folder / lesson.file_name
     content = starter.read_bytes()
     try:
-        with path.open("xb") as file:
-            file.write(content)
+        if not folder.is_dir():
+            raise CannotPlaceError(f"there is no folder {folder}")
+        _write_new(path, content)
     except FileExistsError:
         return _there(path, content)
     except OSError as error:
         raise CannotPlaceError(f"{path} cannot be written: {error.strerror}") from None
     return Placed.NEW
+
+
+def _write_new(path: Path, content: bytes) -> None:
+    """Write a file that is not there yet: whole, or not at all."""
+    file = path.open("xb")
+    try:
+        with file:
+            file.write(content)
+    except OSError:
+        path.unlink()
+        raise
 
 
 def _there(path: Path, content: bytes) -> Placed:

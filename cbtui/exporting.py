@@ -41,7 +41,8 @@ class ExportError(Exception):
 class Wish:
     """What is to be written: paths by format, and the part (seconds) and width (pixels) of the picture.
 
-    Files that exist are only overwritten with ``replace``; without it none is left behind half written.
+    Files that exist are only overwritten with ``replace``, and not before all can be written. One that was
+    not there before is not left behind half written.
     """
 
     outputs: dict[str, Path]
@@ -93,10 +94,10 @@ class _Output:
     def __init__(self, name: str, path: Path, replace: bool) -> None:
         self._name = name
         self._path = path
-        self._replace = replace
         self._writer: Narrator | CallTable | None = None
         with self._trouble():
-            self._file = path.open("wb" if replace else "xb")
+            self._is_new = not path.exists()
+            self._file = path.open("ab" if replace else "xb")
         self._text = TextIOWrapper(self._file, "utf-8", newline="")
 
     def __enter__(self) -> Self:
@@ -106,14 +107,16 @@ class _Output:
         # What cannot be flushed has been told of before.
         with suppress(OSError):
             self._text.close()
-        if error is not None and not self._replace:
+        if error is not None and self._is_new:
             with suppress(OSError):
                 self._path.unlink()
 
     def begin(self) -> None:
-        """Write what comes before any event, if the format is one that is written as events go by."""
+        """Empty the file, and write what comes before any event, if the format is written as events go by."""
         from sim.trace.export import CallTable, ChromeFile, Narrator, PerfettoFile
 
+        with suppress(OSError):  # a pipe or a device has nothing to be emptied of
+            self._file.truncate(0)
         with self._trouble():
             if self._name == "perfetto":
                 self._writer = Narrator(PerfettoFile(self._file))

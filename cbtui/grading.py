@@ -8,6 +8,7 @@ from pathlib import Path
 
 from cbtui.check_text import verdict_line
 from cbtui.checking import Checked, check
+from cbtui.commands.targets import is_text
 from lessons.judge import Judge
 from lessons.lesson import Lesson
 
@@ -85,6 +86,9 @@ def grades(papers: Iterable[Paper], limit: float) -> Iterator[Grade]:
     for paper in papers:
         if paper.lesson is None or paper.file is None:
             yield Grade(paper)
+            continue
+        if not is_text(str(paper.file.resolve())):
+            yield Grade(Paper(paper.learner, paper.lesson, problem="its path is not UTF-8; rename it"))
             continue
         if paper.lesson.id not in judges:
             judges[paper.lesson.id] = Judge(paper.lesson)

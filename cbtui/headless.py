@@ -90,6 +90,8 @@ def run_set_up(
             except CannotRecordError as error:
                 complain(str(error))
                 return 2
+        if file is not None:
+            file.begin()
         try:
             return _Headless(setup, file, recorder).run()
         except (BrokenPipeError, CannotSayError):
@@ -165,7 +167,7 @@ class _Headless:
             return 1
         ended = self._timeline.ended
         if ended is not None and ended.failed:
-            complain(ended.reason)
+            complain(" ".join(ended.reason.split()))
             return 1
         return max(self._events_verdict(), self._recording_verdict())
 

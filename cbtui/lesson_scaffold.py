@@ -30,6 +30,11 @@ def make_lesson(folder: Path) -> list[Path]:
         )
     try:
         folder.mkdir(parents=True)
+    except FileExistsError:
+        raise CannotScaffoldError(f"{folder} is there already; nothing was written") from None
+    except OSError as error:
+        raise CannotScaffoldError(f"{folder} cannot be made: {error.strerror}") from None
+    try:
         for file in sorted(path for path in TEMPLATE.iterdir() if path.is_file()):
             shutil.copyfile(file, folder / file.name)
         title = folder.name.replace("-", " ").capitalize()
@@ -40,8 +45,7 @@ def make_lesson(folder: Path) -> list[Path]:
         ):
             path = folder / name
             path.write_text(path.read_text(encoding="utf-8").replace(old, new, 1), encoding="utf-8")
-    except FileExistsError:
-        raise CannotScaffoldError(f"{folder} is there already; nothing was written") from None
     except OSError as error:
+        shutil.rmtree(folder, ignore_errors=True)
         raise CannotScaffoldError(f"{folder} cannot be made: {error.strerror}") from None
     return sorted(folder.iterdir())

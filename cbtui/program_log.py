@@ -2,6 +2,7 @@
 
 import sys
 
+from cbtui.commands.output import saying
 from cbtui.theme import Charset
 from cbtui.widgets.cells import visible, without_tabs
 from sim.trace.events import (
@@ -60,6 +61,11 @@ class ProgramLog:
 
 
 def write_line(line: str, *, error: bool) -> None:
-    """Write to standard output or error; control characters are shown, not obeyed."""
+    """Write to standard output or error; control characters are shown, not obeyed.
+
+    Raises BrokenPipeError and CannotSayError, as ``cbtui.commands.output.saying``.
+    """
     stream = sys.stderr if error else sys.stdout
-    stream.write("\n".join(visible(part, Charset.BRAILLE) for part in line.split("\n")) + "\n")
+    text = "\n".join(visible(part, Charset.BRAILLE) for part in line.split("\n"))
+    with saying():
+        stream.write(f"{text}\n")

@@ -26,6 +26,8 @@ def start_recording(path: Path, setup: RunSetup, *, replace: bool = False) -> Re
         CannotRecordError: it cannot be made.
     """
     try:
+        if path.is_dir():
+            raise CannotRecordError(f"cannot record to {path}: it is a folder; name a file in it")
         recorder = Recorder(path, about(setup), replace=replace)
     except FileExistsError:
         sentence = f"there is a file {path} already; give another name, or --force to replace it"

@@ -30,7 +30,7 @@ def tell(path: Path) -> int:
         return 2
     say("".join(_lines(recording, tally, topics, size)))
     if recording.damage is not None:
-        complain(recording.damage)
+        complain(f"{path}: {recording.damage}")
         return 1
     return 0
 

@@ -1,5 +1,6 @@
 """Repeating a recorded run: its set-up, or another program's, with the inputs that the recording holds."""
 
+from collections.abc import Callable
 from itertools import chain
 from pathlib import Path
 
@@ -18,11 +19,18 @@ class CannotRepeatError(Exception):
     """A recording that cannot be repeated; the text is a sentence that says why."""
 
 
-def repeated(path: Path, program: RunSetup | None, *, seconds: float | None, threads: int | None) -> RunSetup:
+def repeated(
+    path: Path,
+    program: RunSetup | None,
+    *,
+    seconds: float | None,
+    threads: int | None,
+    tell: Callable[[str], None],
+) -> RunSetup:
     """The set-up of a run that gets the inputs of a recorded one.
 
     ``program`` runs instead of the recorded one (None: that one again). ``seconds`` None: as long as the
-    recording; ``threads`` None: as many as it had.
+    recording; ``threads`` None: as many as it had. ``tell`` gets a sentence if inputs may be missing.
 
     Raises:
         CannotRepeatError: the recording cannot be read, was made on the real clock, lacks its set-up, or its
@@ -36,6 +44,8 @@ def repeated(path: Path, program: RunSetup | None, *, seconds: float | None, thr
         raise CannotRepeatError(str(error)) from None
     except OSError as error:
         raise CannotRepeatError(f"{path} cannot be read to its end: {error.strerror}") from None
+    if recording.damage is not None:
+        tell(f"{path}: {recording.damage}")
     recorded = setup_of(recording.about)
     if recorded is None:
         raise CannotRepeatError(f"{path} does not tell how its run was set up, so it cannot be repeated")
@@ -71,13 +81,14 @@ def _check_programs(recorded: RunSetup, recording: Recording) -> None:
     for program in recorded.programs:
         path = Path(program.path)
         try:
-            text = path.read_text()
-        except (OSError, UnicodeDecodeError):
+            content = path.read_bytes()
+        except OSError:
             sentence = (
                 f"the recorded program {path} is not there any more; name the file that is to run instead"
             )
             raise CannotRepeatError(sentence) from None
-        if recording.sources.get(program.path, text) != text:
+        known = recording.sources.get(program.path)
+        if known is not None and known.encode() != content:
             sentence = (
                 f"{path} has changed since it was recorded; name it behind the options to run it as it is"
             )

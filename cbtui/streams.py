@@ -4,6 +4,7 @@ import os
 import sys
 from contextlib import suppress
 from io import TextIOWrapper
+from typing import TextIO
 
 _NAMES = ("stdin", "stdout", "stderr")
 _LAST = 2
@@ -32,12 +33,20 @@ def _fill_descriptors() -> None:
 
 
 def unwritable() -> OSError | None:
-    """Write out what waits in standard output; return why that is not possible, and drop it then."""
+    """Write out what waits in standard output and error, and drop what takes no more.
+
+    Returns why standard output does not, if so.
+    """
+    _trouble_of(sys.stderr)
+    return _trouble_of(sys.stdout)
+
+
+def _trouble_of(stream: TextIO) -> OSError | None:
     try:
-        sys.stdout.flush()
+        stream.flush()
     except OSError as error:
-        # Python would try once more as it ends, and complain in its own words.
+        # Python would try once more as it ends, complain in its own words, and end with 120.
         with suppress(OSError):
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
         return error
     return None

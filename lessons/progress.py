@@ -107,7 +107,7 @@ class Progress:
 
     def refresh(self) -> None:
         """Take in what other consoles have written."""
-        if self._path.exists():
+        if os.path.lexists(self._path):
             with self._lock():
                 self._read()
 

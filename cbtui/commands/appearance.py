@@ -78,7 +78,7 @@ def appearance(options: argparse.Namespace) -> Appearance:
         reading = read_file(Path(options.config))
         if reading.complaints:
             refuse("\ncbtui: ".join(reading.complaints))
-    elif standard_path().is_file():
+    elif _may_be_there(standard_path()):
         reading = read_file(standard_path())
     if options.theme is not None and not known("theme", options.theme):
         refuse(unknown("theme", options.theme))
@@ -89,6 +89,13 @@ def appearance(options: argparse.Namespace) -> Appearance:
         charset = charset_of(os.environ, bool(sys.flags.utf8_mode), sys.stderr.encoding or "utf-8")
     theme = options.theme or config.theme or colour_themes.STANDARD
     return Appearance(charset, configured, theme, config.keymap, reading.complaints)
+
+
+def _may_be_there(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except OSError:  # which reading it tells of
+        return True
 
 
 def console_of(look: Appearance, **begins_with: Any) -> "CbtuiApp":

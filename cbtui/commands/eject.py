@@ -5,7 +5,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cbtui.commands.output import complain, say
+from cbtui.commands.output import CannotSayError, complain, say
 
 if TYPE_CHECKING:
     from cbtui.ament_package import AmentPackage
@@ -45,6 +45,8 @@ def eject(options: argparse.Namespace) -> int:
     except (EjectError, BadLesson) as error:
         complain(str(error))
         return 2
+    except (BrokenPipeError, CannotSayError):
+        raise  # of what is said, not of a file
     except OSError as error:
         place = error.filename2 or error.filename or folder
         complain(f"cannot write {place}: {error.strerror}")

@@ -123,7 +123,7 @@ def _of_file(options: argparse.Namespace) -> "tuple[Exploration, list[str]]":
     different = changes.words(changed)
     behind = ["--", *options.arguments] if options.arguments else []
     replays = [
-        ["cbtui", "run", options.target, "--for", f"{seconds:g}", *given, *different, *behind],
+        ["cbtui", "run", options.target, "--for", f"{seconds:.12g}", *given, *different, *behind],
         ["cbtui", "open", options.target, *different, *behind],
     ]
     return Exploration(setup, path.name, None, options.limit), [shlex.join(each) for each in replays]

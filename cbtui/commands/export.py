@@ -4,7 +4,8 @@ import argparse
 from pathlib import Path
 
 from cbtui.commands.output import complain
-from cbtui.commands.values import moment
+from cbtui.commands.targets import same_file
+from cbtui.commands.values import moment, whole
 from cbtui.exporting import FORMATS, WIDTH, ExportError, Wish, export
 
 
@@ -15,7 +16,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         parser.add_argument(f"--{name}", metavar=metavar, help=about)
     parser.add_argument("--from", dest="start", metavar="S", type=moment, help="where the picture begins (0)")
     parser.add_argument("--to", dest="end", metavar="S", type=moment, help="where it ends (the run's end)")
-    parser.add_argument("--width", metavar="PIXELS", type=int, help=f"how wide it is ({WIDTH})")
+    parser.add_argument("--width", metavar="PIXELS", type=whole, help=f"how wide it is ({WIDTH})")
 
 
 def export_command(options: argparse.Namespace) -> int:
@@ -61,8 +62,9 @@ def _wish(options: argparse.Namespace, source: Path) -> Wish:
 
 
 def _check_paths(outputs: dict[str, Path], source: Path) -> None:
-    seen = {source.resolve(): str(source)}
+    seen = [source]
     for name, path in outputs.items():
-        if path.resolve() in seen:
-            raise ExportError(f"--{name} would overwrite {seen[path.resolve()]}; give it a file of its own")
-        seen[path.resolve()] = str(path)
+        taken = next((each for each in seen if same_file(each, path)), None)
+        if taken is not None:
+            raise ExportError(f"--{name} would overwrite {taken}; give it a file of its own")
+        seen.append(path)

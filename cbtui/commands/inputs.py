@@ -41,6 +41,6 @@ def check(options: argparse.Namespace, seconds: float) -> None:
 def words(calls: Iterable[float], lines: Iterable[tuple[float, str]]) -> list[str]:
     """The options as they stand on a command line, in the order of time."""
     return [
-        *(word for at in sorted(calls) for word in ("--call", f"{at:g}")),
-        *(word for at, line in sorted(lines, key=itemgetter(0)) for word in ("--at", f"{at:g}", line)),
+        *(word for at in sorted(calls) for word in ("--call", f"{at:.12g}")),
+        *(word for at, line in sorted(lines, key=itemgetter(0)) for word in ("--at", f"{at:.12g}", line)),
     ]

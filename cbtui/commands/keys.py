@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from cbtui.commands import appearance
-from cbtui.commands.output import say
+from cbtui.commands.output import complain, say
 
 if TYPE_CHECKING:
     from cbtui.actions import Action
@@ -27,7 +27,10 @@ def print_keys(options: argparse.Namespace) -> int:
     """Print the keys in force; returns the exit code."""
     from cbtui.config import standard_path
 
-    say("\n".join(_lines(str(standard_path()), appearance.appearance(options))))
+    now = appearance.appearance(options)
+    for complaint in now.complaints:
+        complain(complaint)
+    say("\n".join(_lines(str(standard_path()), now)))
     return 0
 
 

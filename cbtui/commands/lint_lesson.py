@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from cbtui.commands.check import add_limit
 from cbtui.commands.output import say
-from cbtui.commands.targets import refuse
+from cbtui.commands.targets import folder_of, refuse
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,11 +24,8 @@ def lint_lesson(options: argparse.Namespace) -> int:
     """Prove lessons; returns the exit code: 0 all is as they say, 1 something is not."""
     from cbtui.lesson_lint import faults_of
 
-    folder = Path(options.folder)
-    if not folder.is_dir():
-        refuse(f"there is no folder {folder}")
     count = 0
-    for each in _lessons_in(folder):
+    for each in _lessons_in(folder_of(options.folder)):
         faults = 0
         for fault in faults_of(each, options.limit):
             say(f"{fault}\n")
@@ -43,7 +40,10 @@ def _lessons_in(folder: Path) -> "Iterator[Path]":
     """The folder itself, or those in it that have a lesson's description."""
     from lessons.lesson import DESCRIPTION_FILE
 
-    inside = sorted(path.parent for path in folder.glob(f"*/{DESCRIPTION_FILE}"))
-    if (folder / DESCRIPTION_FILE).is_file() or not inside:
-        return iter([folder])
+    try:
+        inside = sorted(path.parent for path in folder.glob(f"*/{DESCRIPTION_FILE}"))
+        if (folder / DESCRIPTION_FILE).is_file() or not inside:
+            return iter([folder])
+    except OSError as error:
+        refuse(f"{folder} cannot be read: {error.strerror}")
     return iter(inside)

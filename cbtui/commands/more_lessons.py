@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from cbtui.commands.targets import refuse
+from cbtui.commands.targets import folder_of, refuse
 
 _VARIABLE = "CBTUI_LESSONS"
 """What ``lessons.catalogue`` looks at; so the programs that this one starts look there too."""
@@ -28,8 +28,7 @@ def brought_in(options: argparse.Namespace) -> Iterator[None]:
     """Have the lessons of the folders that were given in the catalogue, meanwhile."""
     folders: list[str] = getattr(options, "lessons", [])
     for folder in folders:
-        if not Path(folder).is_dir():
-            refuse(f"there is no folder {folder}; --lessons names one with lessons in it")
+        folder_of(folder)
         if os.pathsep in str(Path(folder).resolve()):
             refuse(f"{folder}: a folder with {os.pathsep!r} in its path cannot be looked up for lessons")
     before = os.environ.get(_VARIABLE)

@@ -1,6 +1,8 @@
 """What commands write: text that any terminal can show and none obeys, and complaints of one line."""
 
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TextIO
 
 
@@ -36,16 +38,28 @@ class CannotSayError(OSError):
     """A standard stream takes no more."""
 
 
+@contextmanager
+def saying() -> Iterator[None]:
+    """Have an error of what is written inside, to a standard stream, told from those of files.
+
+    Raises:
+        BrokenPipeError: who read the stream has gone.
+        CannotSayError: it takes no more for another reason.
+    """
+    try:
+        yield
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        raise CannotSayError(error.errno, error.strerror) from error
+
+
 def _write(stream: TextIO, text: str) -> None:
     encoding = (stream.encoding or "ascii").lower().replace("-", "").replace("_", "")
     if not encoding.startswith("utf") and not text.isascii():
         from cbtui.ascii_filter import in_ascii  # with Textual, so only where it is needed
 
         text = in_ascii(text)
-    try:
+    with saying():
         stream.write(text)
         stream.flush()
-    except BrokenPipeError:
-        raise
-    except OSError as error:
-        raise CannotSayError(error.errno, error.strerror) from error

@@ -1,6 +1,6 @@
 """``cbtui ros2``: carries out a ros2 line in the run that is going on."""
 
-from cbtui.commands.targets import refuse
+from cbtui.commands.targets import is_text, refuse
 
 
 def ros2(words: list[str]) -> int:
@@ -10,6 +10,8 @@ def ros2(words: list[str]) -> int:
         if len(words) < 2 or not words[1].isdecimal():
             refuse("--engine needs the process number of a cbtui run")
         process, words = int(words[1]), words[2:]
+    if not all(map(is_text, words)):
+        refuse("a ros2 line has to be text in UTF-8")
     from cbtui.ros2_line import run_line
 
     return run_line(words, process)

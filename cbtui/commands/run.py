@@ -5,8 +5,9 @@ import math
 from pathlib import Path
 
 from cbtui.commands import changes, inputs, values
+from cbtui.commands.output import complain
 from cbtui.commands.seeds import add_seed, check_seed
-from cbtui.commands.targets import file_of, is_file_name, lesson_of, refuse, setup_of_targets
+from cbtui.commands.targets import file_of, is_file_name, lesson_of, refuse, same_file, setup_of_targets
 
 DEFAULT_SECONDS = 60.0
 
@@ -71,6 +72,7 @@ def run(options: argparse.Namespace) -> int:
     is_file = is_file_name(options.targets[0])
     _check_run(options, is_file=is_file)
     paths = [file_of(name) for name in options.targets] if is_file else []
+    _check_outputs(options, paths)
     lesson = None if is_file else lesson_of(options.targets[0])
     check_seed(options.seed, options.clock or (None if lesson is None else lesson.setup.clock))
 
@@ -108,6 +110,7 @@ def _repeat(options: argparse.Namespace) -> int:
         refuse("--inputs gives the run all its inputs; leave out --call and --at")
     if options.force and options.record is None:
         refuse("--force lets --record replace a file; there is nothing to record to")
+    _check_outputs(options, [Path(name) for name in (options.inputs, *options.targets)])
     import msgspec
 
     from cbtui.headless import run_set_up
@@ -117,7 +120,9 @@ def _repeat(options: argparse.Namespace) -> int:
     speed = None if options.speed == math.inf else options.speed
     program = setup_of_targets(options, speed) if options.targets else None
     try:
-        setup = repeated(Path(options.inputs), program, seconds=options.seconds, threads=options.threads)
+        setup = repeated(
+            Path(options.inputs), program, seconds=options.seconds, threads=options.threads, tell=complain
+        )
     except CannotRepeatError as error:
         refuse(str(error))
     if not options.robot:
@@ -129,6 +134,16 @@ def _repeat(options: argparse.Namespace) -> int:
         recording_path=options.record,
         replace_recording=options.force,
     )
+
+
+def _check_outputs(options: argparse.Namespace, taken: list[Path]) -> None:
+    """Refuse to write over what is read, or twice into one file."""
+    outputs = {"--events": options.events, "--record": options.record}
+    for option, path in [(option, Path(name)) for option, name in outputs.items() if name is not None]:
+        for each in taken:
+            if same_file(each, path):
+                refuse(f"{option} would overwrite {each}; give it a file of its own")
+        taken = [*taken, path]
 
 
 def _check_run(options: argparse.Namespace, *, is_file: bool) -> None:

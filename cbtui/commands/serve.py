@@ -7,8 +7,11 @@ from importlib.util import find_spec
 from urllib.parse import urlsplit
 
 from cbtui.commands import appearance, console
-from cbtui.commands.targets import file_of, is_file_name, lesson_of, refuse
+from cbtui.commands.output import CannotSayError, complain, say
+from cbtui.commands.parsing import Parser
+from cbtui.commands.targets import file_of, is_file_name, is_text, lesson_of, refuse
 from cbtui.installing import install_command
+from cbtui.interrupts import whole
 
 _VISITORS = 8
 _HIGHEST_PORT = 65535
@@ -16,7 +19,9 @@ _HIGHEST_PORT = 65535
 
 def add_options(parser: argparse.ArgumentParser) -> None:
     """Give the command its arguments."""
-    parser.add_argument("--host", default="127.0.0.1", help="address to be reached at (%(default)s)")
+    parser.add_argument(
+        "--host", type=_host, default="127.0.0.1", help="address to be reached at (%(default)s)"
+    )
     parser.add_argument(
         "--port", type=_port, default=8000, help="port to be reached at, 0 for any that is free (%(default)s)"
     )
@@ -48,21 +53,23 @@ def serve(options: argparse.Namespace) -> int:
     from cbtui.web.server import ConsoleServer
 
     if not is_loopback(options.host):
-        sys.stderr.write(
-            f"cbtui: whoever reaches {options.host} can run programs on this machine as you; "
-            "let only people there whom you trust\n"
+        complain(
+            f"whoever reaches {options.host} can run programs on this machine as you; "
+            "let only people there whom you trust"
         )
     server = ConsoleServer(command, options.host, options.port, options.visitors, options.public_url)
     try:
-        asyncio.run(server.serve_until_told(_tell))
-    except OSError as error:
+        with whole() as unheard:
+            asyncio.run(server.serve_until_told(_tell, unheard))
+    except (BrokenPipeError, CannotSayError):
+        raise  # of what is said, not of the address
+    except (OSError, UnicodeError) as error:
         refuse(_why_not(error, options.host, options.port))
     return 0
 
 
 def _tell(address: str) -> None:
-    sys.stdout.write(f"The console is at {address} (ctrl+c ends it)\n")
-    sys.stdout.flush()
+    say(f"The console is at {address} (ctrl+c ends it)\n")
 
 
 def _opened(words: list[str]) -> list[str]:
@@ -70,7 +77,7 @@ def _opened(words: list[str]) -> list[str]:
     if not words:
         return []
     split = words.index("--") if "--" in words else len(words)
-    parser = argparse.ArgumentParser(prog="cbtui serve --", add_help=False)
+    parser = Parser(prog="cbtui open", add_help=False)
     console.add_open_options(parser)
     target = parser.parse_args(words[:split]).target
     if is_file_name(target):
@@ -80,7 +87,9 @@ def _opened(words: list[str]) -> list[str]:
     return ["open", *words]
 
 
-def _why_not(error: OSError, host: str, port: int) -> str:
+def _why_not(error: OSError | UnicodeError, host: str, port: int) -> str:
+    if isinstance(error, UnicodeError):
+        return f"{host} is no address; choose another with --host"
     if error.errno == errno.EADDRINUSE:
         return f"port {port} of {host} is in use; choose another with --port, or 0 for any that is free"
     if error.errno == errno.EACCES:
@@ -101,7 +110,17 @@ def _visitors(text: str) -> int:
 
 
 def _url(text: str) -> str:
-    parts = urlsplit(text)
-    if parts.scheme not in {"http", "https"} or not parts.hostname:
+    try:
+        parts = urlsplit(text)
+        well = parts.scheme in {"http", "https"} and parts.hostname and parts.port != 0
+    except ValueError:  # of a port, or of an address in brackets
+        well = False
+    if not well:
         raise argparse.ArgumentTypeError(f"{text!r} is not an address; give one such as https://example.org")
+    return text
+
+
+def _host(text: str) -> str:
+    if not (text and is_text(text)):
+        raise argparse.ArgumentTypeError(f"{text!r} is not an address; give one such as 127.0.0.1")
     return text

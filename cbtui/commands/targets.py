@@ -62,8 +62,39 @@ def is_file_name(target: str) -> bool:
 def file_of(name: str) -> Path:
     """The program file of that name; one that is not there ends the program with one line and 2."""
     path = Path(name)
-    if path.is_dir():
-        refuse(f"{name} is a folder; name the file in it that is to run")
-    if not path.is_file():
-        refuse(f"there is no file {name}; give a Python file, or a lesson of cbtui list")
+    try:
+        if path.is_dir():
+            refuse(f"{name} is a folder; name the file in it that is to run")
+        if not path.exists():
+            refuse(f"there is no file {name}; give a Python file, or a lesson of cbtui list")
+        if not path.is_file():
+            refuse(f"{name} is a pipe or a device; give a file, which can be read more than once")
+    except OSError as error:
+        refuse(f"{name} cannot be opened: {error.strerror}")
+    if not is_text(str(path.resolve())):
+        refuse(f"{name}: what runs has to have a name in UTF-8, and so have its folders; rename it")
     return path
+
+
+def folder_of(name: str) -> Path:
+    """The folder of that name; one that is not there ends the program with one line and 2."""
+    path = Path(name)
+    try:
+        if not path.is_dir():
+            refuse(f"there is no folder {name}")
+    except OSError as error:
+        refuse(f"{name} cannot be opened: {error.strerror}")
+    return path
+
+
+def same_file(one: Path, other: Path) -> bool:
+    """Tell whether two paths lead to one file, which need not be there yet."""
+    try:
+        return one.samefile(other)
+    except OSError:
+        return os.path.realpath(one) == os.path.realpath(other)
+
+
+def is_text(word: str) -> bool:
+    """Tell whether a word of a command line or a name is text, not bytes that no encoding explains."""
+    return not any("\ud800" <= character <= "\udfff" for character in word)

@@ -4,12 +4,20 @@ import argparse
 import math
 from typing import TYPE_CHECKING, Any
 
+from cbtui.commands.targets import is_text
 from cbtui.quantities import PERIOD, SENSOR_RATE, BadQuantityError, Quantity
 
 if TYPE_CHECKING:
     from cbtui.changes import Place
 
 _MAX_THREADS = 64
+_LONGEST = 1e9
+"""Seconds; over thirty years. A run's clock, in whole nanoseconds, holds some ten times that."""
+_SLOWEST = 0.001
+_MAX_ORDERS = 100_000
+"""All of them are kept, as is what came of each."""
+_MAX_SEED = 10**18
+"""As many as can be handed to an engine, with those after it that are tried too."""
 
 
 def _number(text: str, what: str) -> float:
@@ -27,7 +35,7 @@ def duration(text: str) -> float:
     seconds = _number(text, "seconds, such as 60")
     if seconds <= 0:
         raise argparse.ArgumentTypeError(f"a run cannot last {text} seconds; give more than 0")
-    return seconds
+    return _bounded(seconds, text)
 
 
 def moment(text: str) -> float:
@@ -35,6 +43,12 @@ def moment(text: str) -> float:
     seconds = _number(text, "seconds, such as 2.55")
     if seconds < 0:
         raise argparse.ArgumentTypeError(f"{text} s is before the run begins; give 0 or more")
+    return _bounded(seconds, text)
+
+
+def _bounded(seconds: float, text: str) -> float:
+    if seconds > _LONGEST:
+        raise argparse.ArgumentTypeError(f"no run lasts {text} s; give {_LONGEST:.0f} or less")
     return seconds
 
 
@@ -53,22 +67,27 @@ def threads(text: str) -> int:
 
 
 def count(text: str) -> int:
-    """Read how many of something are wanted."""
-    number = _whole(text)
+    """Read how many orders of threads are wanted."""
+    number = whole(text)
     if number < 1:
         raise argparse.ArgumentTypeError(f"{text} are too few; give 1 or more")
+    if number > _MAX_ORDERS:
+        raise argparse.ArgumentTypeError(f"{text} are too many at once; give {_MAX_ORDERS} or fewer")
     return number
 
 
 def seed(text: str) -> int:
     """Read which order of threads is meant."""
-    number = _whole(text)
+    number = whole(text)
     if number < 0:
         raise argparse.ArgumentTypeError(f"a seed cannot be {text}; give 0, the usual order, or more")
+    if number > _MAX_SEED:
+        raise argparse.ArgumentTypeError(f"there is no seed {text}; give {_MAX_SEED} or less")
     return number
 
 
-def _whole(text: str) -> int:
+def whole(text: str) -> int:
+    """Read a whole number."""
     try:
         return int(text)
     except ValueError:
@@ -80,8 +99,10 @@ def speed(text: str) -> float:
     if text == "max":
         return math.inf
     factor = _number(text, "a factor such as 2, or max")
-    if factor <= 0:
-        raise argparse.ArgumentTypeError(f"time cannot pass {text} times as fast; give more than 0, or max")
+    if factor < _SLOWEST:
+        raise argparse.ArgumentTypeError(
+            f"time cannot pass {text} times as fast; give {_SLOWEST:g} or more, or max"
+        )
     return factor
 
 
@@ -107,11 +128,17 @@ def sensor_rate(text: str) -> float:
     return _quantity(SENSOR_RATE, text)
 
 
+def _text(word: str) -> str:
+    if not is_text(word):
+        raise argparse.ArgumentTypeError(f"{word!r} is no text in UTF-8")
+    return word
+
+
 def _place_and_value(text: str, what: str) -> "tuple[Place, str]":
     """Take ``NODE:CALLBACK=VALUE`` apart; without a node, any node is meant."""
     name, equals, value = text.rpartition("=")
     node, colon, callback = name.rpartition(":")
-    if not (equals and callback and value) or (colon and not node):
+    if not (equals and callback and value and is_text(text)) or (colon and not node):
         raise argparse.ArgumentTypeError(f"{text!r} is not a callback and its value; give {what}")
     return ("/" + node.lstrip("/") if node else "", callback), value
 
@@ -136,7 +163,7 @@ class TimedLine(argparse.Action):
         """Add the pair to those given before."""
         text, line = values
         try:
-            pair = (moment(text), line)
+            pair = (moment(text), _text(line))
         except argparse.ArgumentTypeError as error:
             raise argparse.ArgumentError(self, str(error)) from None
         setattr(namespace, self.dest, [*getattr(namespace, self.dest), pair])

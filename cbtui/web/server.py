@@ -1,7 +1,6 @@
 """The web server: hands out the page, and gives every visitor a console as long as there is room."""
 
 import asyncio
-import signal
 from collections.abc import Awaitable, Callable, Sequence
 from pathlib import Path
 
@@ -10,12 +9,12 @@ from aiohttp import web
 from textual_serve.app_service import AppService
 from textual_serve.server import Server, to_int
 
+from cbtui.interrupts import Interruption, ending_heard
 from cbtui.web.guard import Guard
 from cbtui.web.visitor import Visitor
 
 _HEARTBEAT = 15.0
 _MOST_A_MESSAGE = 1 << 20
-_SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 _ONLY_OURS = (
     "default-src 'self'; style-src 'self' 'unsafe-inline'; script-src 'self' 'unsafe-inline'; "
     "img-src 'self' data:; font-src 'self' data:; connect-src 'self' ws: wss:; frame-ancestors 'none'"
@@ -43,14 +42,17 @@ class ConsoleServer(Server):
         self._guard = Guard(host, public_url)
         self._visitors: set[Visitor] = set()
 
-    async def serve_until_told(self, ready: Callable[[str], None]) -> None:
-        """Serve until a signal ends it, and end every visitor's console then.
+    async def serve_until_told(self, ready: Callable[[str], None], unheard: Interruption) -> None:
+        """Serve until a signal ends it, and end every visitor's console then; not if Ctrl-C came before.
 
         ``ready`` is told the address once there is one. Raises OSError if it cannot be had.
         """
-        loop, over = asyncio.get_running_loop(), asyncio.Event()
-        for each in _SIGNALS:
-            loop.add_signal_handler(each, over.set)
+        over = asyncio.Event()
+        with ending_heard(lambda _: over.set()):
+            if not unheard.came:
+                await self._serve_until(over, ready)
+
+    async def _serve_until(self, over: asyncio.Event, ready: Callable[[str], None]) -> None:
         runner = web.AppRunner(await self._make_app(), access_log=None)
         await runner.setup()
         try:

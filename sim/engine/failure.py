@@ -5,6 +5,7 @@ from pathlib import Path
 from types import FrameType
 
 from sim.engine.advice import advice_on
+from sim.error_text import error_text
 
 _MODEL = Path(__file__).parent.parent
 
@@ -28,7 +29,7 @@ def breakdown(error: Exception) -> str:
     """The sentence for an exception of the engine's own, outside all programs."""
     frames = traceback.extract_tb(error.__traceback__)
     place = f" ({_place(frames[-1].filename, frames[-1].lineno or 0)})" if frames else ""
-    return f"the engine failed: {type(error).__name__}: {error}{place}; cbtui doctor may tell why"
+    return f"the engine failed: {type(error).__name__}: {error_text(error)}{place}; cbtui doctor may tell why"
 
 
 def place_of(error: BaseException, path: str, folder: str) -> str:
@@ -49,7 +50,7 @@ def print_traceback(error: BaseException, path: str) -> None:
 
 def _text(error: BaseException) -> str:
     """An exception's text, the names of modules as the learner knows them."""
-    text = str(error)
+    text = error_text(error)
     if isinstance(error, ImportError):
         text = text.partition(" (")[0].replace("'sim.ros", "'rclpy")
     return text

@@ -122,4 +122,4 @@ def _told() -> Iterator[None]:
 
 def is_launch_file(path: str) -> bool:
     """Whether a file is one for ``ros2 launch``, by its name."""
-    return path.endswith(("launch.py", "launch.xml", "launch.yaml", "launch.yml"))
+    return path.endswith(("launch.py", ".xml", ".yaml", ".yml"))

@@ -7,6 +7,7 @@ from typing import Any
 
 from sim.clock import Stopped
 from sim.engine.failure import place_of
+from sim.error_text import error_text
 
 Tell = Callable[[str], None]
 
@@ -24,7 +25,7 @@ def tell_of_unheard(tell: Tell, path: str, folder: str) -> None:
         place = place_of(error, path, folder).strip(" ()")
         if place and place not in told:
             told.add(place)
-            text = f"{type(error).__name__}: {error}".removesuffix(": ")
+            text = f"{type(error).__name__}: {error_text(error)}".removesuffix(": ")
             tell(f"{place}: {text}; {what_follows}")
 
     def of_thread(failed: threading.ExceptHookArgs) -> None:

@@ -111,9 +111,14 @@ def _roots(top: Path, depth: int, budget: Iterator[int]) -> Iterator[Path]:
     waiting = deque([(top, depth)])
     while waiting and next(budget, None) is not None:
         folder, left = waiting.popleft()
-        if any((folder / name).exists() for name in _IGNORE_FILES):
+        try:
+            ignored = any((folder / name).exists() for name in _IGNORE_FILES)
+            is_package = (folder / MANIFEST).is_file()
+        except OSError:  # it is somebody else's alone, as some in /tmp are
             continue
-        if (folder / MANIFEST).is_file():
+        if ignored:
+            continue
+        if is_package:
             yield folder
         elif left:
             waiting.extend((each, left - 1) for each in _subfolders(folder))

@@ -17,6 +17,7 @@ from sim.trace.events import (
     MessageSent,
     TopicAppeared,
     TopicId,
+    spelt_out,
 )
 
 _BOUND = 32_000_000
@@ -106,7 +107,10 @@ class Contents:
     def pack(self, events: list[AnyEvent]) -> bytes:
         """Do what ``sim.trace.events.encode`` does, for events among which are some of ``events``."""
         taken = self._taken
-        packed = self._encoder.encode(events)
+        try:
+            packed = self._encoder.encode(events)
+        except UnicodeEncodeError:
+            packed = self._encoder.encode(spelt_out(events))
         self._packed = taken
         return packed
 

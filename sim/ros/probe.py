@@ -11,6 +11,7 @@ from functools import partial
 from itertools import count
 from typing import TYPE_CHECKING, Any
 
+from sim.error_text import error_text
 from sim.ros.own_code import is_own, place_of_caller
 from sim.trace import events
 from sim.trace.events import AnyEvent, CallbackEnded, CallbackStarted, GroupKind, Reason, Severity
@@ -191,7 +192,7 @@ class Probe:
     def callback_failed(self, entity: "Entity", error: BaseException) -> None:
         """A callback raised."""
         file, line = _raised_at(error)
-        text = f"{type(error).__name__}: {error}"
+        text = f"{type(error).__name__}: {error_text(error)}"
         self._sink(
             events.CallbackFailed(self._now(), entity.trace_id, self.thread(), text, file, line),
         )

@@ -6,7 +6,7 @@ callback writes several of them: on the wire each is a MessagePack array that st
 """
 
 from enum import StrEnum
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import msgspec
 
@@ -528,7 +528,30 @@ _decoder = msgspec.msgpack.Decoder(list[AnyEvent])
 
 def encode(events: list[AnyEvent]) -> bytes:
     """Pack a batch of events for the pipe or a file."""
-    return _encoder.encode(events)
+    try:
+        return _encoder.encode(events)
+    except UnicodeEncodeError:
+        return _encoder.encode(spelt_out(events))
+
+
+def spelt_out(events: list[AnyEvent]) -> list[AnyEvent]:
+    """Return events in whose texts lone surrogates, which no encoding has, are written as ``\\udc80``.
+
+    They come from names of files that are not UTF-8, and what programs say can hold them.
+    """
+    return [_spelt_out(event) for event in events]
+
+
+def _spelt_out(value: Any) -> Any:
+    match value:
+        case str():
+            return value.encode(errors="backslashreplace").decode()
+        case tuple():
+            return tuple(map(_spelt_out, value))
+        case msgspec.Struct():
+            texts = {name: _spelt_out(getattr(value, name)) for name in value.__struct_fields__}
+            return msgspec.structs.replace(value, **texts)
+    return value
 
 
 def decode(batch: bytes) -> list[AnyEvent]:

@@ -66,6 +66,19 @@ def test_a_lesson_that_cannot_be_made_is_said_to_be_so(
     assert list((tmp_path / "there").iterdir()) == []
 
 
+def test_a_lesson_that_is_not_whole_is_not_left_there(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def full(_source: Path, target: Path) -> None:
+        target.touch()
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("shutil.copyfile", full)
+    assert cli.main(["new-lesson", str(tmp_path / "new")]) == 1
+    assert "new cannot be made: No space left on device" in capsys.readouterr().err
+    assert not (tmp_path / "new").exists()
+
+
 @pytest.mark.parametrize("command", [["list"], ["run", "single-thread"], ["start", "split-groups"]])
 def test_a_lesson_at_fault_is_named_in_one_line(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], command: list[str]

@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from io import BytesIO
 from pathlib import Path
 from typing import Any
 
@@ -118,6 +119,28 @@ def test_start_says_when_a_folder_takes_no_files(
     monkeypatch.setattr(Path, "open", refuse)
     assert cli.main(["start", "split-groups"]) == 1
     assert capsys.readouterr().err == "cbtui: split_groups.py cannot be written: Permission denied\n"
+
+
+def test_start_leaves_no_half_of_a_file(
+    here: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    class Full(BytesIO):
+        def write(self, _: object) -> int:
+            raise OSError(28, "No space left on device")
+
+    real_open = Path.open
+
+    def open_full(path: Path, mode: str = "r", *rest: Any, **named: Any) -> Any:
+        file = real_open(path, mode, *rest, **named)
+        if "x" not in mode:
+            return file
+        file.close()
+        return Full()
+
+    monkeypatch.setattr(Path, "open", open_full)
+    assert cli.main(["start", "split-groups"]) == 1
+    assert capsys.readouterr().err == "cbtui: split_groups.py cannot be written: No space left on device\n"
+    assert not list(here.iterdir())
 
 
 def test_start_says_when_there_is_no_folder(capsys: pytest.CaptureFixture[str]) -> None:

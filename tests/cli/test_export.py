@@ -101,7 +101,7 @@ def test_the_report_finds_its_picture_in_another_folder(recording: Path) -> None
         (["--svg", "{}/a", "--from", "99"], "the run is over at 2.5 s, before --from 99"),
         (["--svg", "{}/a", "--from", "-1"], "-1 s is before the run begins"),
         (["--svg", "{}/a", "--width", "9"], "a picture cannot be 9 pixels wide; give 480 to 20000"),
-        (["--svg", "{}/a", "--width", "wide"], "invalid int value: 'wide'"),
+        (["--svg", "{}/a", "--width", "wide"], "'wide' is not a whole number"),
     ],
 )
 def test_a_wrong_command_is_refused_in_one_sentence(

@@ -128,5 +128,18 @@ def test_a_table_that_cannot_be_written_is_said_to_be_so(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "split_groups.py").write_text("")
-    assert cli.main(["grade", str(tmp_path), "--csv", str(tmp_path / "no" / "marks.csv")]) == 1
-    assert "marks.csv cannot be written: No such file or directory" in capsys.readouterr().err
+    with pytest.raises(SystemExit, match="2"):
+        cli.main(["grade", str(tmp_path), "--csv", str(tmp_path / "no" / "marks.csv")])
+    assert "marks.csv cannot be written: there is no folder " in capsys.readouterr().err
+
+
+def test_names_that_are_not_utf_8_keep_nobody_else_from_being_graded(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for name in ("split_groups_ann.py", "split_groups_b\udcf6b.py"):
+        (tmp_path / name).write_text(LEAVES)
+    assert cli.main(["grade", str(tmp_path), "--csv", str(tmp_path / "marks.csv")]) == 1
+    _, ann, bob = (tmp_path / "marks.csv").read_text().splitlines()
+    assert ann.startswith("ann,split-groups,0,")
+    assert bob.startswith("b\\udcf6b,split-groups,0,0,")
+    assert bob.endswith("its path is not UTF-8; rename it")

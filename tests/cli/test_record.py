@@ -58,7 +58,9 @@ def test_info_gives_what_is_left_of_a_recording_and_one_sentence(
     told = capsys.readouterr()
     assert told.out.startswith("run        exclusive-2-threads")
     assert len(told.err.splitlines()) == 1
-    assert "breaks off at byte" in told.err
+    assert told.err.startswith(f"cbtui: {cut}: it breaks off at byte ")
+    assert cli.main(["compare", str(recorded), str(cut), "--text"]) == 0
+    assert f"cbtui: {cut}: it breaks off at byte " in capsys.readouterr().err
 
 
 def test_info_says_what_is_no_recording(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -8,6 +8,7 @@ import pytest
 
 from cbtui import cli
 from cbtui.record import about
+from cbtui.repeat import CannotRepeatError, repeated
 from sim.engine.setup import ProgramSetup, RunSetup
 from tests.trace.recording.files import write
 from tests.trace.samples import FULL
@@ -90,6 +91,30 @@ def test_a_run_on_the_real_clock_cannot_be_repeated(
 ) -> None:
     said = refusal(recording_of(tmp_path, "real", tmp_path / "node.py"), capsys)
     assert "is of a real-clock run; only virtual runs can be repeated exactly" in said
+
+
+def test_a_program_is_as_it_was_whatever_its_line_ends_and_coding(tmp_path: Path) -> None:
+    for source in (b"x = 1\r\ny = 2\r\n", b"# -*- coding: latin-1 -*-\nx = '\xe9'\n"):
+        (tmp_path / "node.py").write_bytes(source)
+        (tmp_path / "run.mcap").unlink(missing_ok=True)
+        path = recording_of(tmp_path, "virtual", tmp_path / "node.py")
+        repeated(path, None, seconds=None, threads=None, tell=pytest.fail)
+    (tmp_path / "node.py").write_bytes(b"x = 1\ny = 2\n")
+    (tmp_path / "run.mcap").unlink()
+    path = recording_of(tmp_path, "virtual", tmp_path / "node.py")
+    (tmp_path / "node.py").write_bytes(b"x = 1\r\ny = 2\r\n")
+    with pytest.raises(CannotRepeatError, match="has changed since it was recorded"):
+        repeated(path, None, seconds=None, threads=None, tell=pytest.fail)
+
+
+def test_inputs_that_may_be_missing_are_told_of(tmp_path: Path) -> None:
+    (tmp_path / "node.py").touch()
+    path = recording_of(tmp_path, "virtual", tmp_path / "node.py")
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    told: list[str] = []
+    repeated(path, None, seconds=None, threads=None, tell=told.append)
+    (sentence,) = told
+    assert sentence.startswith(f"{path}: it breaks off at byte ")
 
 
 def test_a_program_that_is_gone_cannot_be_repeated(

@@ -6,7 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from cbtui.commands.output import CannotSayError
 from cbtui.commands.targets import need_terminal
+from cbtui.program_log import write_line
 from cbtui.terminal import charset_of
 
 _CBTUI = f"{sys.executable} -m cbtui"
@@ -27,16 +29,36 @@ def test_streams_that_are_closed_are_as_if_nobody_read_them(closed: str, tmp_pat
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no device that is always full")
-def test_an_output_that_is_full_is_told_in_one_sentence() -> None:
+def test_an_output_that_is_full_is_told_in_one_sentence(tmp_path: Path) -> None:
     for environment in ({}, {"PYTHONUNBUFFERED": "1"}):
-        done = _shell(f"{_CBTUI} list >/dev/full", **environment)
-        assert done.returncode == 1
-        assert done.stderr == "cbtui: what it says cannot be written: No space left on device\n"
+        for command in ("list", "--help", "--version", f"eject {tmp_path}"):
+            done = _shell(f"{_CBTUI} {command} >/dev/full", **environment)
+            assert done.returncode == 1
+            assert done.stderr == "cbtui: what it says cannot be written: No space left on device\n"
 
 
-def test_a_reader_who_has_read_enough_is_no_trouble() -> None:
-    done = _shell(f"{_CBTUI} keys | head -n 1")
-    assert done.stderr == ""
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no device that is always full")
+def test_where_not_even_complaints_can_be_written_the_exit_code_tells() -> None:
+    assert _shell(f"{_CBTUI} nonsense 2>/dev/full").returncode == 2
+    assert _shell(f"{_CBTUI} list >/dev/full 2>&1").returncode == 1
+
+
+def test_a_reader_who_has_read_enough_is_no_trouble(tmp_path: Path) -> None:
+    for command in ("keys", "--help", "--version", f"eject {tmp_path}"):
+        done = _shell(f"({_CBTUI} {command}; echo $? >&2) | true")
+        assert done.stderr in {"0\n", "141\n"}  # the first words may go out before the reader goes
+
+
+def test_a_log_that_cannot_be_written_ends_the_run_in_order(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def full(_text: str) -> int:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(sys.stdout, "write", full)
+    with pytest.raises(CannotSayError):
+        write_line("printed", error=False)
+    assert capsys.readouterr().err == ""
 
 
 def test_signs_that_the_encoding_lacks_become_question_marks() -> None:

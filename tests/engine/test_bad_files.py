@@ -52,6 +52,15 @@ FILES = {
     "a coding that does not exist": Bad(
         "# -*- coding: klingon -*-\n", "node.py:1: unknown encoding: klingon"
     ),
+    # Texts
+    "raises what no encoding has": Bad(
+        "raise ValueError('\\udc80')", f"node.py:1: {RAISED} ValueError: \\udc80"
+    ),
+    "raises several lines": Bad("raise ValueError('a\\n  b')", f"node.py:1: {RAISED} ValueError: a\n  b"),
+    "raises what cannot tell what it is": Bad(
+        "class E(Exception):\n    def __str__(self):\n        return 1 / 0\n\nraise E",
+        f"node.py:5: {RAISED} E: <exception str() failed>",
+    ),
     # Imports
     "a module that is not there": Bad(
         "import rclpy\nimport frobnicate",
@@ -325,7 +334,7 @@ def test_a_traceback_begins_in_the_learners_file(told: Told) -> None:
     assert printed[-1] == "ZeroDivisionError: division by zero"
 
 
-@pytest.mark.parametrize("name", ["no main", "raises at once", "a binary", "exits with a number"])
+@pytest.mark.parametrize("name", ["no main", "raises several lines", "a binary", "exits with a number"])
 def test_a_file_that_runs_alone_is_told_of_the_same_way_and_fails(
     tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -333,7 +342,7 @@ def test_a_file_that_runs_alone_is_told_of_the_same_way_and_fails(
     assert cli.main(["run", written.program.path, "--clock", "virtual", "--for", "2"]) == 1
     said = [line for line in capsys.readouterr().err.splitlines() if line.startswith("cbtui:")]
     assert len(said) == 1
-    assert said[0].startswith(f"cbtui: {written.sentence}")
+    assert said[0].startswith(f"cbtui: {' '.join(written.sentence.split())}")
 
 
 @pytest.mark.parametrize(

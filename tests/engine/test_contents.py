@@ -9,8 +9,9 @@ import pytest
 
 from cbtui.session import Session
 from sim.engine.commands import KeepContents
+from sim.ros.contents import Contents
 from sim.ros.interfaces import from_cdr, message
-from sim.trace.events import AnyEvent, MessageSent, Published, TopicAppeared
+from sim.trace.events import AnyEvent, MessageSent, Printed, Published, TopicAppeared, decode, encode
 from tests.support.engine_runs import Run, program_setup, run_to_end
 
 CHANGES_WHAT_IT_GETS = """
@@ -93,3 +94,9 @@ def test_contents_can_be_asked_for_while_a_run_goes_on(tmp_path: Path) -> None:
         assert any(isinstance(event, TopicAppeared) for event in until(MessageSent))
     finally:
         session.stop()
+
+
+def test_texts_that_no_encoding_has_are_spelt_out() -> None:
+    event = Printed(1, "name: \udc80", error=False)
+    for pack in (encode, Contents(wanted=True).pack):
+        assert decode(pack([event])) == [Printed(1, "name: \\udc80", error=False)]

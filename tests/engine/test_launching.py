@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup, TimedLine
+from sim.engine.starting import is_launch_file
 from sim.trace.events import LineEnded, LineSaid, Logged, NodeAppeared, Notice, Printed, ProcessEnded
 from tests.support.engine_runs import SECOND, Run, run_to_end
 
@@ -197,3 +198,10 @@ def test_what_is_wrong_in_a_launch_file_ends_the_run_with_its_line(
 def test_the_same_launch_gives_the_same_trace(package: Path) -> None:
     path = launch_file(package, 'Node(package="counting", executable="counter"),' * 3)
     assert run(path).events == run(path).events
+
+
+@pytest.mark.parametrize(
+    ("name", "is_one"), [("a.launch.py", True), ("robot.xml", True), ("b.yaml", True), ("node.py", False)]
+)
+def test_what_is_no_python_is_taken_for_a_launch_file_and_not_run_as_python(name: str, is_one: bool) -> None:
+    assert is_launch_file(name) is is_one

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from sim.ros.interfaces import find_definition_folders, workspace
-from tests.support.nobody import without_home
+from tests.support.nobody import close, without_home
 
 
 def write(*files: Path) -> None:
@@ -58,6 +58,14 @@ def test_hidden_ignored_and_linked_folders_are_left_out(tmp_path: Path) -> None:
     write(tmp_path / "elsewhere" / "deep" / "far" / "msg/A.msg")
     (course / "link").symlink_to(tmp_path / "elsewhere" / "deep" / "far")
     assert find_definition_folders(course / "node.py") == []
+
+
+def test_a_folder_of_somebody_elses_alone_is_left_out(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write(tmp_path / "node.py", tmp_path / "closed/msg/A.msg", tmp_path / "open/msg/A.msg")
+    close(tmp_path / "closed", monkeypatch)
+    assert find_definition_folders(tmp_path / "node.py") == [tmp_path / "open"]
 
 
 def test_no_more_folders_are_looked_into_than_allowed(

@@ -6,6 +6,7 @@ import pytest
 
 from sim.packages import EntryPoint, PackageError, UnknownExecutableError, UnknownPackageError, find_packages
 from tests.launch.fakes import make_package
+from tests.support.nobody import close
 
 
 def _with_setup(tmp_path: Path, text: str) -> Path:
@@ -34,6 +35,15 @@ def test_packages_are_found_from_anywhere_in_a_workspace(tmp_path: Path, place: 
     make_package(tmp_path)
     make_package(tmp_path, "other_pkg")
     assert find_packages(tmp_path / place).names == ["other_pkg", "unit5_pkg"]
+
+
+def test_a_folder_of_somebody_elses_alone_holds_no_packages(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    make_package(tmp_path)
+    (tmp_path / "closed").mkdir()
+    close(tmp_path / "closed", monkeypatch)
+    assert find_packages(tmp_path).names == ["unit5_pkg"]
 
 
 def test_the_first_of_two_packages_of_one_name_counts_and_it_is_told(tmp_path: Path) -> None:

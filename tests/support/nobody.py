@@ -1,4 +1,7 @@
-"""A user number without a name, as in a container without HOME: nobody knows where its home is."""
+"""Users of few rights: one without a name and a home, as in a container; one to whom a folder is closed."""
+
+import os
+from pathlib import Path
 
 import pytest
 
@@ -12,3 +15,15 @@ def without_home(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("pwd.getpwuid", unknown)
     for name in ("HOME", "XDG_CONFIG_HOME", "XDG_STATE_HOME"):
         monkeypatch.delenv(name, raising=False)
+
+
+def close(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Let nobody look at what is in a folder; root would, whatever its mode."""
+    stat = os.stat
+
+    def refuse(path: object, **options: bool) -> os.stat_result:
+        if isinstance(path, str | Path) and Path(path).parent == folder:
+            raise PermissionError(13, "Permission denied", str(path))
+        return stat(path, **options)  # type: ignore[arg-type]  # whatever it is, it is handed on
+
+    monkeypatch.setattr(os, "stat", refuse)

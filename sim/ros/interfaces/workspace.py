@@ -102,10 +102,13 @@ def _folders_in(folder: Path) -> list[Path]:
 
 
 def _is_searched(entry: Path) -> bool:
-    return (
-        not entry.name.startswith(".")
-        and entry.name not in _NEVER
-        and not entry.is_symlink()
-        and entry.is_dir()
-        and not (entry / "COLCON_IGNORE").exists()
-    )
+    try:
+        return (
+            not entry.name.startswith(".")
+            and entry.name not in _NEVER
+            and not entry.is_symlink()
+            and entry.is_dir()
+            and not (entry / "COLCON_IGNORE").exists()
+        )
+    except OSError:  # it is somebody else's alone, as some in /tmp are
+        return False

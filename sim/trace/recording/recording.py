@@ -1,5 +1,6 @@
 """Reads a recording: whatever of it is there, and one sentence on what is not."""
 
+import stat
 import struct
 import zlib
 from collections import Counter
@@ -63,6 +64,8 @@ def read(path: Path) -> "Recording":
         RecordingError: it is no recording, nothing of it is left, or a later version wrote it.
     """
     try:
+        if stat.S_ISFIFO(path.stat().st_mode):
+            raise RecordingError(f"{path} is a pipe, and a recording is read back and forth; give a file")
         recording = Recording(path)
         recording.check()
     except OSError as error:
