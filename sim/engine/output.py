@@ -1,9 +1,15 @@
 """What programs print: every line becomes an event, so that it cannot spoil the screen."""
 
 import io
+from codecs import getincrementaldecoder
 from collections.abc import Callable
+from functools import cached_property
+from typing import TYPE_CHECKING
 
 from sim.ros.process import Process, current_process
+
+if TYPE_CHECKING:
+    from typing_extensions import Buffer  # Python has it from 3.12 on
 
 _LONGEST = 4096
 """Characters of a line; a longer one is cut into several."""
@@ -20,6 +26,29 @@ class _TextStream(io.TextIOBase):
     def encoding(self) -> str:  # type: ignore[override]
         """What a real stream would encode to."""
         return "utf-8"
+
+    @cached_property
+    def buffer(self) -> io.RawIOBase:
+        """What takes bytes, as a real stream's does."""
+        return _ByteStream(self)
+
+
+class _ByteStream(io.RawIOBase):
+    """A stream of bytes that hands them on as text; those that are no text are spelt out."""
+
+    def __init__(self, text: _TextStream) -> None:
+        self._text = text
+        self._decoder = getincrementaldecoder("utf-8")("backslashreplace")
+
+    def writable(self) -> bool:
+        """Whether it can be written to: always."""
+        return True
+
+    def write(self, data: "Buffer") -> int:
+        """Take bytes; a letter that is cut in two waits for its other half."""
+        taken = bytes(data)
+        self._text.write(self._decoder.decode(taken))
+        return len(taken)
 
 
 class LineSink(_TextStream):
