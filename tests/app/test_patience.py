@@ -13,6 +13,7 @@ from textual.widget import Widget
 
 from cbtui.actions import Scope, actions_of, perform
 from cbtui.ending import EndingApp
+from cbtui.palette import Palette
 from cbtui.patience import LONGEST
 from cbtui.screens.menu import MenuScreen
 from cbtui.widgets.key_bar import KeyBar
@@ -163,3 +164,15 @@ async def test_an_action_of_a_widget_that_has_the_keys_no_more_is_not_done() -> 
         for action in actions_of(Scope.LOG):
             if action.scope is Scope.LOG:
                 await perform(app, action)
+
+
+async def test_a_palette_that_was_closed_looks_for_nothing_more() -> None:
+    app = RecordedConsole("split-groups", split_groups_run().events, 4.0)
+    async with app.run_test(size=WIDE) as pilot:
+        await pilot.press("ctrl+p")
+        palette = app.screen
+        assert isinstance(palette, Palette)
+        palette.dismiss(None)
+        looking = palette._gather_commands("pause")
+        await pilot.pause()
+    assert looking is None
