@@ -1,6 +1,7 @@
 """What holds for every test: random examples are the same each time, so that a red run is red again."""
 
 import gc
+import signal
 from collections.abc import Iterator
 
 import pytest
@@ -10,6 +11,9 @@ from tests.support import style_sheets
 
 settings.register_profile("same-each-time", derandomize=True, deadline=None, database=None)
 settings.load_profile("same-each-time")
+if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
+    # As under nohup, whose children would not hear Ctrl-C either.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -149,8 +149,11 @@ def test_a_run_may_tell_of_queues_shorter_than_nothing_and_of_numbers_too_large_
 def test_the_build_file_of_a_package_is_refused_whatever_is_wrong_with_it(
     tmp_path: Path, file: str, content: bytes
 ) -> None:
-    (tmp_path / "package.xml").write_text("<package><name>my_pkg</name></package>")
-    (tmp_path / file).write_bytes(content)
-    package = find_packages(tmp_path).package("my_pkg")
+    # Not beside other tests' folders, which programs in these would take for one workspace.
+    folder = tmp_path / "workspace" / "my_pkg"
+    folder.mkdir(parents=True)
+    (folder / "package.xml").write_text("<package><name>my_pkg</name></package>")
+    (folder / file).write_bytes(content)
+    package = find_packages(folder).package("my_pkg")
     with pytest.raises(PackageError):
         _ = package.share_files
