@@ -112,6 +112,8 @@ class Painted(Widget):
 
     def _paint(self) -> None:
         self._stale = False
+        if self._pruning:  # with its screen, whose other widgets, which it may tell of, can have gone before
+            return
         before, self._rows = self._rows, self.rows(self.size)
         same_size, self._rows_size = self._rows_size == self.size, self.size
         if not same_size or len(before) != len(self._rows):

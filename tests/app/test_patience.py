@@ -176,3 +176,15 @@ async def test_a_palette_that_was_closed_looks_for_nothing_more() -> None:
         looking = palette._gather_commands("pause")
         await pilot.pause()
     assert looking is None
+
+
+async def test_keys_of_a_screen_that_goes_away_are_painted_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
+    app = RecordedConsole("split-groups", split_groups_run().events, 4.0)
+    async with app.run_test(size=WIDE) as pilot:
+        lesson = app.screen
+        bar = lesson.query_one(KeyBar)
+        bar.changed()
+        lesson.dismiss(None)
+        monkeypatch.setattr(bar, "rows", lambda _: pytest.fail("the lanes, which it asks, may have gone"))
+        await pilot.pause()
+        assert app.screen is not lesson
