@@ -1,13 +1,15 @@
 import asyncio
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
+from dataclasses import replace
 from typing import ClassVar
 
 import pytest
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Vertical
-from textual.events import Click, Key, MouseDown, MouseUp
+from textual.events import Click, Event, Key, MouseDown, MouseUp
+from textual.geometry import Region
 from textual.pilot import Pilot
 from textual.widget import Widget
 
@@ -16,9 +18,14 @@ from cbtui.ending import EndingApp
 from cbtui.palette import Palette
 from cbtui.patience import LONGEST
 from cbtui.screens.menu import MenuScreen
+from cbtui.screens.setup import SetupScreen
 from cbtui.widgets.key_bar import KeyBar
+from cbtui.widgets.lanes import Lanes
+from cbtui.widgets.lanes.rows import MemberLane
+from cbtui.widgets.lanes.selection import Selection
 from cbtui.widgets.log.lines import LogLines
-from tests.support.console import WIDE, RecordedConsole
+from sim.trace.events import EntityId, EntityKind
+from tests.support.console import WIDE, RecordedConsole, settle
 from tests.support.runs import split_groups_run
 
 _SPLIT_GROUPS = "3"
@@ -188,3 +195,28 @@ async def test_keys_of_a_screen_that_goes_away_are_painted_no_more(monkeypatch: 
         monkeypatch.setattr(bar, "rows", lambda _: pytest.fail("the lanes, which it asks, may have gone"))
         await pilot.pause()
         assert app.screen is not lesson
+
+
+async def test_a_click_on_what_was_just_removed_is_nobodys(monkeypatch: pytest.MonkeyPatch) -> None:
+    app = Console()
+    async with app.run_test() as pilot:
+        forwarded: list[Event] = []
+        monkeypatch.setattr(app.screen, "_forward_event", forwarded.append)
+        gone = Widget()
+        for under in (app.screen, gone):
+            monkeypatch.setattr(app, "get_widget_at", lambda *_, under=under: (under, Region()))
+            app.post_message(MouseDown(None, 1, 1, 0, 0, 1, False, False, False))
+            await pilot.pause()
+        assert len(forwarded) == 1
+
+
+async def test_the_group_of_a_callback_that_a_new_run_has_yet_to_make_is_asked_for_among_all() -> None:
+    app = RecordedConsole("split-groups", split_groups_run().events, 4.0)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        lanes = app.screen.query_one(Lanes)
+        entity = next(each for each in lanes.timeline.entities.values() if each.kind is EntityKind.TIMER)
+        group = lanes.timeline.groups[entity.group]
+        lanes.selection = Selection(MemberLane(replace(entity, id=EntityId(999)), group))
+        await pilot.press("g")
+        assert isinstance(app.screen, SetupScreen)
