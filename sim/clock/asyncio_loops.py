@@ -1,7 +1,6 @@
 """Event loops of asyncio that live on a run's clock, and the loops of programs that run on threads."""
 
 import asyncio
-import math
 import selectors
 import threading
 from collections.abc import Mapping
@@ -9,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from sim.clock.interface import Clock
 from sim.clock.paced import PacedClock
+from sim.clock.units import wait_ns
 from sim.clock.virtual import VirtualClock
 from sim.clock.virtual_threads import VirtualSignal
 
@@ -76,7 +76,7 @@ class _PacedSelector(selectors.DefaultSelector):
         """Wait until something is ready, or ``timeout`` seconds have passed on the clock."""
         if timeout is None or timeout <= 0:
             return super().select(timeout)
-        deadline = self._clock.now() + round(timeout * 1e9)
+        deadline = self._clock.now() + wait_ns(timeout)
         while True:
             seconds = self._clock.wall_seconds_until(deadline)
             ready = super().select(min(max(seconds, 0.0), _SLICE))
@@ -99,7 +99,7 @@ class _VirtualSelector(selectors.BaseSelector):
     def select(self, timeout: float | None = None) -> _Ready:
         """Wait ``timeout`` virtual seconds, or until woken; nothing is ever ready."""
         if timeout is None or timeout > 0:
-            deadline = None if timeout is None else self._clock.now() + math.ceil(timeout * 1e9)
+            deadline = None if timeout is None else self._clock.now() + wait_ns(timeout)
             self._signal.wait(deadline)
             self._signal = self._clock.signal()
         return []

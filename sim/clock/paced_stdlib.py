@@ -13,6 +13,7 @@ from types import TracebackType
 from typing import Any
 
 from sim.clock.paced import PacedClock
+from sim.clock.units import wait_ns
 
 _allocate_lock = threading.Lock
 _RLock: Any = type(threading.RLock())
@@ -82,7 +83,7 @@ class PacedRLock(_RLock):  # type: ignore[misc]
 
 def _within(timeout: float, clock: PacedClock, attempt: Callable[[float], bool]) -> bool:
     """Try again and again, each time for some real seconds, until it works or the timeout is over."""
-    deadline = clock.now() + round(timeout * 1e9)
+    deadline = clock.now() + wait_ns(timeout)
     while not attempt(min(max(clock.wall_seconds_until(deadline), 0.0), _SLICE)):
         if clock.now() >= deadline:
             return False
@@ -108,7 +109,7 @@ def _replace_time(clock: PacedClock) -> None:
     def sleep(seconds: float) -> None:
         if seconds < 0:
             raise ValueError("sleep length must be non-negative")
-        clock.sleep(round(seconds * 1e9))
+        clock.sleep(wait_ns(seconds))
 
     origin = clock.origin
     modules: Any = (time, threading, queue)

@@ -16,6 +16,7 @@ from types import CodeType, FrameType, TracebackType
 from typing import Any, TypeVar
 
 from sim.clock.outside import start_outside
+from sim.clock.units import wait_ns
 from sim.clock.virtual import VirtualClock
 from sim.clock.virtual_threads import VirtualSignal, VirtualThread
 
@@ -49,22 +50,28 @@ class VirtualLock:
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
         """Take the lock; False if it is not to be had at once (or within ``timeout`` seconds)."""
+        limit = None if timeout == -1 else self._limit(blocking, timeout)
         self._clock.switch_point()
         if self._real.acquire(blocking=False):
             if self._clock.owns_current_thread():
                 self._note_taking(sys._getframe(1))
             return True
         if not blocking:
-            if timeout != -1:
-                raise ValueError("can't specify a timeout for a non-blocking call")
             return False
         if not self._clock.owns_current_thread():
             return self._real.acquire(timeout=timeout)
-        deadline = None if timeout < 0 else self._clock.now() + int(timeout * 1e9)
-        taken = self._wait_in_line(deadline)
+        taken = self._wait_in_line(None if limit is None else self._clock.now() + limit)
         if taken:
             self._note_taking(sys._getframe(1))
         return taken
+
+    @staticmethod
+    def _limit(blocking: bool, timeout: float) -> int:
+        if not blocking:
+            raise ValueError("can't specify a timeout for a non-blocking call")
+        if timeout < 0:
+            raise ValueError("timeout value must be positive")
+        return wait_ns(timeout)
 
     def _wait_in_line(self, deadline: int | None) -> bool:
         me = self._clock.current
@@ -177,7 +184,7 @@ def _replace_time(clock: VirtualClock) -> None:
         elif seconds < 0:
             raise ValueError("sleep length must be non-negative")
         else:
-            clock.sleep(round(seconds * 1e9))
+            clock.sleep(wait_ns(seconds))
 
     def here(virtual: Callable[[], Number], real: Callable[[], Number]) -> Callable[[], Number]:
         def ask() -> Number:
@@ -224,7 +231,7 @@ def _replace_threads(clock: VirtualClock) -> None:
         end: _End | None = getattr(thread, "_virtual_end", None)
         if end is None or not clock.owns_current_thread() or thread is threading.current_thread():
             _thread_join(thread, timeout)
-        elif end.wait(None if timeout is None else clock.now() + int(max(timeout, 0) * 1e9)):
+        elif end.wait(None if timeout is None else clock.now() + wait_ns(max(timeout, 0))):
             _thread_join(thread)
 
     def is_alive(thread: threading.Thread) -> bool:

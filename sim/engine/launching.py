@@ -4,6 +4,7 @@ import threading
 from collections.abc import Callable, Sequence
 from pathlib import Path
 
+from sim.clock.units import wait_ns
 from sim.engine.launched_line import LaunchedLine
 from sim.engine.program import Outcome, Program
 from sim.engine.programs import Programs, RunningProgram
@@ -66,7 +67,7 @@ class Launching:
         def begin() -> None:
             self._host.clock.start_thread(self._locked(action), "launch")
 
-        self._host.clock.call_at(self._host.clock.now() + round(seconds * 1e9), begin)
+        self._host.clock.call_at(self._host.clock.now() + wait_ns(seconds), begin)
 
     def _locked(self, action: Callable[[], None]) -> Callable[[], None]:
         def run() -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import msgspec
 
+from sim.clock.units import wait_ns
 from sim.ros.entity import Entity, Taken
 from sim.ros.entity_handles import ClientHandle
 from sim.ros.interfaces import copy_message
@@ -117,7 +118,7 @@ class Client(Entity):
         arrived = self._host.clock.signal()
         call, future = self._send(request)
         future.add_done_callback(lambda _: arrived.set())
-        deadline = None if timeout_sec is None else self._host.clock.now() + int(timeout_sec * 1e9)
+        deadline = None if timeout_sec is None else self._host.clock.now() + wait_ns(timeout_sec)
         self._probe.call_blocked(call, self.name)
         try:
             if not future._settled() and not arrived.wait(deadline):
@@ -176,7 +177,7 @@ class Client(Entity):
         """
         left = math.inf if timeout_sec is None else timeout_sec
         while self.node.context.ok() and not self.service_is_ready() and left > 0:
-            self._host.clock.sleep(int(_POLL * 1e9))
+            self._host.clock.sleep(wait_ns(_POLL))
             left -= _POLL
         return self.service_is_ready()
 

@@ -17,7 +17,8 @@ class Duration:
     __slots__ = ("_nanoseconds",)
 
     def __init__(self, *, seconds: int | float = 0, nanoseconds: int = 0) -> None:
-        total = int(seconds * _NANOSECONDS) + int(nanoseconds)
+        # Not cut to nothing if positive: a loop that sleeps for what is left would never end on virtual time.
+        total = (int(seconds * _NANOSECONDS) or int(seconds > 0)) + int(nanoseconds)
         if not -_LIMIT <= total < _LIMIT:
             raise OverflowError("Total nanoseconds value is too large to store in C duration.")
         self._nanoseconds = total

@@ -83,7 +83,7 @@ class GraphQueries:
     def wait_for_node(self, fully_qualified_node_name: str, timeout: float) -> bool:
         """Wait until there is a node of that full name; False when ``timeout`` seconds were not enough."""
         clock = self._agenda.host.clock
-        end = clock.now() + int(timeout * 1e9)
+        end = clock.now() + timeout * 1e9
         wanted = f"/{fully_qualified_node_name.lstrip('/')}"
         while not (found := wanted in self.get_fully_qualified_node_names()) and clock.now() < end:
             clock.sleep(_POLL)

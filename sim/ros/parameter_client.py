@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from sim.clock.units import wait_ns
 from sim.ros import rcl_interfaces
 from sim.ros.parameter import Parameter, parameter_dict_from_yaml_file
 from sim.ros.qos import QoSProfile, qos_profile_services_default
@@ -74,7 +75,7 @@ class AsyncParameterClient:
         clock = self.node.context.host.clock
         left = math.inf if timeout_sec is None else timeout_sec
         while not self.services_are_ready() and left > 0.0:
-            clock.sleep(int(_POLL * 1e9))
+            clock.sleep(wait_ns(_POLL))
             left -= _POLL
         return self.services_are_ready()
 

@@ -4,6 +4,7 @@ import os
 import sys
 from collections.abc import Sequence
 
+from sim.clock.units import wait_ns
 from sim.ros.context import Context
 from sim.ros.process import of_process
 from sim.ros.remapping import is_rule
@@ -71,7 +72,7 @@ def get_available_threads() -> int:
 
 
 def timeout_sec_to_nsec(timeout_sec: float | None) -> int:
-    """Nanoseconds of a timeout: -1 (for ever) for None or a negative one."""
+    """Nanoseconds of a timeout, rounded up: -1 (for ever) for None or a negative one."""
     if timeout_sec is None or timeout_sec < 0:
         return -1
-    return int(float(timeout_sec) * 1_000_000_000)
+    return wait_ns(float(timeout_sec))

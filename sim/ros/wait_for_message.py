@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from sim.clock.units import wait_ns
 from sim.ros.delivery import Delivery
 from sim.ros.qos import QoSProfile, as_profile
 from sim.ros.subscription import Subscription
@@ -53,7 +54,7 @@ def wait_for_message(
     """
     check_is_valid_msg_type(msg_type)
     host = node.context.host
-    deadline = None if time_to_wait < 0 else host.clock.now() + int(time_to_wait * 1e9)
+    deadline = None if time_to_wait < 0 else host.clock.now() + wait_ns(time_to_wait)
     with host.lock:
         awaited = _AwaitedMessage(node, msg_type, topic, as_profile(qos_profile))
         node._agenda.add(awaited)

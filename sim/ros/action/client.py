@@ -7,6 +7,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 from weakref import ref
 
+from sim.clock.units import wait_ns
 from sim.ros.action.cancelling import uuid_of
 from sim.ros.action.goal_ids import new_goal_id
 from sim.ros.action.goal_states import TERMINAL, GoalState
@@ -266,7 +267,7 @@ class ActionClient(ActionWaitable):
         """
         left = math.inf if timeout_sec is None else timeout_sec
         while self._node.context.ok() and not self.server_is_ready() and left > 0:
-            self._host.clock.sleep(int(_POLL * 1e9))
+            self._host.clock.sleep(wait_ns(_POLL))
             left -= _POLL
         return self.server_is_ready()
 
