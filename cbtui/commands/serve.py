@@ -2,6 +2,8 @@
 
 import argparse
 import errno
+import os
+import secrets
 import sys
 from importlib.util import find_spec
 from urllib.parse import urlsplit
@@ -15,6 +17,8 @@ from cbtui.interrupts import whole
 
 _VISITORS = 8
 _HIGHEST_PORT = 65535
+_VARIABLE = "CBTUI_TOKEN"
+_SHORTEST_TOKEN = 12
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -38,6 +42,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         type=_url,
         help="where visitors find it, when something stands in front of it (http://HOST:PORT)",
     )
+    parser.add_argument(
+        "--token",
+        type=_token,
+        default=os.environ.get(_VARIABLE) or None,
+        help="what visitors have to show, instead of a new one each time; other users of this machine see it "
+        f"in the list of processes, unless it is given in the variable {_VARIABLE}",
+    )
     appearance.add_options(parser)
 
 
@@ -54,10 +65,12 @@ def serve(options: argparse.Namespace) -> int:
 
     if not is_loopback(options.host):
         complain(
-            f"whoever reaches {options.host} can run programs on this machine as you; "
-            "let only people there whom you trust"
+            f"whoever has the token and reaches {options.host} can run programs on this machine as you; "
+            "give it only to people whom you trust, and not over a network whose others could read along"
         )
-    server = ConsoleServer(command, options.host, options.port, options.visitors, options.public_url)
+    os.environ.pop(_VARIABLE, None)  # visitors' programs need not know it
+    token = options.token or secrets.token_urlsafe()
+    server = ConsoleServer(command, options.host, options.port, options.visitors, options.public_url, token)
     try:
         with whole() as unheard:
             asyncio.run(server.serve_until_told(_tell, unheard))
@@ -101,6 +114,16 @@ def _port(text: str) -> int:
     if not text.isdecimal() or int(text) > _HIGHEST_PORT:
         raise argparse.ArgumentTypeError(f"{text!r} is not a port; give 0 to {_HIGHEST_PORT}")
     return int(text)
+
+
+def _token(text: str) -> str:
+    if len(text) < _SHORTEST_TOKEN or not text.isprintable():
+        # It is not repeated: what is complained of may be read by others.
+        raise argparse.ArgumentTypeError(
+            f"a token has {_SHORTEST_TOKEN} or more printable characters; give such a one with --token or "
+            f"in {_VARIABLE}, or none at all for a random one"
+        )
+    return text
 
 
 def _visitors(text: str) -> int:

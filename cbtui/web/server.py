@@ -3,6 +3,7 @@
 import asyncio
 from collections.abc import Awaitable, Callable, Sequence
 from pathlib import Path
+from urllib.parse import quote
 
 import aiohttp_jinja2
 from aiohttp import web
@@ -11,6 +12,7 @@ from textual_serve.server import Server, to_int
 
 from cbtui.interrupts import Interruption, ending_heard
 from cbtui.web.guard import Guard
+from cbtui.web.token import PARAMETER, Token
 from cbtui.web.visitor import Visitor
 
 _HEARTBEAT = 15.0
@@ -20,6 +22,11 @@ _ONLY_OURS = (
     "img-src 'self' data:; font-src 'self' data:; connect-src 'self' ws: wss:; frame-ancestors 'none'"
 )
 """The page takes nothing from elsewhere, and no other page shows it in a frame of its own."""
+_HEADERS = {
+    "Content-Security-Policy": _ONLY_OURS,
+    "Referrer-Policy": "no-referrer",
+    "Cache-Control": "no-store",
+}
 
 Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
@@ -27,11 +34,12 @@ Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 class ConsoleServer(Server):
     """Serves ``command`` (the words of a command line) to at most ``most`` visitors at a time.
 
-    ``public_url`` is where visitors find the server when that is not ``host`` and ``port``.
+    Only those are let in who show ``token``. ``public_url`` is where visitors find the server when that is
+    not ``host`` and ``port``.
     """
 
     def __init__(
-        self, command: Sequence[str], host: str, port: int, most: int, public_url: str | None
+        self, command: Sequence[str], host: str, port: int, most: int, public_url: str | None, token: str
     ) -> None:
         super().__init__(
             " ".join(command), host, port, title="cbtui", templates_path=Path(__file__).parent / "pages"
@@ -40,12 +48,14 @@ class ConsoleServer(Server):
         self._most = most
         self._outside = public_url
         self._guard = Guard(host, public_url)
+        self._token = Token(token)
+        self._query = f"/?{PARAMETER}={quote(token, safe='')}"
         self._visitors: set[Visitor] = set()
 
     async def serve_until_told(self, ready: Callable[[str], None], unheard: Interruption) -> None:
         """Serve until a signal ends it, and end every visitor's console then; not if Ctrl-C came before.
 
-        ``ready`` is told the address once there is one. Raises OSError if it cannot be had.
+        ``ready`` is told the address, with the token, once there is one. Raises OSError if it cannot be had.
         """
         over = asyncio.Event()
         with ending_heard(lambda _: over.set()):
@@ -58,7 +68,8 @@ class ConsoleServer(Server):
         try:
             await web.TCPSite(runner, self.host, self.port).start()
             name = f"[{self.host}]" if ":" in self.host else self.host
-            ready(self._outside or f"http://{name}:{runner.addresses[0][1]}")
+            address = self._outside or f"http://{name}:{runner.addresses[0][1]}"
+            ready(address.rstrip("/") + self._query)
             await over.wait()
         finally:
             await runner.cleanup()
@@ -73,6 +84,7 @@ class ConsoleServer(Server):
     async def _make_app(self) -> web.Application:
         app = await super()._make_app()
         app.middlewares.append(self._let_in)
+        app.on_response_prepare.append(_add_headers)
         return app
 
     @web.middleware
@@ -80,7 +92,12 @@ class ConsoleServer(Server):
         objection = self._guard.objection(request.headers)
         if objection is not None:
             return web.Response(status=403, text=f"{objection}\n")
-        return await handler(request)
+        shown = self._token.in_address(request)
+        if shown and request.path == "/":
+            return self._token.redirect(request, secure=(self._outside or "").startswith("https:"))
+        if shown or self._token.in_cookie(request):
+            return await handler(request)
+        return _refusal(request)
 
     async def handle_index(self, request: web.Request) -> web.Response:
         """Hand out the page."""
@@ -91,9 +108,7 @@ class ConsoleServer(Server):
             "font_size": min(max(to_int(request.query.get("fontsize", "16"), 16), 6), 48),
             "sentence": self._no_room,
         }
-        response = aiohttp_jinja2.render_template(page, request, context, status=status)
-        response.headers["Content-Security-Policy"] = _ONLY_OURS
-        return response
+        return aiohttp_jinja2.render_template(page, request, context, status=status)
 
     async def handle_websocket(self, request: web.Request) -> web.WebSocketResponse:
         """Give a visitor a console until either has enough."""
@@ -137,3 +152,17 @@ class ConsoleServer(Server):
     def _no_room(self) -> str:
         places = "The only place is" if self._most == 1 else f"All {self._most} places are"
         return f"{places} taken; come back when somebody has left."
+
+
+async def _add_headers(_request: web.Request, response: web.StreamResponse) -> None:
+    response.headers.update(_HEADERS)
+
+
+def _refusal(request: web.Request) -> web.Response:
+    wrong = PARAMETER in request.query
+    sentence = "That is not the token of this console." if wrong else "This console is opened with a token."
+    response = aiohttp_jinja2.render_template("token.html", request, {"sentence": sentence}, status=403)
+    if request.headers.get("Sec-Fetch-Site") == "cross-site":
+        # A strict cookie does not come with a link of another site, but with this page's own.
+        response.headers["Refresh"] = "0; url=/"
+    return response

@@ -3,34 +3,48 @@
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import AsyncIterator, Iterator
+from contextlib import asynccontextmanager, contextmanager
 from tempfile import TemporaryDirectory
+
+import aiohttp
 
 from tests.support.processes import descendants
 
 
 class Serving:
-    """``cbtui serve`` at a free port; ``address`` is where."""
+    """``cbtui serve`` at a free port; ``address`` is where, ``way_in`` the same with the token."""
 
     def __init__(self, process: "subprocess.Popen[str]") -> None:
         self.process = process
         assert process.stdout is not None
         self.first_line = process.stdout.readline()
-        self.address = self.first_line.split()[4]
+        self.way_in = self.first_line.split()[4]
+        self.address, _, self.token = self.way_in.partition("/?token=")
 
     def descendants(self) -> list[int]:
         """The numbers of all processes that it started, and that those started."""
         return descendants(self.process.pid)
 
+    @asynccontextmanager
+    async def visited(self) -> AsyncIterator[aiohttp.ClientSession]:
+        """A visitor who has shown the token."""
+        jar = aiohttp.CookieJar(unsafe=True)  # which takes those of numbers, as browsers do
+        async with aiohttp.ClientSession(self.address, cookie_jar=jar) as session:
+            async with session.get(self.way_in) as page:
+                await page.read()
+            yield session
+
 
 @contextmanager
-def serving(*words: str) -> Iterator[Serving]:
+def serving(*words: str, **environment: str) -> Iterator[Serving]:
     """Serve, and end it."""
     command = [sys.executable, "-m", "cbtui", "serve", "--port", "0", *words]
     with (
         TemporaryDirectory() as home,
-        subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=_environment(home)) as process,
+        subprocess.Popen(
+            command, stdout=subprocess.PIPE, text=True, env=_environment(home) | environment
+        ) as process,
     ):
         try:
             yield Serving(process)

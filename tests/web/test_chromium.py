@@ -17,7 +17,7 @@ async def until(page: Page, expression: str) -> None:
 @pytest.mark.skipif(PROGRAM is None, reason="there is no Chromium here")
 async def test_a_lesson_is_run_paused_and_left_in_a_browser_that_asks_nobody_else() -> None:
     with serving() as server:
-        async with page_of(server.address) as page:
+        async with page_of(server.way_in) as page:
             await page.until_drawn("Split groups")
             await until(page, "document.body.classList.contains('-first-byte')")
             await page.press("3")

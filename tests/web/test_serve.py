@@ -51,7 +51,7 @@ async def until_an_engine_runs(server: Serving) -> int:
 
 async def test_a_visitor_sees_the_menu_opens_a_lesson_and_leaves() -> None:
     with serving() as server:
-        async with aiohttp.ClientSession(server.address) as session:
+        async with server.visited() as session:
             async with session.ws_connect("/ws?width=140&height=40") as websocket:
                 await read_until(websocket, "Split groups")
                 await websocket.send_json(["stdin", "3"])
@@ -71,7 +71,7 @@ async def test_a_visitor_sees_the_menu_opens_a_lesson_and_leaves() -> None:
 
 async def test_a_visitor_who_goes_takes_the_engine_along_and_makes_room() -> None:
     with serving("--visitors", "1", *RUNNING) as server:
-        async with aiohttp.ClientSession(server.address) as session:
+        async with server.visited() as session:
             websocket = await session.ws_connect("/ws")
             await until_an_engine_runs(server)
             async with session.get("/") as page:
@@ -90,7 +90,7 @@ async def test_a_visitor_who_goes_takes_the_engine_along_and_makes_room() -> Non
 @pytest.mark.parametrize("by", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
 async def test_nothing_is_left_when_the_server_ends(by: signal.Signals) -> None:
     with serving(*RUNNING) as server:
-        async with aiohttp.ClientSession(server.address) as session, session.ws_connect("/ws"):
+        async with server.visited() as session, session.ws_connect("/ws"):
             await until_an_engine_runs(server)
             theirs = server.descendants()
             server.process.send_signal(by)
@@ -101,7 +101,7 @@ async def test_nothing_is_left_when_the_server_ends(by: signal.Signals) -> None:
 
 async def test_a_console_that_hangs_is_killed_with_its_engine() -> None:
     with serving(*RUNNING) as server:
-        async with aiohttp.ClientSession(server.address) as session, session.ws_connect("/ws"):
+        async with server.visited() as session, session.ws_connect("/ws"):
             await until_an_engine_runs(server)
             theirs = server.descendants()
             os.kill(theirs[0], signal.SIGSTOP)
@@ -112,7 +112,7 @@ async def test_a_console_that_hangs_is_killed_with_its_engine() -> None:
 
 async def test_strange_pages_and_strange_messages_get_nowhere() -> None:
     with serving("--visitors", "20") as server:
-        async with aiohttp.ClientSession(server.address) as session:
+        async with server.visited() as session:
             async with session.get("/", headers={"Host": "evil.example"}) as page:
                 assert page.status == 403
             with pytest.raises(aiohttp.WSServerHandshakeError, match="403"):
@@ -140,7 +140,7 @@ async def test_strange_pages_and_strange_messages_get_nowhere() -> None:
 
 async def test_the_page_takes_nothing_from_elsewhere() -> None:
     with serving() as server:
-        async with aiohttp.ClientSession(server.address) as session, session.get("/") as page:
+        async with server.visited() as session, session.get("/") as page:
             text = await page.text()
             policy = page.headers["Content-Security-Policy"]
     assert text.count("://") == 1
@@ -154,6 +154,8 @@ async def test_the_page_takes_nothing_from_elsewhere() -> None:
         (["--port", "70000"], "'70000' is not a port; give 0 to 65535"),
         (["--visitors", "0"], "'0' is not a number of visitors; give 1 or more"),
         (["--public-url", "example.org"], "'example.org' is not an address"),
+        (["--token", "too-short"], "a token has 12 or more printable characters"),
+        (["--token", "no\nlines in it"], "a token has 12 or more printable characters"),
         (["--host", "256.0.0.1"], "cannot be reached at 256.0.0.1"),
         (["--theme", "drak"], "there is no theme 'drak'; did you mean 'dark'?"),
         (["--", "split-group"], "the nearest is 'split-groups'"),
@@ -199,4 +201,7 @@ def test_an_address_that_others_reach_is_warned_of(capsys: pytest.CaptureFixture
         taken.listen()
         with pytest.raises(SystemExit):
             cli.main(["serve", "--host", "0.0.0.0", "--port", str(taken.getsockname()[1])])
-    assert "whoever reaches 0.0.0.0 can run programs on this machine" in capsys.readouterr().err
+    assert (
+        "whoever has the token and reaches 0.0.0.0 can run programs on this machine"
+        in capsys.readouterr().err
+    )
