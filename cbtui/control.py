@@ -56,18 +56,29 @@ _decode_question: Callable[[bytes], Question] = msgspec.msgpack.Decoder(Question
 _decode_answer: Callable[[bytes], Answer] = msgspec.msgpack.Decoder(Answer).decode
 
 
+class UnusableFolderError(OSError):
+    """There is no folder in which sockets are safe; the text says which, and why."""
+
+
 def runtime_folder() -> Path:
     """The folder of the sockets; made, for its owner only, if it is not there.
 
     Raises:
-        OSError: it cannot be made, or somebody else could have put something into it.
+        UnusableFolderError: it cannot be made, or somebody else could have put something into it.
     """
     above = os.environ.get("XDG_RUNTIME_DIR") or tempfile.gettempdir()
     folder = Path(above) / f"cbtui-{os.getuid()}"
-    folder.mkdir(mode=0o700, exist_ok=True)
-    status = folder.lstat()
-    if not stat.S_ISDIR(status.st_mode) or status.st_uid != os.getuid() or status.st_mode & 0o077:
-        raise PermissionError(f"{folder} is open to others")
+    try:
+        folder.mkdir(mode=0o700, exist_ok=True)
+        status = folder.lstat()
+    except OSError as error:
+        raise UnusableFolderError(f"{folder} cannot be made: {error.strerror}") from error
+    if not stat.S_ISDIR(status.st_mode):
+        raise UnusableFolderError(f"{folder} is not a folder")
+    if status.st_uid != os.getuid():
+        raise UnusableFolderError(f"{folder} belongs to another user")
+    if status.st_mode & 0o077:
+        raise UnusableFolderError(f"{folder} is open to other users, until chmod 700 closes it")
     return folder
 
 
@@ -82,16 +93,22 @@ class ControlServer:
         self._socket: socket.socket | None = None
         self._path = Path()
 
-    def start(self) -> None:
-        """Begin to listen; where there can be no such socket, lines from elsewhere find no engine."""
-        with suppress(OSError):
+    def start(self) -> str | None:
+        """Begin to listen; a sentence if there can be no socket, so that no line from elsewhere comes."""
+        try:
             self._path = runtime_folder() / f"{os.getpid()}.sock"
             self._path.unlink(missing_ok=True)
-            listening = socket.socket(socket.AF_UNIX)
+            self._socket = listening = socket.socket(socket.AF_UNIX)
             listening.bind(str(self._path))
             listening.listen()
-            self._socket = listening
-            threading.Thread(target=self._accept, args=(listening,), name="control", daemon=True).start()
+        except OSError as error:
+            self.stop()
+            return (
+                f"lines of cbtui ros2 do not reach this run: {error.strerror or error}; "
+                "set XDG_RUNTIME_DIR to a folder of your own"
+            )
+        threading.Thread(target=self._accept, args=(listening,), name="control", daemon=True).start()
+        return None
 
     def take(self, events: Iterable[AnyEvent]) -> None:
         """Hand what lines wrote to those who gave them."""
@@ -158,7 +175,7 @@ class ControlServer:
 
 
 class NoEngine(LookupError):  # noqa: N818 - the sentence it carries is what a reader sees
-    """No run listens; the text says which was looked for."""
+    """No run listens; the text says which was looked for, and where."""
 
 
 def connect(process: int | None) -> Connection:
@@ -167,7 +184,11 @@ def connect(process: int | None) -> Connection:
     Raises:
         NoEngine: there is none.
     """
-    for path in _sockets():
+    try:
+        folder = runtime_folder()
+    except UnusableFolderError as error:
+        raise NoEngine(f"no run can be looked for ({error})") from error
+    for path in _sockets(folder):
         if process is not None and path.stem != str(process):
             continue
         try:
@@ -176,14 +197,16 @@ def connect(process: int | None) -> Connection:
             path.unlink(missing_ok=True)  # left behind by a process that was killed
         except OSError:
             continue
-    raise NoEngine("no run listens" if process is None else f"no run of process {process} listens")
+    raise NoEngine(f"no run{'' if process is None else f' of process {process}'} listens in {folder}")
 
 
-def _sockets() -> list[Path]:
+def _sockets(folder: Path) -> list[Path]:
     """The sockets there are, youngest first."""
-    with suppress(OSError):
-        return sorted(runtime_folder().glob("*.sock"), key=lambda path: path.stat().st_mtime, reverse=True)
-    return []
+    made = dict[Path, float]()
+    for path in folder.glob("*.sock"):
+        with suppress(FileNotFoundError):  # its run has just ended
+            made[path] = path.stat().st_mtime
+    return sorted(made, key=made.__getitem__, reverse=True)
 
 
 class RemoteLine:

@@ -118,7 +118,9 @@ class _Headless:
         """Run to the end, whatever ends it, and print the summary and what the rules found."""
         try:
             with heard(self._end_early):
-                self._session.start()
+                complaint = self._session.start()
+                if complaint is not None:
+                    complain(complaint)
                 loss = self._follow()
         finally:
             self._session.stop()

@@ -16,10 +16,10 @@ class ListeningSession:
         self._session = Session(setup, self._take, ended)
         self._control = ControlServer(self._session.send)
 
-    def start(self) -> None:
-        """Start the engine, and listen."""
+    def start(self) -> str | None:
+        """Start the engine, and listen; a sentence if it cannot be listened."""
         self._session.start()
-        self._control.start()
+        return self._control.start()
 
     def send(self, command: Command) -> None:
         """Tell the engine something; nothing happens if it has ended."""

@@ -43,8 +43,8 @@ Ended: TypeAlias = Callable[[str | None], None]
 class Session(Protocol):
     """One engine process. ``deliver`` and ``ended`` are called on a thread of the session's own."""
 
-    def start(self) -> None:
-        """Start the process."""
+    def start(self) -> str | None:
+        """Start the process; a sentence if something about it does not work."""
 
     def send(self, command: Command) -> None:
         """Tell the engine something; ignored once it has ended."""
@@ -116,13 +116,15 @@ class LiveRun:
         """The speeds that can be chosen for this run."""
         return SPEEDS if self.virtual else SPEEDS[:-1]
 
-    def start(self) -> None:
-        """Start the engine; one that cannot be started counts as lost."""
+    def start(self) -> str | None:
+        """Start the engine, one that cannot be started counts as lost; a sentence if not all of it works."""
         try:
-            self._session.start()
-            self._started = True
+            complaint = self._session.start()
         except OSError as error:
             self.loss = f"it could not be started: {error.strerror or error}"
+            return None
+        self._started = True
+        return complaint
 
     def take(self, events: list[AnyEvent]) -> str | None:
         """Add what the session delivered; a sentence if it could not be recorded as it should."""

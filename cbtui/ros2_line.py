@@ -35,6 +35,10 @@ def run_line(words: Sequence[str], process: int | None) -> int:
         if process is not None:
             complain(str(error))
             return 2
+        complain(
+            f"{error}, so this line runs in an engine of its own; to reach a run, "
+            "give its terminal and this one the same XDG_RUNTIME_DIR, a folder of your own"
+        )
         return _AloneLine(text).run()
     return _follow_elsewhere(RemoteLine(connection, text))
 
@@ -64,7 +68,9 @@ class _AloneLine:
 
     def run(self) -> int:
         """Carry it out; the first Ctrl-C goes to the line, the second ends the engine."""
-        self._session.start()
+        complaint = self._session.start()
+        if complaint is not None:
+            complain(complaint)
         try:
             for news in _interruptible(self._news.get, self._interrupt):
                 if not isinstance(news, list):

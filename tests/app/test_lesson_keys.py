@@ -24,6 +24,7 @@ from sim.engine.commands import CallService, Pause, ResetWorld, Resume, SetSpeed
 from tests.app.pictures import lines_of, text_of
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, predict, settle
+from tests.support.fake_session import FakeSession
 from tests.support.runs import dummy_server_run, shared_group_run
 
 EVENTS = shared_group_run().events
@@ -65,6 +66,12 @@ def status(app: RecordedConsole) -> str:
 
 def diagnosis(app: RecordedConsole) -> str:
     return lines_of(app)[-2]
+
+
+async def test_a_run_that_other_terminals_do_not_reach_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(FakeSession, "start", lambda _session: "lines do not reach this run")
+    async with console() as (app, _):
+        assert "lines do not reach this run" in [each.message for each in app._notifications]
 
 
 async def test_keys_reach_the_engine_as_commands() -> None:

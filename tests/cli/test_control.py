@@ -9,7 +9,17 @@ from queue import Queue
 
 import pytest
 
-from cbtui.control import ControlServer, Done, NoEngine, RemoteLine, Said, connect, runtime_folder
+from cbtui import cli
+from cbtui.control import (
+    ControlServer,
+    Done,
+    NoEngine,
+    RemoteLine,
+    Said,
+    UnusableFolderError,
+    connect,
+    runtime_folder,
+)
 from sim.engine.commands import Command, InterruptLine, RunLine
 from sim.trace.events import LineEnded, LineSaid
 
@@ -89,9 +99,9 @@ def test_nonsense_on_the_socket_does_no_harm(server: ControlServer, sent: "Queue
 
 
 def test_without_a_run_there_is_nothing_to_connect_to(sent: "Queue[Command]") -> None:
-    with pytest.raises(NoEngine, match="no run listens"):
+    with pytest.raises(NoEngine, match=f"no run listens in {runtime_folder()}"):
         connect(None)
-    with pytest.raises(NoEngine, match="no run of process 1 listens"):
+    with pytest.raises(NoEngine, match=f"no run of process 1 listens in {runtime_folder()}"):
         connect(1)
 
 
@@ -107,11 +117,89 @@ def test_a_socket_that_a_killed_run_left_is_removed(sent: "Queue[Command]") -> N
     assert not left.exists()
 
 
-def test_only_the_owner_may_enter_the_folder(sent: "Queue[Command]") -> None:
+def test_a_run_that_ends_while_the_sockets_are_looked_through_hides_no_other(server: ControlServer) -> None:
+    (runtime_folder() / "1.sock").symlink_to("gone")
+    connect(None).close()
+
+
+def belong_to_another_user(folder: Path) -> None:
+    if os.geteuid() != 0:
+        pytest.skip("only root can give a folder away")
+    os.chown(folder, 65534, 65534)
+
+
+def be_a_file(folder: Path) -> None:
+    folder.rmdir()
+    folder.touch()
+
+
+def lie_nowhere(folder: Path) -> None:
+    folder.rmdir()
+    folder.parent.rmdir()
+
+
+@pytest.fixture(
+    params=[
+        (lambda folder: folder.chmod(0o770), "is open to other users, until chmod 700 closes it"),
+        (belong_to_another_user, "belongs to another user"),
+        (be_a_file, "cannot be made: File exists"),
+        (lie_nowhere, "cannot be made: No such file or directory"),
+    ]
+)
+def why_refused(request: pytest.FixtureRequest, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """Why the folder of the sockets is refused."""
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path / "above"))
+    (tmp_path / "above").mkdir()
     folder = runtime_folder()
-    assert stat.S_IMODE(folder.stat().st_mode) == 0o700
-    folder.chmod(0o777)
-    with pytest.raises(PermissionError, match="is open to others"):
+    spoil, why = request.param
+    spoil(folder)
+    return f"{folder} {why}"
+
+
+def test_a_folder_of_sockets_that_others_may_have_touched_is_refused_in_a_sentence(why_refused: str) -> None:
+    with pytest.raises(UnusableFolderError) as refused:
         runtime_folder()
-    with pytest.raises(NoEngine):
+    assert str(refused.value) == why_refused
+    with pytest.raises(NoEngine) as none:
         connect(None)
+    assert str(none.value) == f"no run can be looked for ({why_refused})"
+
+
+def test_a_run_without_a_console_that_cannot_listen_says_so(
+    why_refused: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    program = tmp_path / "node.py"
+    program.write_text("print('done')")
+    assert cli.main(["run", str(program), "--for", "1"]) == 0
+    said = capsys.readouterr().err.splitlines()[0]
+    assert said == (
+        f"cbtui: lines of cbtui ros2 do not reach this run: {why_refused}; "
+        "set XDG_RUNTIME_DIR to a folder of your own"
+    )
+
+
+def test_a_path_that_is_too_long_for_a_socket_is_told(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    above = tmp_path / ("long" * 30)
+    above.mkdir()
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(above))
+    sentence = ControlServer(lambda command: None).start()
+    assert sentence is not None
+    assert "path too long" in sentence
+
+
+def test_a_line_that_finds_no_run_says_where_it_looked(
+    sent: "Queue[Command]", capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(["ros2", "pkg", "list"]) == 0
+    said = capsys.readouterr()
+    assert said.err == (
+        f"cbtui: no run listens in {runtime_folder()}, so this line runs in an engine of its own; to reach "
+        "a run, give its terminal and this one the same XDG_RUNTIME_DIR, a folder of your own\n"
+    )
+    assert "unit5_pkg" in said.out.split()
+
+
+def test_only_the_owner_may_enter_the_folder(sent: "Queue[Command]") -> None:
+    assert stat.S_IMODE(runtime_folder().stat().st_mode) == 0o700

@@ -175,7 +175,7 @@ class RunningScreen(SizedScreen[None]):
 
     def _start(self) -> None:
         """Start the first run, when the screen is there."""
-        self._run.start()
+        self._tell(self._run.start())
 
     def _begin(self, speed: float | None) -> None:
         """Set up another run; what the engine of the one before still sends no longer counts."""
