@@ -1,15 +1,15 @@
 """The events of a run in a file, a line of JSON each, for programs that read them."""
 
 from collections.abc import Callable, Sequence
-from contextlib import suppress
 from pathlib import Path
 
 from sim.trace.events import AnyEvent
+from sim.trace.growing_file import GrowingFile
 from sim.trace.jsonl import JsonLines
 
 
 class EventsFile:
-    """Takes events as they come. One that takes no more keeps what it has, and says so in ``failure``.
+    """Takes events as they come. Where it cannot, it keeps the whole lines it has, and ``failure`` says why.
 
     A file that is there keeps its content until ``begin``.
 
@@ -17,25 +17,24 @@ class EventsFile:
     """
 
     def __init__(self, path: Path) -> None:
-        self._file = path.open("ab")
+        self._file = GrowingFile(path.open("ab", buffering=0), end=b"\n")
         self._lines = JsonLines()
         self.failure: str | None = None
 
     def begin(self) -> None:
         """Empty the file."""
-        with suppress(OSError):  # a pipe or a device has nothing to be emptied of
-            self._file.truncate(0)
+        self._file.clear()
 
     def take(self, events: Sequence[AnyEvent]) -> None:
         """Write events."""
         if self.failure is None:
-            self._try(lambda: self._file.writelines(self._lines.lines(events)))
+            self._try(lambda: self._file.write(b"".join(self._lines.lines(events))))
 
     def close(self) -> None:
         """Write what is left, once."""
         self._try(self._file.close)
 
-    def _try(self, write: Callable[[], None]) -> None:
+    def _try(self, write: Callable[[], object]) -> None:
         try:
             write()
         except BrokenPipeError:

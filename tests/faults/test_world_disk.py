@@ -1,5 +1,7 @@
 """Disks that are full, and two consoles that write to the same folder."""
 
+import json
+import os
 import resource
 import subprocess
 import sys
@@ -18,7 +20,8 @@ from sim.trace.recording import read
 from tests.faults.support import ANSWERED, PATIENCE, console_on, node_with, nothing_left, still_here
 from tests.support.runs import shared_group_run
 
-LONG = "self.get_logger().info('x' * 2000 + str(time.monotonic()))"
+LONG = "self.get_logger().info(os.urandom(1000).hex())"
+"""Logs what no compression makes small: two seconds of it are more than there is room for."""
 ROOM = 20_000
 """Bytes that a file may have."""
 CONSOLES = 8
@@ -45,18 +48,28 @@ def events_in(path: Path) -> int:
     return sum(map(len, read(path).batches()))
 
 
+def told_in(path: Path) -> int:
+    """How many events a recording or an events file gives back."""
+    if path.suffix == ".mcap":
+        return events_in(path)
+    return len([json.loads(line) for line in path.read_text().splitlines()])
+
+
 async def test_a_disk_that_fills_up_ends_the_recording_and_the_run_goes_on(folder: Path) -> None:
     async with console_on(node_with(folder, LONG, again=True)) as console:
+
+        def said() -> list[str]:
+            return [notification.message for notification in console.app._notifications]
+
         await console.until(still_here)
         with files_of_at_most(ROOM):
             await console.pilot.press("R")
-            await console.until(lambda live: live.recorded is not None)
-            await console.until(lambda live: live.recorded is None)
+            await console.until(lambda _: any("not whole" in text for text in said()))
+            assert console.screen.live_run.recorded is None
             assert await console.answers() < ANSWERED
         assert console.screen.live_run.state is State.LIVE
-        said = [notification.message for notification in console.app._notifications]
         (path,) = folder.glob("*.mcap")
-        assert f"The recording {path.name} is not whole: File too large" in said
+        assert f"The recording {path.name} is not whole: File too large" in said()
     assert events_in(path) > 0
 
 
@@ -81,7 +94,42 @@ def test_a_disk_that_fills_up_does_not_end_a_run_without_a_console(
     assert ended.stderr.splitlines()[-1] == f"cbtui: {what} not whole: File too large"
     assert "tick" in ended.stdout
     assert (folder / file).stat().st_size > ROOM / 2
-    assert file == "run.jsonl" or events_in(folder / file) > 0
+    assert told_in(folder / file) > 0
+
+
+@pytest.fixture
+def small_disk(tmp_path: Path) -> Iterator[Path]:
+    """A file system of its own with room for 64 kB."""
+    place = tmp_path / "disk"
+    place.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=64k", "cbtui-test", str(place)]
+    if os.geteuid() != 0 or subprocess.run(mount, check=False, capture_output=True).returncode:
+        pytest.skip("file systems cannot be mounted here")
+    yield place
+    subprocess.run(["umount", "-l", str(place)], check=True)
+
+
+@pytest.mark.parametrize(
+    ("file", "taken"), [("run.mcap", 0), ("run.mcap", 50_000), ("run.jsonl", 0), ("run.jsonl", 50_000)]
+)
+def test_a_small_disk_that_fills_up_keeps_what_fits(
+    folder: Path, small_disk: Path, file: str, taken: int
+) -> None:
+    node_with(folder, LONG, again=True)
+    (small_disk / "other").write_bytes(bytes(taken))
+    path = small_disk / file
+    option = "--record" if file == "run.mcap" else "--events"
+    words = ["run", "node.py", "--no-robot", "--clock", "virtual", "--for", "2", option, str(path)]
+    ended = subprocess.run(
+        [sys.executable, "-m", "cbtui", *words],
+        check=False,
+        capture_output=True,
+        text=True,
+        timeout=3 * PATIENCE,
+    )
+    assert ended.returncode == 1
+    assert ended.stderr.splitlines()[-1].endswith("not whole: No space left on device")
+    assert told_in(path) > 0
 
 
 def test_consoles_that_record_the_same_lesson_at_once_get_a_file_each(folder: Path) -> None:

@@ -1,8 +1,9 @@
 """Writes a recording: chunk by chunk, so that whoever is killed leaves all but the last moment behind."""
 
+import sys
 import threading
 from collections.abc import Callable, Iterable
-from contextlib import suppress
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -24,6 +25,7 @@ from sim.trace.events import (
     TopicAppeared,
     TopicId,
 )
+from sim.trace.growing_file import GrowingFile
 from sim.trace.recording import batch
 from sim.trace.recording.about import NAME, About, to_metadata
 from sim.trace.recording.sources import Sources
@@ -32,7 +34,11 @@ LIBRARY = "cbtui"
 EVENTS_CHANNEL = 1
 """The number that the channel of events has, since it is the first."""
 _CHUNK = 256_000
-"""Bytes after which a chunk is written."""
+"""Bytes after which a chunk is written, once there is some recording."""
+_FIRST_CHUNK = 8_000
+"""Bytes after which the first chunk is written: a disk that is nearly full has room for little."""
+_AT_STAKE = 0.25
+"""How much of what is in chunks may at most be lost with one more."""
 _PERIOD = 0.5
 """Seconds after which whatever has come is written."""
 _CASTS = 10
@@ -77,10 +83,12 @@ class Recorder:
         self._casts_left = _CASTS
         self._lock = threading.Lock()
         self._closing = threading.Event()
-        self._file = path.open("wb" if replace else "xb")
+        self._chunked = 0
+        self._waiting = 0
+        self._file = GrowingFile(path.open("wb" if replace else "xb", buffering=0))
         # The library has no types.
-        self._writer: Any = Writer(self._file, chunk_size=_CHUNK, compression=CompressionType.LZ4)
-        self._sources = Sources(self._attach)
+        self._writer: Any = Writer(self._file, chunk_size=sys.maxsize, compression=CompressionType.LZ4)
+        self._sources = Sources()
         self._flusher = threading.Thread(target=self._flush_for_ever, name="recorder", daemon=True)
         self._guarded(lambda: self._begin(about))
         self._flusher.start()
@@ -91,7 +99,7 @@ class Recorder:
 
     def flush(self) -> None:
         """Write what has been taken, so that it is kept whatever happens to this process."""
-        self._guarded(self._writer.flush)
+        self._guarded(self._flush)
 
     def close(self) -> None:
         """Write what is left, and the index that lets readers find their way. May be called again."""
@@ -100,11 +108,13 @@ class Recorder:
         self._closing.set()
         self._flusher.join()
         self._casts_left = 1
+        self.flush()
         self._guarded(self._tell_cast)
         self._guarded(self._writer.finish)
-        self._guarded(self._file.flush)
-        with suppress(OSError):
+        try:
             self._file.close()
+        except OSError as error:
+            self.failure = self.failure or error.strerror
 
     def _guarded(self, step: Callable[[], object]) -> None:
         """Do something to the file, unless an earlier step failed."""
@@ -123,7 +133,6 @@ class Recorder:
         self._writer.register_channel(batch.TOPIC, "cdr", schema)
         for path in about.programs:
             self._sources.want(path)
-        self._writer.flush()
 
     def _take(self, events: Iterable[AnyEvent]) -> None:
         kept: list[AnyEvent] = []
@@ -132,9 +141,36 @@ class Recorder:
             if look is None or look(self, event):
                 kept.append(event)
         if kept:
-            time = self._epoch + kept[0].t
+            self._add_events(kept)
+
+    def _add_events(self, events: list[AnyEvent]) -> None:
+        """Add a batch, in halves if all of it were too much to lose at once."""
+        packed = batch.pack_batch(events)
+        if len(packed) > self._chunk_size and len(events) > 1:
+            half = len(events) // 2
+            self._add_events(events[:half])
+            self._add_events(events[half:])
+        else:
             self._batches += 1
-            self._writer.add_message(EVENTS_CHANNEL, time, batch.pack_batch(kept), time, self._batches)
+            self._add(EVENTS_CHANNEL, self._epoch + events[0].t, packed, self._batches)
+
+    def _add(self, channel: int, time: int, data: bytes, number: int) -> None:
+        self._writer.add_message(channel, time, data, time, number)
+        self._waiting += len(data)
+        if self._waiting > self._chunk_size:
+            self._flush()
+
+    @property
+    def _chunk_size(self) -> int:
+        """Bytes after which the next chunk is written: a share of those before it, since it may not fit."""
+        return min(_CHUNK, max(_FIRST_CHUNK, int(_AT_STAKE * self._chunked)))
+
+    def _flush(self) -> None:
+        """Write what waits as a chunk; the programs' files come after the first events."""
+        self._writer.flush()
+        self._chunked += self._waiting
+        self._waiting = 0
+        self._sources.attach(self._attach)
 
     # What is looked at; whether it goes among the events too.
 
@@ -169,7 +205,7 @@ class Recorder:
         if channel is not None:
             time = self._epoch + event.t
             number = self._sent[event.topic] = self._sent.get(event.topic, 0) + 1
-            self._writer.add_message(channel, time, event.data, time, number)
+            self._add(channel, time, event.data, number)
         return False
 
     def _attach(self, path: str, text: bytes) -> None:
@@ -198,5 +234,6 @@ _LOOKS: dict[type, Callable[[Recorder, Any], bool]] = {
 }
 
 
+@cache
 def _version() -> str:
     return version("cbtui")

@@ -11,22 +11,27 @@ _MOST = 5_000_000
 
 
 class Sources:
-    """Hands every file that is wanted to ``attach`` once, with its path, as far as there is room."""
+    """The files that are wanted, each once, until somebody attaches them; as far as there is room."""
 
-    def __init__(self, attach: Callable[[str, bytes], None]) -> None:
-        self._attach = attach
+    def __init__(self) -> None:
         self._seen = {""}
+        self._wanted: list[str] = []
         self._room = _MOST
 
     def want(self, path: str) -> None:
         """Take a file along, if it can be read and is not too long."""
-        if path in self._seen:
-            return
-        self._seen.add(path)
-        text = _text_of(Path(path), min(_LONGEST, self._room))
-        if text is not None:
-            self._room -= len(text)
-            self._attach(path, text)
+        if path not in self._seen:
+            self._seen.add(path)
+            self._wanted.append(path)
+
+    def attach(self, attach: Callable[[str, bytes], None]) -> None:
+        """Hand over the path and the text of what has been wanted since the last time."""
+        wanted, self._wanted = self._wanted, []
+        for path in wanted:
+            text = _text_of(Path(path), min(_LONGEST, self._room))
+            if text is not None:
+                self._room -= len(text)
+                attach(path, text)
 
 
 def _text_of(path: Path, longest: int) -> bytes | None:
