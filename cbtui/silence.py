@@ -1,4 +1,4 @@
-"""An engine from which nothing comes, though it says at least once a second that it is there."""
+"""An engine from which nothing comes, though it says several times a second that it is there."""
 
 from typing import TYPE_CHECKING
 

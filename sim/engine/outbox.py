@@ -18,8 +18,8 @@ _leave = os._exit
 
 _PERIOD = 0.01
 """Seconds between two batches."""
-_QUIET = 100
-"""Periods without a batch after which an empty one tells that the engine is there."""
+_QUIET = 10
+"""Periods without a batch after which a heartbeat tells that the engine is there."""
 _BATCH = 2048
 """Events after which a batch goes out at once."""
 _BOUND = 200_000
@@ -34,7 +34,8 @@ class Outbox:
 
     On virtual time the thread that records sends a full batch itself: waiting for a slow reader then costs
     no virtual time, and nothing is ever lost. ``before_batch`` runs on the sending thread every period, and
-    so does ``pack``, which makes bytes of a batch.
+    so does ``pack``, which makes bytes of a batch; ``heartbeat`` gives the batch that is sent when there has
+    been none for a while, which may be empty.
     """
 
     def __init__(
@@ -44,11 +45,13 @@ class Outbox:
         may_wait: bool,
         before_batch: Callable[[], None],
         pack: Callable[[list[AnyEvent]], bytes] = encode,
+        heartbeat: Callable[[], list[AnyEvent]] = list,
     ) -> None:
         self._pipe = pipe
         self._pack = pack
         self._may_wait = may_wait
         self._before_batch = before_batch
+        self._heartbeat = heartbeat
         self._waiting: deque[AnyEvent] = deque()
         self._sending = _real_lock()
         self._closed = False
@@ -106,6 +109,7 @@ class Outbox:
             self._before_batch()
             self.flush()
             self._quiet += 1
-            if self._quiet >= _QUIET and not self._closed:
+            if self._quiet >= _QUIET:
                 with self._sending:
-                    self._send([])
+                    if not self._closed:
+                        self._send(self._heartbeat())

@@ -50,7 +50,7 @@ from sim.ros.contents import Contents
 from sim.ros.host import Host, install
 from sim.ros.probe import Probe
 from sim.ros.process import Process, current_process, share_machine
-from sim.trace.events import InputGiven, Notice, Printed, RunEnded, RunStarted, Severity
+from sim.trace.events import AnyEvent, InputGiven, Notice, Printed, RunEnded, RunStarted, Severity, TimePassed
 
 _GRACE = 0.5
 """Real seconds that a program gets to wind up once its run is over."""
@@ -83,6 +83,7 @@ class Engine:
             may_wait=self._virtual is not None,
             before_batch=self._look_at_waits_of_real_time,
             pack=self._contents.pack,
+            heartbeat=self._heartbeat,
         )
         self._control = (
             RealControl(clock, self._outbox.record)
@@ -98,6 +99,7 @@ class Engine:
         self._lines = Lines(self._host, self._outbox.record, self._starter, self._programs.look)
         self._descriptors = Descriptors(self._take_line)
         self._over = False
+        self._passed = 0
         self._grace_begins = threading.Lock()
         self._grace_begins.acquire()
 
@@ -276,6 +278,14 @@ class Engine:
     def _look_at_waits_of_real_time(self) -> None:
         if self._virtual is None and not self._over:
             self._host.explain_waits()
+
+    def _heartbeat(self) -> list[AnyEvent]:
+        """Tell how far time is, if it has gone on since; virtual time goes on with events alone."""
+        now = 0 if self._virtual is not None else self._clock.now()
+        if now <= self._passed:
+            return []
+        self._passed = now
+        return [TimePassed(now)]
 
     def _make_room(self) -> None:
         self._outbox.flush()

@@ -422,6 +422,10 @@ class TimeHalted(Event, frozen=True, tag="halt"):
     text: str
 
 
+class TimePassed(Event, frozen=True, tag="time"):
+    """The run on the real clock has come to ``t``: told while nothing else is, so that time goes on."""
+
+
 class LineGiven(Event, frozen=True, tag="line"):
     """A ``ros2`` line was given, at the prompt, on the command line or by the run's set-up."""
 
@@ -513,6 +517,7 @@ AnyEvent: TypeAlias = (
     | CommandGiven
     | InputGiven
     | TimeHalted
+    | TimePassed
     | LineGiven
     | LineSaid
     | LineEnded

@@ -123,6 +123,7 @@ class Folded:
             ev.CommandGiven: self._command_given,
             ev.InputGiven: _pass_over,
             ev.TimeHalted: _pass_over,
+            ev.TimePassed: _pass_over,
             ev.LineGiven: self._line_given,
             ev.LineSaid: self.shell.add,
             ev.LineEnded: self.shell.add,

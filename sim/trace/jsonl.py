@@ -33,9 +33,11 @@ class JsonLines:
         self._fields = {kind: (kind.__struct_config__.tag, fields) for kind, fields in self._table().items()}
 
     def lines(self, events: Iterable[AnyEvent]) -> Iterator[bytes]:
-        """One line for each event, ended by a newline."""
+        """One line for each event but ``TimePassed``, ended by a newline."""
         encode, fields = self._encode, self._fields
         for event in events:
+            if event.__class__ is ev.TimePassed:
+                continue
             name, describe = fields[event.__class__]
             yield encode({"t": event.t / 1e9, "event": name, **describe(event)}) + b"\n"
 

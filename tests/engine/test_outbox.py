@@ -6,7 +6,7 @@ import pytest
 
 from sim.engine import outbox
 from sim.engine.outbox import Outbox
-from sim.trace.events import AnyEvent, EventsLost, Printed, RunEnded, decode
+from sim.trace.events import AnyEvent, EventsLost, Printed, RunEnded, TimePassed, decode
 
 
 def _lines(first: int, count: int) -> list[AnyEvent]:
@@ -43,6 +43,18 @@ def test_on_virtual_time_a_full_batch_is_sent_by_whoever_records(monkeypatch: py
     box.close(RunEnded(7, "done", failed=False))
     box.record(_lines(8, 1)[0])
     assert decode(far.recv_bytes()) == [*_lines(4, 2), RunEnded(7, "done", failed=False)]
+
+
+def test_a_heartbeat_tells_of_time_while_nothing_happens_and_is_the_last_of_nothing() -> None:
+    far, near = multiprocessing.Pipe()
+    box = Outbox(near, may_wait=False, before_batch=_nothing, heartbeat=lambda: [TimePassed(5)])
+    box.start()
+    assert [decode(far.recv_bytes()) for _ in range(3)] == [[TimePassed(5)]] * 3
+    box.record(Printed(6, "line", error=False))
+    box.close(RunEnded(7, "done", failed=False))
+    while not isinstance((batch := decode(far.recv_bytes()))[-1], RunEnded):
+        assert batch in ([TimePassed(5)], [Printed(6, "line", error=False)])
+    assert not far.poll(0.3)
 
 
 def test_a_reader_that_has_gone_away_is_no_error() -> None:

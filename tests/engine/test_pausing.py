@@ -36,6 +36,7 @@ from sim.trace.events import (
     RunEnded,
     Severity,
     TimeHalted,
+    TimePassed,
 )
 from tests.support.engine_runs import SECOND, program_setup, run_lesson, run_to_end
 from tests.support.steering import without_commands
@@ -189,6 +190,23 @@ def test_on_the_real_clock_pauses_and_speeds_lose_nothing_and_do_nothing_twice(t
     assert printed == ["heard True served 20"]
     times = Counter(event.text for event in run.events if isinstance(event, CommandGiven))
     assert times["pause"] == times["resume"] == 15
+
+
+def test_time_on_the_real_clock_is_told_while_nothing_happens_but_not_in_a_pause(tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    path.write_text("import time\ntime.sleep(60)")
+    with console(program_setup(path, 60.0, clock="real")) as run:
+        run.until(TimePassed, 5)
+        run.give(Pause())
+        run.until(CommandGiven)
+        told = len(run.events)
+        time.sleep(0.5)
+        run.give(Resume())
+        run.until(CommandGiven, 2)
+        assert len([each for each in run.events[told:] if isinstance(each, TimePassed)]) <= 1
+        run.until(TimePassed, 10)
+    times = [event.t for event in run.events if isinstance(event, TimePassed)]
+    assert times == sorted(set(times))
 
 
 def test_on_the_real_clock_a_pause_stops_timers_and_says_what_it_cannot_stop(tmp_path: Path) -> None:

@@ -1,5 +1,6 @@
 """Nodes that rage on: meanwhile the console answers keys, and meanwhile ``ctrl+r`` runs the file again."""
 
+import re
 from pathlib import Path
 from typing import NamedTuple
 
@@ -8,7 +9,10 @@ import pytest
 from cbtui import warden
 from cbtui.live_run import LiveRun, State
 from sim.trace.recording import read
+from tests.app.pictures import text_of
 from tests.faults.support import ANSWERED, FIRST, console_on, node_with, provoked, still_here
+from tests.support.engine_runs import SECOND
+from tests.trace.recording.files import timeline_of
 
 CROWD = 2500
 """Entities of which each would cost a little of every frame."""
@@ -90,6 +94,23 @@ async def test_a_loop_without_end_on_the_real_clock_is_told_on_screen_with_its_p
         await console.until(lambda live: bool(live.timeline.notices))
         (notice,) = console.screen.live_run.timeline.notices
         assert notice.text.startswith(f"tick has not come back for 3 s (node.py:{FIRST}, in fault)")
+
+
+@pytest.mark.parametrize("fault", ["while True: pass", "lock = threading.Lock()\nwith lock, lock: pass"])
+async def test_time_goes_on_on_screen_and_in_the_recording_while_a_callback_does_not_come_back(
+    folder: Path, fault: str
+) -> None:
+    async with console_on(node_with(folder, fault)) as console:
+        await console.until(lambda live: bool(live.timeline.notices))
+        console.app.simulate_key("R")
+        await console.until(lambda live: live.recorded is not None)
+        last = console.screen.live_run.timeline.notices[-1].t
+        await console.until(lambda live: live.timeline.end > last + SECOND)
+        assert any(float(runs) > 3.5 for runs in re.findall(r"runs (\d+\.\d) s", text_of(console.app)))
+        console.app.simulate_key("R")
+        await console.until(lambda live: live.recorded is None)
+    (path,) = folder.glob("*.mcap")
+    assert timeline_of(read(path).batches()).end > last + SECOND
 
 
 async def test_a_node_that_took_too_much_memory_can_be_run_again_with_the_key(

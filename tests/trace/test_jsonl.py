@@ -25,7 +25,11 @@ def objects(events: list[AnyEvent]) -> list[dict[str, Any]]:
 
 def test_the_guide_lists_every_event() -> None:
     tags = {kind.__struct_config__.tag for kind in get_args(AnyEvent)}
-    assert set(DOCUMENTED) - {"event"} == tags
+    assert set(DOCUMENTED) - {"event"} == tags - {"time"}
+
+
+def test_that_time_passes_is_no_line() -> None:
+    assert objects([ev.TimePassed(1)]) == []
 
 
 @pytest.mark.parametrize("line", objects(FULL), ids=lambda line: line["event"])

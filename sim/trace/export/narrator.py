@@ -96,6 +96,7 @@ class Narrator:
             ev.CommandGiven: self._command_given,
             ev.InputGiven: _leave_out,
             ev.TimeHalted: self._command_given,
+            ev.TimePassed: _leave_out,
             ev.LineGiven: self._command_given,
             ev.LineSaid: self._line_said,
             ev.LineEnded: _leave_out,

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from queue import SimpleQueue
 from typing import TypeAlias
 
-from sim.trace.events import AnyEvent, MessageSent, Notice, Severity
+from sim.trace.events import AnyEvent, MessageSent, Notice, Severity, TimePassed
 from sim.trace.recording.recorder import APPEARING, Recorder
 
 _ROOM = 64_000_000
@@ -63,7 +63,7 @@ class BackgroundRecorder:
             events = [_gap_notice(events[0].t, self._gap), *events]
             self._gap = 0
         if events:
-            self.count += len(events)
+            self.count += sum(not isinstance(event, TimePassed) for event in events)
             self._taken += _size(events)
             self._waiting.put(events)
 

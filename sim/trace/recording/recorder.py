@@ -22,6 +22,7 @@ from sim.trace.events import (
     ProcessAppeared,
     RunStarted,
     ThreadAppeared,
+    TimePassed,
     TopicAppeared,
     TopicId,
 )
@@ -63,8 +64,8 @@ class Recorder:
     """Records events, and messages with their topics, to a new ``.mcap`` file. Thread-safe.
 
     Rosbag2, rosbags and Foxglove read the topics, which have the metadata that rosbag2 gives them; events are
-    on a channel of their own. What a full disk or the like prevents does not end the run: ``failure`` then
-    says it, and nothing more is recorded.
+    on a channel of their own, and ``TimePassed`` is among these only as the end of all. What a full disk or
+    the like prevents does not end the run: ``failure`` then says it, and nothing more is recorded.
 
     Raises:
         FileExistsError: there is such a file, and ``replace`` is not wanted.
@@ -80,6 +81,8 @@ class Recorder:
         self._sent: dict[TopicId, int] = {}
         self._cast: list[AnyEvent] = []
         self._cast_told = 0
+        self._latest = 0
+        self._passed: TimePassed | None = None
         self._casts_left = _CASTS
         self._lock = threading.Lock()
         self._closing = threading.Event()
@@ -110,6 +113,7 @@ class Recorder:
         self._casts_left = 1
         self.flush()
         self._guarded(self._tell_cast)
+        self._guarded(self._tell_end)
         self._guarded(self._writer.finish)
         try:
             self._file.close()
@@ -151,6 +155,7 @@ class Recorder:
             self._add_events(events[:half])
             self._add_events(events[half:])
         else:
+            self._latest = max(self._latest, events[-1].t)
             self._batches += 1
             self._add(EVENTS_CHANNEL, self._epoch + events[0].t, packed, self._batches)
 
@@ -208,6 +213,15 @@ class Recorder:
             self._add(channel, time, event.data, number)
         return False
 
+    def _time_passed(self, event: TimePassed) -> bool:
+        self._passed = event
+        return False
+
+    def _tell_end(self) -> None:
+        """Write down how long a run went on of which nothing more was told."""
+        if self._passed is not None and self._passed.t > self._latest:
+            self._add_events([self._passed])
+
     def _attach(self, path: str, text: bytes) -> None:
         self._writer.add_attachment(0, self._epoch, path, "text/x-python", text)
 
@@ -229,6 +243,7 @@ _LOOKS: dict[type, Callable[[Recorder, Any], bool]] = {
     RunStarted: Recorder._run_started,
     EntityAppeared: Recorder._entity_appeared,
     CallbackFailed: Recorder._callback_failed,
+    TimePassed: Recorder._time_passed,
     TopicAppeared: Recorder._topic,
     MessageSent: Recorder._message,
 }

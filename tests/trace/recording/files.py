@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from sim.trace.events import AnyEvent, MessageSent, TopicAppeared
+from sim.trace.events import AnyEvent, MessageSent, TimePassed, TopicAppeared
 from sim.trace.recording import About, Recorder
 from sim.trace.timeline import Timeline
 from tests.support.runs import shared_group_run
@@ -51,7 +51,7 @@ def run_in_batches(size: int = 40) -> list[list[AnyEvent]]:
 
 def without_contents(events: Iterable[AnyEvent]) -> list[AnyEvent]:
     """The events that a timeline looks at."""
-    return [event for event in events if not isinstance(event, TopicAppeared | MessageSent)]
+    return [event for event in events if not isinstance(event, TopicAppeared | MessageSent | TimePassed)]
 
 
 def timeline_of(batches: Iterable[Sequence[AnyEvent]]) -> Timeline:

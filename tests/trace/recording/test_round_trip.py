@@ -12,7 +12,7 @@ from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
 from rosbags.interfaces import ConnectionExtRosbag2
 
-from sim.trace.events import AnyEvent, MessageSent, TopicAppeared
+from sim.trace.events import AnyEvent, MessageSent, Printed, TimePassed, TopicAppeared
 from sim.trace.model import Window
 from sim.trace.recording import About, Recorder, read
 from tests.trace.recording.files import (
@@ -65,6 +65,14 @@ def test_every_kind_of_event_comes_back(tmp_path: Path) -> None:
     recording = read(tmp_path / "run.mcap")
     assert [event for batch in recording.batches() for event in batch] == without_contents(FULL)
     assert [(topic.name, topic.count) for topic in recording.topics()] == [("/odom", 1)]
+
+
+def test_of_time_in_which_nothing_happened_only_the_end_is_kept(tmp_path: Path) -> None:
+    line = Printed(5, "line", error=False)
+    events: list[AnyEvent] = [TimePassed(3), line, TimePassed(7), TimePassed(9)]
+    for name, told, kept in (("goes-on", events, [line, TimePassed(9)]), ("ended", events[:2], [line])):
+        write(tmp_path / name, told)
+        assert [event for batch in read(tmp_path / name).batches() for event in batch] == kept
 
 
 def test_what_it_tells_of_itself_comes_back_with_the_sources(recorded: Path) -> None:
