@@ -15,6 +15,7 @@ from cbtui.config_keys import read_keys
 from cbtui.keymap import Keymap
 from cbtui.theme import Charset
 from lessons.personal import config_folder
+from sim import foreign_file, plain_toml
 
 AUTO = "auto"
 _TABLES = ("keys", "display")
@@ -48,7 +49,7 @@ def standard_path() -> Path:
 def read_file(path: Path) -> Reading:
     """Read a configuration file."""
     try:
-        text = path.read_text(encoding="utf-8")
+        text = foreign_file.read_text(path)
     except UnicodeDecodeError:
         return Reading(Config(), [f"{path} is not UTF-8 text"])
     except OSError as error:
@@ -59,11 +60,9 @@ def read_file(path: Path) -> Reading:
 def read_text(text: str, name: str) -> Reading:
     """Read a configuration; ``name`` is what its complaints call it."""
     try:
-        document = tomllib.loads(text)
+        document = plain_toml.load(text)
     except tomllib.TOMLDecodeError as error:
         return Reading(Config(), [f"{name}:{_fault(error, text)}"])
-    except RecursionError:
-        return Reading(Config(), [f"{name}: it is nested too deeply"])
     except ValueError as error:  # numbers that Python does not read
         return Reading(Config(), [f"{name}: {error}"])
     complaints: list[tuple[int, str]] = []
@@ -137,20 +136,17 @@ def _flat(table: Mapping[str, object], above: str = "") -> Iterator[tuple[str, o
 
 # lines, which tomllib does not tell
 
-_HEADING = re.compile(r"\s*\[+([^\]]+)\]")
-_ENTRY = re.compile(r"""\s*([\w."'\s()-]+?)\s*=""")
-
 
 def _lines_of(text: str) -> dict[str, int]:
     """The line of each heading and entry, by its dotted name."""
     lines: dict[str, int] = {}
     heading = ""
-    for number, line in enumerate(text.splitlines(), start=1):
-        if found := _HEADING.match(line):
-            heading = _plain(found[1])
+    for number, line in enumerate(map(str.strip, text.splitlines()), start=1):
+        if line.startswith("["):
+            heading = _plain(line.lstrip("[").partition("]")[0])
             lines.setdefault(heading, number)
-        elif found := _ENTRY.match(line):
-            lines.setdefault(".".join(filter(None, (heading, _plain(found[1])))), number)
+        elif "=" in line:
+            lines.setdefault(".".join(filter(None, (heading, _plain(line.partition("=")[0])))), number)
     return lines
 
 

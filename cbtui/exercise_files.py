@@ -5,6 +5,7 @@ from enum import Enum
 from pathlib import Path
 
 from lessons.lesson import Lesson
+from sim.foreign_file import read_bytes
 
 
 class Placed(Enum):
@@ -84,7 +85,7 @@ def _write_new(path: Path, content: bytes) -> None:
 
 def _there(path: Path, content: bytes) -> Placed:
     try:
-        same = path.read_bytes() == content
+        same = read_bytes(path) == content
     except OSError:
         same = False
     return Placed.THERE_ALREADY if same else Placed.CHANGED

@@ -6,6 +6,8 @@ from pathlib import Path
 
 from watchfiles import awatch
 
+from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
+
 CANNOT_WATCH = (OSError, RuntimeError)
 """What is raised where a folder cannot be watched."""
 
@@ -57,6 +59,6 @@ async def _settled(path: Path) -> bytes | None:
 def content_of(path: Path) -> bytes | None:
     """Return what a file holds; None where there is none that can be read."""
     try:
-        return path.read_bytes() if path.is_file() else None
+        return read_bytes(path, MOST_OF_A_PROGRAM)
     except OSError:
         return None

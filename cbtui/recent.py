@@ -10,6 +10,7 @@ from pathlib import Path
 import msgspec
 
 from lessons.personal import state_folder
+from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
 
 FILE_NAME = "recent.jsonl"
 FILES_KEPT = 20
@@ -106,7 +107,7 @@ class Recents:
     def _read(self) -> tuple[Opened, ...]:
         """Read the file again: another console may have written it."""
         try:
-            lines = self._whole_path().read_bytes().splitlines()
+            lines = read_bytes(self._whole_path(), MOST_OF_A_PROGRAM).splitlines()
         except FileNotFoundError:
             return self._entries or ()
         except OSError as error:

@@ -9,6 +9,7 @@ import msgspec
 from cbtui.record import setup_of
 from sim.engine.inputs import UnknownInputError, inputs_of, stops
 from sim.engine.setup import RunSetup
+from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
 from sim.trace.events import AnyEvent, RunEnded
 from sim.trace.recording import Recording, RecordingError, read
 
@@ -81,7 +82,7 @@ def _check_programs(recorded: RunSetup, recording: Recording) -> None:
     for program in recorded.programs:
         path = Path(program.path)
         try:
-            content = path.read_bytes()
+            content = read_bytes(path, MOST_OF_A_PROGRAM)
         except OSError:
             sentence = (
                 f"the recorded program {path} is not there any more; name the file that is to run instead"

@@ -14,6 +14,7 @@ from cbtui.record import setup_of
 from cbtui.subject import Subject
 from sim.engine.commands import Command
 from sim.engine.setup import RunSetup
+from sim.foreign_file import read_text
 from sim.trace.events import AnyEvent
 from sim.trace.model import Nanoseconds
 from sim.trace.recording import About, Recording, RecordingError, read
@@ -207,9 +208,7 @@ def _source_of(recording: Recording) -> tuple[Path, str]:
 def _program_text(path: Path) -> str:
     """A program that a recording names, if this machine has it; any file may be named, of any size."""
     try:
-        if path.suffix not in PROGRAMS or not path.is_file() or path.stat().st_size > _LONGEST_SOURCE:
-            return ""
-        return path.read_text(encoding="utf-8", errors="replace")
+        return read_text(path, _LONGEST_SOURCE, "replace") if path.suffix in PROGRAMS else ""
     except (OSError, ValueError):
         return ""
 

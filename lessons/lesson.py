@@ -1,7 +1,6 @@
 """A lesson: the typed description that a `lesson.toml` gives, and the files beside it."""
 
 import re
-import tomllib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -10,6 +9,7 @@ import msgspec
 from msgspec import structs
 
 from lessons.description import Description, Setting, Try, number_after, with_argument
+from sim import foreign_file, plain_toml
 
 __all__ = ["BadLesson", "Lesson", "Setting", "Try", "number_after", "read_lesson", "with_argument"]
 
@@ -36,13 +36,13 @@ class Lesson(Description, frozen=True, kw_only=True, forbid_unknown_fields=True)
     @property
     def guide(self) -> str:
         """The Markdown text that goes with the lesson."""
-        return (self.folder / GUIDE_FILE).read_text(encoding="utf-8")
+        return foreign_file.read_text(self.folder / GUIDE_FILE)
 
     @property
     def explanation(self) -> str:
         """The Markdown text that is for after the run; empty where there is none."""
         path = self.folder / EXPLANATION_FILE
-        return path.read_text(encoding="utf-8") if path.is_file() else ""
+        return foreign_file.read_text(path) if path.is_file() else ""
 
     @property
     def checks_path(self) -> Path:
@@ -110,12 +110,9 @@ def _files_of(description: Description) -> Iterator[tuple[str | None, str]]:
 
 def _table(path: Path) -> dict[str, Any]:
     try:
-        with path.open("rb") as file:
-            return tomllib.load(file)
+        return plain_toml.load(foreign_file.read_text(path))
     except OSError as error:
         raise BadLesson(f"{path}: cannot be read: {error.strerror}") from error
-    except RecursionError as error:
-        raise BadLesson(f"{path}: is not valid TOML: it is nested too deeply") from error
     except ValueError as error:  # of the parser itself, and of what it makes numbers and texts with
         raise BadLesson(f"{path}: is not valid TOML: {error}") from error
 

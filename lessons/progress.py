@@ -12,6 +12,7 @@ import msgspec
 from msgspec import Struct, structs
 
 from lessons.personal import state_folder
+from sim.foreign_file import read_bytes
 
 FILE_NAME = "progress.jsonl"
 _PATIENCE = 1.0
@@ -49,7 +50,7 @@ def faulty_line(path: Path) -> int | None:
     Raises:
         OSError: the file cannot be read.
     """
-    lines = enumerate(path.read_bytes().splitlines(), start=1)
+    lines = enumerate(read_bytes(path).splitlines(), start=1)
     return next((number for number, line in lines if _entry_in(line) is None), None)
 
 
@@ -129,7 +130,7 @@ class Progress:
 
     def _read(self) -> None:
         try:
-            lines = self._whole_path().read_bytes().splitlines()
+            lines = read_bytes(self._whole_path()).splitlines()
         except FileNotFoundError:
             return
         except OSError as error:

@@ -3,6 +3,8 @@
 import importlib.util
 from pathlib import Path
 
+from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
+
 
 class NothingToRunError(Exception):
     """A file that cannot be run as a program, whatever it does; the text says why and what to do."""
@@ -15,7 +17,7 @@ def read_source(path: Path) -> str:
         NothingToRunError: it cannot be read or is no text.
     """
     try:
-        data = path.read_bytes()
+        data = read_bytes(path, MOST_OF_A_PROGRAM)
     except OSError as error:
         raise NothingToRunError(f"{path.name} cannot be read: {error.strerror}") from None
     if b"\0" in data:

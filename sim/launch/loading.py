@@ -6,6 +6,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import TYPE_CHECKING
 
+from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
 from sim.launch.errors import LaunchError, explained
 
 if TYPE_CHECKING:
@@ -47,7 +48,7 @@ def load_description(path: Path) -> LaunchDescription:
 
 def _run(file: Path) -> ModuleType:
     try:
-        source = file.read_bytes()
+        source = read_bytes(file, MOST_OF_A_PROGRAM)
     except OSError as error:
         raise LaunchError(f"{file}: {error.strerror}") from None
     module = ModuleType("launch_file")

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path, PurePosixPath
 
+from sim.foreign_file import read_text
 from sim.packages.errors import PackageError
 from sim.packages.setup_file import Installed
 
@@ -27,9 +28,11 @@ def read_cmake(root: Path) -> Installed:
     """
     installed = Installed()
     try:
-        text = (root / CMAKE_FILE).read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError):
+        text = read_text(root / CMAKE_FILE)
+    except UnicodeDecodeError:
         raise PackageError(f"{root / CMAKE_FILE}: it cannot be read as UTF-8 text") from None
+    except OSError as error:
+        raise PackageError(f"{root / CMAKE_FILE}: {error.strerror}") from None
     variables: dict[str, str] = {"CMAKE_CURRENT_SOURCE_DIR": str(root)}
     for command in _COMMAND.finditer(_COMMENT.sub("", text)):
         words = [_filled(word.strip('"'), variables) for word in _WORD.findall(command["words"])]

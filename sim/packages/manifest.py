@@ -6,13 +6,12 @@ import re
 from pathlib import Path
 from xml.etree import ElementTree
 
+from sim.foreign_file import read_bytes
 from sim.packages.errors import PackageError
 
 MANIFEST = "package.xml"
 _NAME = re.compile(r"\w[\w-]*", re.ASCII)
 """Folders are called like that, so there is no path in it."""
-_LARGEST = 1_000_000
-"""Bytes; a real manifest has a few thousand."""
 
 
 def read_name(folder: Path) -> str:
@@ -23,9 +22,7 @@ def read_name(folder: Path) -> str:
     """
     path = folder / MANIFEST
     try:
-        if path.stat().st_size > _LARGEST:
-            raise PackageError(f"{path}: a package manifest of over {_LARGEST} bytes is not read")
-        root = ElementTree.fromstring(path.read_bytes(), parser=_parser(path))
+        root = ElementTree.fromstring(read_bytes(path), parser=_parser(path))
     except ElementTree.ParseError as error:
         line, _ = error.position
         raise PackageError(f"{path}:{line}: this is not XML: {str(error).split(':', 1)[0]}") from None

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path, PurePosixPath
 
+from sim.foreign_file import read_text
 from sim.packages.cmake_file import CMAKE_FILE, read_cmake
 from sim.packages.errors import PackageError, UnknownExecutableError, listing
 from sim.packages.manifest import MANIFEST
@@ -53,7 +54,7 @@ class Package:
     @property
     def manifest(self) -> str:
         """The text of its ``package.xml``."""
-        return (self.root / MANIFEST).read_text(encoding="utf-8", errors="replace")
+        return read_text(self.root / MANIFEST, errors="replace")
 
     @property
     def module_folder(self) -> Path:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePosixPath
 from typing import Any
 
+from sim.foreign_file import read_bytes, read_text
 from sim.packages.errors import PackageError
 from sim.packages.expressions import Expressions
 
@@ -56,9 +57,11 @@ def read_setup(root: Path) -> Installed:
 
 def _read_py(path: Path, installed: Installed) -> None:
     try:
-        tree = ast.parse(path.read_bytes())
+        tree = ast.parse(read_bytes(path))
     except SyntaxError as error:
         raise PackageError(f"{path}:{error.lineno}: {error.msg}") from None
+    except OSError as error:
+        raise PackageError(f"{path}: {error.strerror}") from None
     except (ValueError, RecursionError, MemoryError):  # of the parser's own: its stack has an end
         raise PackageError(f"{path}: it is no Python that can be read") from None
     names = Expressions(path)
@@ -167,9 +170,11 @@ def _take_entry_point(text: str, origin: str, installed: Installed) -> None:
 
 def _read_cfg(path: Path, installed: Installed) -> None:
     try:
-        sections = _sections(path.read_text(encoding="utf-8"), str(path))
-    except (OSError, UnicodeDecodeError):
+        sections = _sections(read_text(path), str(path))
+    except UnicodeDecodeError:
         raise PackageError(f"{path}: it cannot be read as UTF-8 text") from None
+    except OSError as error:
+        raise PackageError(f"{path}: {error.strerror}") from None
     scripts = sections.get("options.entry_points", {}).get("console_scripts", "")
     for text in scripts.splitlines():
         if text.strip():

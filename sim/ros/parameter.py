@@ -8,6 +8,7 @@ from enum import IntEnum
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
+from sim import foreign_file
 from sim.ros import parameter_yaml, rcl_interfaces
 from sim.ros.parameter_yaml import ParameterYamlError, PlainValue
 
@@ -218,7 +219,7 @@ def parameter_dict_from_yaml_file(
         OSError: the file cannot be read.
         ParameterYamlError: it is no parameter file.
     """
-    by_node = parameter_yaml.read_nodes(Path(parameter_file).read_text(encoding="utf-8"))
+    by_node = parameter_yaml.read_nodes(foreign_file.read_text(Path(parameter_file)))
     chosen = ["/**"] if use_wildcard and "/**" in by_node else []
     for node in target_nodes or ():
         if node not in by_node:

@@ -11,7 +11,7 @@ import re
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from sim import plain_yaml
+from sim import foreign_file, plain_yaml
 from sim.plain_yaml import YamlError
 
 PlainValue: TypeAlias = "bool | int | float | str | list[bool] | list[int] | list[float] | list[str] | None"
@@ -56,7 +56,7 @@ def read_file(path: str) -> NodeParameters:
         ParameterYamlError: the file cannot be read, or is no parameter file.
     """
     try:
-        text = Path(path).read_text(encoding="utf-8")
+        text = foreign_file.read_text(Path(path))
     except OSError as error:
         raise ParameterYamlError(f"Error opening YAML file: {error.strerror}") from None
     except ValueError as error:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from argparse import Namespace
 from xml.etree import ElementTree
 
+from sim.foreign_file import read_text
 from sim.shell.parser import Parser
 from sim.shell.programs import known_packages, package
 from sim.shell.session import Failed, Session
@@ -68,7 +69,7 @@ def _add_xml(parser: Parser) -> None:
 
 def _xml(session: Session, arguments: Namespace) -> None:
     path = package(session, arguments.package_name).root / _MANIFEST
-    manifest = path.read_text(encoding="utf-8")
+    manifest = read_text(path)
     if arguments.tag is None:
         session.say(manifest.rstrip("\n"))
         return

@@ -182,7 +182,7 @@ def recording(tmp_path: Path, marks: Marks) -> Path:
         path, About(title="../../x", programs=("../elsewhere/x.py", str(theirs)), setup=setup)
     )
     for name in (str(theirs), "../../x", "/../x"):
-        recorder._sources._attach(name, marks.trap.encode())
+        recorder._attach(name, marks.trap.encode())
     recorder.take(shared_group_run().events)
     recorder.close()
     return path

@@ -8,6 +8,7 @@ from cbtui.named_keys import with_keys_in_force
 from cbtui.screens.lesson.teaching import TeachingScreen
 from cbtui.widgets.guide import Guide
 from lessons.description import Exercise
+from sim.foreign_file import MOST_OF_A_PROGRAM, read_text
 
 _READING = 15.0
 """Seconds that a hint stays which is told over another pane than the guide."""
@@ -80,6 +81,6 @@ class HelpingScreen(TeachingScreen):
 def _text_in(path: Path) -> str:
     """The text of a file; of one that is gone or no text, as much as there is."""
     try:
-        return path.read_text(encoding="utf-8", errors="replace")
+        return read_text(path, MOST_OF_A_PROGRAM, "replace")
     except OSError:
         return ""

@@ -10,6 +10,7 @@ from rich.cells import cell_len
 
 import sim
 from cbtui.widgets.code.highlight import Word, highlight
+from sim.foreign_file import MOST_OF_A_PROGRAM, read_text
 
 _NOT_THE_LEARNERS = tuple(
     {
@@ -107,6 +108,6 @@ def _source_file(path: Path, text: str, *, recorded: bool = False) -> SourceFile
 
 def _read(path: Path) -> str | None:
     try:
-        return path.read_text(encoding="utf-8", errors="replace") if path.is_file() else None
+        return read_text(path, MOST_OF_A_PROGRAM, "replace")
     except OSError:
         return None

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, ClassVar
 
+from sim.foreign_file import MOST_OF_A_PROGRAM, read_text
 from sim.launch.launch.conditions import evaluate_condition_expression
 from sim.launch.launch.launch_context import LaunchContext
 from sim.launch.launch.substitution import (
@@ -180,7 +181,7 @@ class FileContent(Substitution):
     def perform(self, context: LaunchContext) -> str:
         path = Path(performed(context, self._path))
         try:
-            return path.read_text(encoding="utf-8")
+            return read_text(path, MOST_OF_A_PROGRAM)
         except OSError as error:
             raise SubstitutionFailure(f"{path}: {error.strerror}") from None
 

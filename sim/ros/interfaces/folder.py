@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
+from sim.foreign_file import read_bytes, read_text
 from sim.ros.interfaces.interface_definition import Definition, DefinitionError, Kind
 from sim.ros.interfaces.notation import parse, require_interface_name, require_package_name
 
@@ -92,7 +93,7 @@ class DefinitionFolder:
         require_package_name(package, str(path))
         require_interface_name(name, str(path))
         try:
-            content = path.read_bytes()
+            content = read_bytes(path)
         except OSError as error:
             raise DefinitionError(f"{path}: cannot be read: {error.strerror}") from None
         try:
@@ -135,7 +136,7 @@ def _definition_files(package_folder: Path) -> Iterator[tuple[Kind, Path]]:
 
 def _package_name(folder: Path) -> str:
     try:
-        manifest = (folder / "package.xml").read_text(encoding="utf-8", errors="replace")
+        manifest = read_text(folder / "package.xml", errors="replace")
     except OSError:
         return folder.resolve().name
     found = _MANIFEST_NAME.search(manifest)

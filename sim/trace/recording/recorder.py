@@ -89,8 +89,9 @@ class Recorder:
         self._chunked = 0
         self._waiting = 0
         self._file = GrowingFile(path.open("wb" if replace else "xb", buffering=0))
-        # The library has no types.
-        self._writer: Any = Writer(self._file, chunk_size=sys.maxsize, compression=CompressionType.LZ4)
+        # Of a stream, the library wants these few methods only.
+        stream: Any = self._file
+        self._writer: Any = Writer(stream, chunk_size=sys.maxsize, compression=CompressionType.LZ4)
         self._sources = Sources()
         self._flusher = threading.Thread(target=self._flush_for_ever, name="recorder", daemon=True)
         self._guarded(lambda: self._begin(about))

@@ -1,8 +1,9 @@
 """The source files of a run's programs, taken along in its recording to explain it elsewhere."""
 
-import stat
 from collections.abc import Callable
 from pathlib import Path
+
+from sim.foreign_file import read_bytes
 
 _LONGEST = 500_000
 """Bytes of a file; longer ones stay behind."""
@@ -36,11 +37,8 @@ class Sources:
 
 def _text_of(path: Path, longest: int) -> bytes | None:
     try:
-        about = path.stat()
-        if not stat.S_ISREG(about.st_mode) or about.st_size > longest:
-            return None
-        text = path.read_bytes()
+        text = read_bytes(path, longest)
         text.decode()
     except (OSError, ValueError):
         return None
-    return text if len(text) <= longest else None
+    return text

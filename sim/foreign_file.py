@@ -1,0 +1,39 @@
+"""Reads files that anybody may have written: regular files only, and none that is larger than a limit."""
+
+import errno
+import os
+import stat
+from io import BytesIO, TextIOWrapper
+from pathlib import Path
+
+MOST = 1_000_000
+"""Bytes of a description, a manifest or a parameter file; usual ones have a few thousand."""
+MOST_OF_A_PROGRAM = 10_000_000
+"""Bytes of a program's source, or of data that a program reads as one text."""
+
+
+def read_bytes(path: Path, most: int = MOST) -> bytes:
+    """What a file holds. Never waits for a pipe's other end, and never reads more than ``most`` bytes.
+
+    Raises:
+        OSError: it cannot be read, is no regular file (the null device counts as an empty one), or is too
+            large; ``strerror`` says which.
+    """
+    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
+    with os.fdopen(os.open(path, flags), "rb") as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode) and str(path) != os.devnull:
+            raise OSError(errno.EINVAL, "it is a pipe or a device; give a file", str(path))
+        data = file.read(most + 1)
+    if len(data) > most:
+        raise OSError(errno.EFBIG, f"it has more than {most:,} bytes, the most that are read", str(path))
+    return data
+
+
+def read_text(path: Path, most: int = MOST, errors: str = "strict") -> str:
+    """The text of a file in UTF-8, with ``\\n`` at the end of each line.
+
+    Raises:
+        OSError: as ``read_bytes``.
+        UnicodeDecodeError: it is not UTF-8.
+    """
+    return TextIOWrapper(BytesIO(read_bytes(path, most)), encoding="utf-8", errors=errors).read()

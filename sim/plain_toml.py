@@ -1,0 +1,43 @@
+"""Reads TOML that anybody may have written, in time and memory that grow with the text only."""
+
+import re
+import tomllib
+from typing import Any
+
+_DEEPEST = 32
+"""Parts of a key, and tables and lists inside each other."""
+_PART = r"""(?:[\w-]++|"[^"\n]*+"|'[^'\n]*+')[ \t]*+"""
+_LONG_KEY = re.compile(rf"(?<![\w-]){_PART}(?:\.[ \t]*+{_PART}){{{_DEEPEST}}}")
+"""For each part of a key, ``tomllib`` keeps all parts before: 100 kB of them would take 10 GB."""
+
+
+def load(text: str) -> dict[str, Any]:
+    """The table that a text stands for.
+
+    Raises:
+        tomllib.TOMLDecodeError: it is no TOML, or nested too deeply.
+        ValueError: it holds a number that Python does not read.
+    """
+    if found := _LONG_KEY.search(text):
+        line = text.count("\n", 0, found.start()) + 1
+        raise tomllib.TOMLDecodeError(f"A key has more than {_DEEPEST} parts (at line {line}, column 1)")
+    try:
+        document = tomllib.loads(text)
+    except RecursionError:
+        document = None
+    if document is None or _is_deep(document):
+        raise tomllib.TOMLDecodeError("It is nested too deeply")
+    return document
+
+
+def _is_deep(document: dict[str, Any]) -> bool:
+    layer: list[Any] = [document]
+    for _ in range(_DEEPEST):
+        layer = [inner for outer in layer for inner in _inside(outer)]
+    return bool(layer)
+
+
+def _inside(outer: Any) -> list[Any]:
+    if isinstance(outer, dict):
+        return list(outer.values())
+    return outer if isinstance(outer, list) else []
