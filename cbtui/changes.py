@@ -29,6 +29,7 @@ class Changes:
 
     ``groups`` are some of ``WISHES``, ``periods`` nanoseconds, ``settings`` numbers by the argument of the
     program that carries them, ``sensor_rate`` is in Hz, ``seed`` chooses the order of threads.
+    ``whole_tracebacks`` changes what is printed of exceptions, and is no change of the program.
     """
 
     threads: int | None = None
@@ -37,6 +38,7 @@ class Changes:
     settings: Mapping[str, float] = field(default_factory=dict)
     sensor_rate: float | None = None
     seed: int | None = None
+    whole_tracebacks: bool = field(default=False, compare=False)
 
     def with_group(self, place: Place, wish: str | None) -> Changes:
         """The same with another group for a callback."""
@@ -78,6 +80,7 @@ class Changes:
             programs=tuple(self._with_settings(program) for program in setup.programs),
             sensor_rate=setup.sensor_rate if self.sensor_rate is None else self.sensor_rate,
             seed=setup.seed if self.seed is None else self.seed,
+            whole_tracebacks=self.whole_tracebacks,
             groups=(
                 *setup.groups,
                 *(GroupChange(*place, wish) for place, wish in self.groups.items()),

@@ -45,6 +45,15 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_traceback(parser: argparse.ArgumentParser) -> None:
+    """Give a command that shows what a program prints the option on its tracebacks."""
+    parser.add_argument(
+        "--traceback",
+        action="store_true",
+        help="print tracebacks whole: with the frames of cbtui's model of rclpy",
+    )
+
+
 def changes_of(options: argparse.Namespace) -> "Changes":
     """What the options change."""
     from cbtui.changes import Changes
@@ -55,8 +64,8 @@ def changes_of(options: argparse.Namespace) -> "Changes":
 
 
 def seeded_changes_of(options: argparse.Namespace) -> "Changes":
-    """What the options change, and the order of threads that ``--seed`` chooses."""
-    return replace(changes_of(options), seed=options.seed)
+    """What the options change, the order of threads that ``--seed`` chooses, and ``--traceback``."""
+    return replace(changes_of(options), seed=options.seed, whole_tracebacks=options.traceback)
 
 
 def words(changes: "Changes") -> list[str]:

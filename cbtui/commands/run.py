@@ -29,6 +29,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     changes.add_options(parser)
     add_seed(parser)
+    changes.add_traceback(parser)
     inputs.add_options(parser)
     parser.add_argument(
         "--call-data", choices=("true", "false"), default="true", help="what the calls send (%(default)s)"

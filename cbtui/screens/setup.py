@@ -83,7 +83,7 @@ class SetupScreen(SizedModal[Changes]):
 
     def action_undo_all(self) -> None:
         """Have everything as the program says."""
-        self._changes = Changes()
+        self._changes = Changes(whole_tracebacks=self._changes.whole_tracebacks)
         self._show()
 
     def action_run(self) -> None:

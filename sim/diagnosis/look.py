@@ -115,6 +115,11 @@ class Look:
         """The stretches that lasted into the window in which threads stood still in a call."""
         return tuple(self._blocked_in(self.window))
 
+    @cached_property
+    def nested_spinners(self) -> frozenset[EntityId]:
+        """The callbacks that spun what was being spun, and may hang in that; rules on waits skip them."""
+        return frozenset(each.entity for each in self.timeline.spin_clashes if each.entity)
+
     def stood_in_call(self, entity: EntityId, start: Nanoseconds, end: Nanoseconds) -> bool:
         """Whether a callback stood still in a call between two times."""
         return any(each.entity == entity for each in self._blocked_in(Window(start, end)))
@@ -136,18 +141,14 @@ class Look:
 
 
 def pool_of(thread: ThreadId, timeline: Timeline) -> tuple[ThreadId, ...]:
-    """The worker threads of the same executor; a thread that is no worker is alone.
-
-    Source: Python names the threads of its pools ``ThreadPoolExecutor-<pool>_<worker>``.
-    """
-    known = timeline.threads.get(thread)
-    if known is None or not is_worker(thread, timeline):
+    """The worker threads of the same executor; a thread that is no worker is alone."""
+    if not is_worker(thread, timeline):
         return (thread,)
-    pool = known.name.rpartition("_")[0]
-    return tuple(each.id for each in timeline.threads.values() if each.name.rpartition("_")[0] == pool)
+    executor = timeline.threads[thread].executor
+    return tuple(each.id for each in timeline.threads.values() if each.executor == executor)
 
 
 def is_worker(thread: ThreadId, timeline: Timeline) -> bool:
     """Whether a thread is one of the workers of a MultiThreadedExecutor."""
     known = timeline.threads.get(thread)
-    return known is not None and "ThreadPoolExecutor-" in known.name
+    return known is not None and known.executor != 0

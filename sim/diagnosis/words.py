@@ -3,6 +3,7 @@
 from collections.abc import Iterable
 
 from sim.trace.events import EntityId, EntityKind
+from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 from sim.trace.words import name_of
 
@@ -38,6 +39,19 @@ def thread_count(timeline: Timeline) -> int:
     return sum(executor.threads for executor in timeline.executors.values())
 
 
-def one_thread_more(timeline: Timeline) -> str:
-    """The executor with a thread more than there is, as code would make it."""
-    return f"MultiThreadedExecutor(num_threads={thread_count(timeline) + 1})"
+def threads_for(entities: Iterable[EntityId], at: Nanoseconds, timeline: Timeline) -> int:
+    """How many callbacks the executor can run at once that ran the first of some entities last by ``at``.
+
+    An executor without workers of its own runs all on the one thread that spins it; so does an unknown one.
+    """
+    for entity in entities:
+        for span in timeline.spans_of(entity, Window(0, at + 1))[-1:]:
+            thread = timeline.threads.get(span.thread)
+            executor = None if thread is None else timeline.executors.get(thread.executor)
+            return 1 if executor is None else executor.threads
+    return 1
+
+
+def with_threads(threads: int) -> str:
+    """The executor with so many threads, as code would make it."""
+    return f"MultiThreadedExecutor(num_threads={threads})"

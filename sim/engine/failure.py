@@ -38,16 +38,6 @@ def place_of(error: BaseException, path: str, folder: str) -> str:
     return "" if found is None else f" ({_place(found[0].f_code.co_filename, found[1])})"
 
 
-def print_traceback(error: BaseException, path: str) -> None:
-    """Print the traceback as Python would, from the learner's first frame on."""
-    trace = error.__traceback__
-    while trace is not None and trace.tb_frame.f_code.co_filename != path:
-        trace = trace.tb_next
-    if trace is None and not isinstance(error, SyntaxError):
-        trace = error.__traceback__
-    traceback.print_exception(type(error), error, trace)
-
-
 def _text(error: BaseException) -> str:
     """An exception's text, the names of modules as the learner knows them."""
     text = error_text(error)

@@ -41,6 +41,7 @@ from sim.engine.sourced import use_workspace
 from sim.engine.standstill import Standstill
 from sim.engine.starting import Starter, StartError, is_launch_file
 from sim.engine.time_control import RealControl, VirtualControl
+from sim.engine.tracebacks import leave_out_own_frames
 from sim.engine.tuned import tuning_of
 from sim.engine.unheard import tell_of_unheard
 from sim.engine.watchdog import Watchdog
@@ -111,6 +112,8 @@ class Engine:
         threading.Thread(target=self._leave_after_grace, name="grace", daemon=True).start()
         self._redirect_output()
         keep_last_words(self._last_words, self._outbox.flush)
+        if not self._setup.whole_tracebacks:
+            leave_out_own_frames()
         for program in self._setup.programs[:1]:
             tell_of_unheard(self._tell_of_error, program.path, str(Path(program.path).parent))
         install(self._host)

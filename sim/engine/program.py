@@ -5,6 +5,7 @@ import importlib.util
 import inspect
 import sys
 import threading
+import traceback
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,7 +15,7 @@ from typing import Any
 
 from sim.clock import Stopped
 from sim.engine.advice import misplaced, silence
-from sim.engine.failure import failure, place_of, print_traceback
+from sim.engine.failure import failure, place_of
 from sim.engine.output import ProcessStream
 from sim.engine.source import NothingToRunError, read_source
 from sim.ros.process import current_process
@@ -76,7 +77,7 @@ def _outcome_of(program: Program) -> Outcome:
     except (KeyboardInterrupt, Stopped):
         return Outcome("it was stopped", failed=False, status=_INTERRUPTED)
     except BaseException as error:  # noqa: BLE001 -- whatever a learner's program raises ends its run, not the engine
-        print_traceback(error, program.path)
+        traceback.print_exception(error)
         return Outcome(failure(error, program.path, program.folder), failed=True, status=1)
     return Outcome(silence() or _returned(), failed=status != 0, status=status)
 

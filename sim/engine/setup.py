@@ -87,7 +87,7 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     two changes of one callback counts. ``sensor_rate`` (Hz) is that of the robot's odometry and scans, None
     leaves the usual one. With ``contents`` the trace has what published messages hold. ``seed`` chooses,
     on the virtual clock, among the orders in which a machine could run threads; None and 0 are first come,
-    first served.
+    first served. Tracebacks are without the frames of the model, unless they are to be ``whole_tracebacks``.
     """
 
     title: str
@@ -107,3 +107,4 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     periods: tuple[PeriodChange, ...] = ()
     contents: bool = False
     seed: int | None = None
+    whole_tracebacks: bool = False

@@ -2,6 +2,7 @@
 
 import sys
 import threading
+import traceback
 from collections.abc import Callable
 from typing import Any
 
@@ -13,12 +14,11 @@ Tell = Callable[[str], None]
 
 
 def tell_of_unheard(tell: Tell, path: str, folder: str) -> None:
-    """Have ``tell`` called with a sentence for each line they come from; they are printed as before.
+    """Have ``tell`` called with a sentence for each line they come from, and their tracebacks printed.
 
     ``path`` is the program's file; files in ``folder`` count as the learner's own too. What came up in none
     of these is only printed.
     """
-    print_thread, print_other = threading.excepthook, sys.unraisablehook
     told: set[str] = set()
 
     def say(error: BaseException, what_follows: str) -> None:
@@ -30,18 +30,22 @@ def tell_of_unheard(tell: Tell, path: str, folder: str) -> None:
 
     def of_thread(failed: threading.ExceptHookArgs) -> None:
         error = failed.exc_value
-        if not isinstance(error, Stopped | SystemExit | KeyboardInterrupt | None):
-            name = "a thread" if failed.thread is None else failed.thread.name
+        if isinstance(error, Stopped | SystemExit | None):
+            return
+        name = "a thread" if failed.thread is None else failed.thread.name
+        if not isinstance(error, KeyboardInterrupt):
             say(error, f"{name} ended by it, and the rest goes on")
-        if not isinstance(error, Stopped):
-            print_thread(failed)
+        sys.stderr.write(f"Exception in thread {name}:\n")
+        traceback.print_exception(error)
 
     def of_other(failed: Any) -> None:
         error = failed.exc_value
-        if error is not None:
-            where = getattr(failed.object, "__qualname__", None) or type(failed.object).__name__
-            say(error, f"Python drops what comes out of {where}")
-        print_other(failed)
+        if error is None:
+            return
+        where = getattr(failed.object, "__qualname__", None) or type(failed.object).__name__
+        say(error, f"Python drops what comes out of {where}")
+        sys.stderr.write(f"{failed.err_msg or 'Exception ignored in'}: {where}\n")
+        traceback.print_exception(error)
 
     threading.excepthook = of_thread
     sys.unraisablehook = of_other

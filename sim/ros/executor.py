@@ -72,7 +72,7 @@ class Executor(RunsWork):
         self._at_work = 0
         self._idle_signals: list[Any] = []
         self._context._wake_at_end(self.wake)
-        self._probe.executor_made(type(self).__name__, self.threads)
+        self.trace_id = self._probe.executor_made(type(self).__name__, self.threads)
 
     # Public
 
@@ -87,6 +87,9 @@ class Executor(RunsWork):
             if node in self._nodes:
                 return False
             self._nodes.append(node)
+            former = node._agenda.executor
+            if former is not None and former is not self and former._spinning:
+                self._probe.spin_clashed(node.trace_id)
             node.executor = self
             node._agenda.executor = self
             self._waitables_changed()
@@ -192,6 +195,7 @@ class Executor(RunsWork):
     def _enter_spin(self) -> Generator[None, None, None]:
         with self._lock:
             if self._spinning:
+                self._probe.spin_clashed()
                 raise RuntimeError("Executor is already spinning")
             self._spinning = True
             self._context.process.spins += 1

@@ -15,10 +15,20 @@ def outwards(frame: FrameType | None) -> Iterator[FrameType]:
         frame = frame.f_back
 
 
+def module_root(frame: FrameType) -> str:
+    """The first part of the name of a frame's module."""
+    return str(frame.f_globals.get("__name__", "")).partition(".")[0]
+
+
 def is_own(frame: FrameType) -> bool:
     """Whether a frame runs neither the model's code nor Python's."""
-    root = str(frame.f_globals.get("__name__", "")).partition(".")[0]
+    root = module_root(frame)
     return root != "sim" and (root == "__main__" or root not in sys.stdlib_module_names)
+
+
+def is_library(frame: FrameType) -> bool:
+    """Whether a frame runs the code of an installed package."""
+    return "site-packages" in Path(frame.f_code.co_filename).parts
 
 
 def place_of(frame: FrameType | None) -> str:
@@ -27,6 +37,20 @@ def place_of(frame: FrameType | None) -> str:
     return (
         "" if own is None else f"{Path(own.f_code.co_filename).name}:{own.f_lineno}, in {own.f_code.co_name}"
     )
+
+
+def call_into_ros() -> tuple[str, str, int]:
+    """Which function of rclpy's the learner's code called on this thread, and the file and line of the call.
+
+    "" and 0 for a call from nowhere in the learner's code, as a thread that only spins makes.
+    """
+    function = ""
+    for frame in outwards(sys._getframe(1)):
+        if is_own(frame):
+            return function, frame.f_code.co_filename, frame.f_lineno
+        if str(frame.f_globals.get("__name__")).startswith("sim.ros"):
+            function = frame.f_code.co_name
+    return function, "", 0
 
 
 def place_of_caller() -> str:

@@ -12,7 +12,7 @@ from itertools import count
 from typing import TYPE_CHECKING, Any
 
 from sim.error_text import error_text
-from sim.ros.own_code import is_own, place_of_caller
+from sim.ros.own_code import call_into_ros, is_own, place_of_caller
 from sim.trace import events
 from sim.trace.events import AnyEvent, CallbackEnded, CallbackStarted, GroupKind, Reason, Severity
 
@@ -29,6 +29,7 @@ class _Here(threading.local):
 
     thread = 0
     entity = 0
+    executor = 0
 
 
 class Probe:
@@ -62,9 +63,15 @@ class Probe:
         """A new id for a service call."""
         return next(self._calls)
 
-    def executor_made(self, kind: str, threads: int) -> None:
-        """An executor was made."""
-        self._sink(events.ExecutorAppeared(self._now(), next(self._executors), kind, threads))
+    def executor_made(self, kind: str, threads: int) -> int:
+        """An executor was made; returns its id."""
+        executor = next(self._executors)
+        self._sink(events.ExecutorAppeared(self._now(), executor, kind, threads))
+        return executor
+
+    def works_for(self, executor: int) -> None:
+        """The calling thread is a worker of an executor."""
+        self._here.executor = executor
 
     def node_made(self, name: str) -> int:
         """A node was made; returns its id."""
@@ -176,6 +183,10 @@ class Probe:
         )
         self._sink(events.Notice(self._now(), Severity.WARN, text))
 
+    def spin_clashed(self, node: int = 0) -> None:
+        """The calling thread asked to spin what is being spun; ``node`` was taken from who spins it."""
+        self._sink(events.SpinClashed(self._now(), self._here.entity, node, *call_into_ros()))
+
     def callback_suspended(self, entity: "Entity", outer: int) -> None:
         """A coroutine callback awaits something and leaves the calling thread."""
         self._here.entity = outer
@@ -247,7 +258,7 @@ class Probe:
             thread = threading.current_thread()
             process = getattr(thread, "ros_process", None)
             number = 0 if process is None else process.number
-            self._sink(events.ThreadAppeared(self._now(), here.thread, thread.name, number))
+            self._sink(events.ThreadAppeared(self._now(), here.thread, thread.name, number, here.executor))
         return here.thread
 
 

@@ -121,6 +121,7 @@ class WorkerPool:
 
     def _work(self, worker: Worker) -> None:
         worker.thread = threading.current_thread()
+        self._executor._probe.works_for(self._executor.trace_id)
         try:
             while (started := self._next(worker)) is not None:
                 self._run(started)

@@ -54,7 +54,7 @@ class Cast:
         """Take in a thread; among several programs its name begins with its program's label."""
         label = self.processes.get(event.process)
         name = event.name if label is None else f"{label} {event.name}"
-        self.threads[event.thread] = Thread(event.thread, name, event.t, event.process)
+        self.threads[event.thread] = Thread(event.thread, name, event.t, event.process, event.executor)
 
     def add_executor(self, event: ExecutorAppeared) -> None:
         """Take in an executor."""

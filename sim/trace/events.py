@@ -101,12 +101,14 @@ class ProcessEnded(Event, frozen=True, tag="process_end"):
 class ThreadAppeared(Event, frozen=True, tag="thread"):
     """A thread of a learner's program ran its first callback or was named by its executor.
 
-    ``name`` is as the lanes show it; ``process`` is 0 where the run has one program only.
+    ``name`` is as the lanes show it; ``process`` is 0 where the run has one program only; ``executor`` is the
+    one whose worker the thread is, 0 for a thread that the program itself started.
     """
 
     thread: ThreadId
     name: str
     process: ProcessId = 0
+    executor: ExecutorId = 0
 
 
 class ExecutorAppeared(Event, frozen=True, tag="executor"):
@@ -234,6 +236,21 @@ class CallbackResumed(Event, frozen=True, tag="callback_resume"):
 
     entity: EntityId
     thread: ThreadId
+
+
+class SpinClashed(Event, frozen=True, tag="spin_clash"):
+    """A thread asked to spin what is being spun already.
+
+    ``entity`` is the callback that asked (0: none) and ``function`` what it called of rclpy's, in ``file`` at
+    ``line`` of the learner's code. ``node`` was taken from the executor that spins it, which serves it no
+    more; 0: nothing was taken, and the executor, which spins already, raised ``RuntimeError``.
+    """
+
+    entity: EntityId
+    node: NodeId
+    function: str
+    file: str
+    line: int
 
 
 class CallbackFailed(Event, frozen=True, tag="callback_error"):
@@ -498,6 +515,7 @@ AnyEvent: TypeAlias = (
     | CallbackEnded
     | CallbackSuspended
     | CallbackResumed
+    | SpinClashed
     | CallbackFailed
     | Published
     | QosMismatched

@@ -54,6 +54,7 @@ class Folded:
         self.shell: History[ShellEvent] = History(attrgetter("t"), ShellEvent, spill)
         self.notices: History[ev.Notice] = History(attrgetter("t"), ev.Notice, spill)
         self.mismatches: History[ev.QosMismatched] = History(attrgetter("t"), ev.QosMismatched, spill)
+        self.spin_clashes: History[ev.SpinClashed] = History(attrgetter("t"), ev.SpinClashed, spill)
         self.robot: History[ev.RobotMoved] = History(attrgetter("t"), ev.RobotMoved, spill)
         self.velocities: History[ev.VelocityCommanded] = History(attrgetter("t"), ev.VelocityCommanded, spill)
         self.scans = Scans(spill)
@@ -104,6 +105,7 @@ class Folded:
             ev.CallbackEnded: self._callback_ended,
             ev.CallbackSuspended: self._callback_suspended,
             ev.CallbackResumed: self._callback_resumed,
+            ev.SpinClashed: self.spin_clashes.add,
             ev.CallbackFailed: self._callback_failed,
             ev.Published: self.publications.add,
             ev.QosMismatched: self.mismatches.add,

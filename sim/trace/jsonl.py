@@ -61,6 +61,7 @@ class JsonLines:
             ev.CallbackEnded: self._on_thread,
             ev.CallbackSuspended: self._on_thread,
             ev.CallbackResumed: self._on_thread,
+            ev.SpinClashed: self._spin_clashed,
             ev.CallbackFailed: self._callback_failed,
             ev.Published: self._published,
             ev.QosMismatched: self._qos_mismatched,
@@ -192,6 +193,11 @@ class JsonLines:
             "file": event.file,
             "line": event.line,
         }
+
+    def _spin_clashed(self, event: ev.SpinClashed) -> Line:
+        node: Line = {"node": self._node(event.node)} if event.node else {}
+        place: Line = {"file": event.file, "line": event.line} if event.file else {}
+        return {**node, **self._by_callback(event.entity), "function": event.function, **place}
 
     # messages, calls and lines
 

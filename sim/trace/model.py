@@ -36,12 +36,16 @@ class Window:
 
 @dataclass(frozen=True, slots=True)
 class Thread:
-    """A thread that runs callbacks, named as rclpy names it; ``process`` is its program's, of several."""
+    """A thread, named as rclpy names it; ``process`` is its program's, of several.
+
+    ``executor`` is the one whose worker it is, 0 for one that the program itself started.
+    """
 
     id: ThreadId
     name: str
     since: Nanoseconds
     process: ProcessId = 0
+    executor: ExecutorId = 0
 
 
 @dataclass(frozen=True, slots=True)

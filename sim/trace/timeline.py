@@ -258,6 +258,11 @@ class Timeline:
         """The publishers and subscriptions that do not match, in order."""
         return self._run.mismatches
 
+    @property
+    def spin_clashes(self) -> Sequence[ev.SpinClashed]:
+        """What asked to spin what was being spun, in order."""
+        return self._run.spin_clashes
+
     def marks(self, window: Window) -> Sequence[Mark]:
         """Commands, calls, replies, notices and errors in the window."""
         return self._run.marks.within(window)

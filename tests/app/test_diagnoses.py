@@ -72,7 +72,7 @@ async def test_the_window_tells_what_why_what_to_do_and_where(size: tuple[int, i
         assert "·    4.000 s  timer_callback took 10.0 s with a period of 500 ms" in shown
         assert "odom_callback waited 10.5 s: group A was held by timer_callback." in shown
         assert "A mutually exclusive group lets one callback in at a time" in shown
-        assert "→ give odom_callback a callback group of its own, apart from" in shown
+        assert "→ give odom_callback a callback group of its own, and spin with" in shown
         assert "node.py:63, at 4.003 s" in shown
         assert "⏎ go there" in shown
         assert "esc close" in shown
@@ -195,7 +195,8 @@ def test_a_finding_is_a_line_and_a_paragraph() -> None:
     assert details_of(worst, Charset.BRAILLE).plain.splitlines() == [
         f"{worst.explanation.what}.",
         "While it sleeps it holds the group, and nothing comes in from the sensors.",
-        "→ give timer_callback a callback group of its own, or let it return at once and go on in a timer.",
+        "→ give timer_callback a callback group of its own, and spin with "
+        "MultiThreadedExecutor(num_threads=2); or let timer_callback return at once, and go on in a timer.",
         "node.py:120, at 4.000 s",
     ]
 

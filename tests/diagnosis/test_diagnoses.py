@@ -132,8 +132,8 @@ def test_the_list_has_a_sign_a_reason_a_cure_and_a_place_for_each_finding() -> N
         "  ! scan_callback waited 20.0 s: group A was held by timer_callback.",
         "    A mutually exclusive group lets one callback in at a time, however many",
         "    threads are free.",
-        "    → give scan_callback a callback group of its own, apart from",
-        "      timer_callback, and spin with MultiThreadedExecutor(num_threads=2).",
+        "    → give scan_callback a callback group of its own, and spin with",
+        "      MultiThreadedExecutor(num_threads=2).",
         "      node.py:120, at 4.006 s",
         "  ! timer_callback decided on data at least 10.0 s old: newer messages waited",
     ]

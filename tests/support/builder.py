@@ -89,9 +89,10 @@ class Run:
     # the cast
 
     def thread(self, name: str, at: float = 0.0) -> ThreadId:
-        """Name a thread."""
+        """Name a thread; one named as a pool's is a worker of the first executor."""
         thread = self._next("thread")
-        self.add(ThreadAppeared(ns(at), thread, name))
+        executor = 1 if name.startswith("ThreadPoolExecutor") else 0
+        self.add(ThreadAppeared(ns(at), thread, name, executor=executor))
         return thread
 
     def executor(self, kind: str, threads: int) -> ExecutorId:

@@ -147,7 +147,7 @@ class _Staging:
         workers = []
         for lane in all_lanes(self._timeline, ""):
             match lane:
-                case ThreadLane(thread):
+                case ThreadLane(thread) if thread.executor or ever_ran(self._timeline, thread.id, self._now):
                     workers.append(self._worker(thread.id, short_thread(thread.name)))
                 case GroupLane(group):
                     groups[group.id], members[group.id] = group, []

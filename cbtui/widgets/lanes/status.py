@@ -49,6 +49,8 @@ class Status:
             now = f"  {self._caller(running)} {duration(self.moment.at - running.start)}"
             return Run(f"{share:4.0%}{now if self.width >= _WIDE else ' busy'}", PLAIN)
         if share == 0 and not ever_ran(self.timeline, thread.id, self.moment.at):
+            if thread.executor == 0:
+                return Run("no callbacks" if self.width >= _WIDE else "own thread", FAINT)
             return Run("  0%  never needed" if self.width >= _WIDE else "  0% unused", FAINT)
         return Run(f"{share:4.0%} busy", PLAIN if share else FAINT)
 

@@ -7,6 +7,7 @@ from sim.diagnosis.rules.errors import ExceptionSwallowed
 from sim.diagnosis.rules.gaps import GapsInTrace
 from sim.diagnosis.rules.messages import DroppedMessages, QosMismatch, StaleData
 from sim.diagnosis.rules.services import NobodyOffers, UnreturnedResponse
+from sim.diagnosis.rules.spinning import NestedSpin
 from sim.diagnosis.rules.threads import GroupsChangeNothing, ThreadsNeverUsed
 from sim.diagnosis.rules.timing import LongCallbackAmongSensors, OverlappingCallback, OverrunTimer
 from sim.diagnosis.rules.waiting import GroupStarvation, NodeNeverSpins, NoFreeWorker
@@ -14,6 +15,7 @@ from sim.diagnosis.rules.waiting import GroupStarvation, NodeNeverSpins, NoFreeW
 RULES: tuple[Rule, ...] = (
     SelfMadeDeadlock(),
     NeedsOneMoreWorker(),
+    NestedSpin(),
     EndlessWait(),
     NodeNeverSpins(),
     NobodyOffers(),

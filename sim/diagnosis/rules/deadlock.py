@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 from sim.diagnosis.look import Look
 from sim.diagnosis.rule import Explanation, Finding, Rule, place_of
 from sim.diagnosis.standstill import Standstill, Stuck
-from sim.diagnosis.words import listed, often, one_thread_more, thread_count, who
+from sim.diagnosis.words import listed, often, threads_for, who, with_threads
 from sim.trace.events import EntityKind, Reason
 from sim.trace.model import Blocked, Nanoseconds
 from sim.trace.timeline import Timeline
@@ -35,8 +35,8 @@ class SelfMadeDeadlock(Rule):
             f"use call_async() and return from {subject}, "
             f"or give client and service of {found.about} callback groups of their own"
         )
-        if thread_count(timeline) == 1:
-            cure += f", and spin with {one_thread_more(timeline)}"
+        if threads_for([found.subject], found.until, timeline) == 1:
+            cure += f", and spin with {with_threads(found.size + 1)}"
         return Explanation(
             f"{subject} {_for_ever(found, timeline)}: {found.detail}{often(found.count)}",
             "the reply is brought by the executor, and needs a group that lets it in and a thread",

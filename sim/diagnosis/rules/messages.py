@@ -6,6 +6,7 @@ from itertools import groupby
 from operator import attrgetter
 
 from sim.diagnosis.look import LongWait, Look
+from sim.diagnosis.room import room_for
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, entity_of, place_of
 from sim.diagnosis.words import often, who
 from sim.trace.events import EntityId, EntityKind
@@ -44,12 +45,13 @@ class DroppedMessages(Rule):
         subject = who(found.subject, timeline)
         waits = timeline.waits_of(entity.id, Window(found.at, found.at + 1))
         because = f" while it waited ({why_waiting(waits[-1], timeline)})" if waits else ""
+        room = room_for([entity.id], entity.id, Window(found.at, found.until + 1), timeline)
         messages = "1 message" if found.count == 1 else f"{found.count} messages"
         holds = f": its queue holds {entity.depth}" if entity.depth else ""
         return Explanation(
             f"{subject} lost {messages}{because}{holds}",
             "what comes into a full queue pushes the oldest out",
-            f"let {subject} run sooner (a group of its own, one more thread); a longer queue only delays it",
+            f"{room or f'let {subject} return sooner'}; a longer queue only delays it",
             place_of(found.subject, timeline),
         )
 
@@ -101,7 +103,8 @@ class StaleData(Rule):
             f"{subject} decided on data at least {duration(found.size)} old: "
             f"newer messages waited for {sensor}{often(found.count)}",
             f"the node only knows what {sensor} has taken, and that did not run",
-            f"let {sensor} run beside {subject}: a group of its own, and a thread for it",
+            room_for([found.culprit], found.culprit, Window(found.at - found.size, found.at), timeline)
+            or f"let {sensor} return sooner",
             place_of(found.subject, timeline),
         )
 

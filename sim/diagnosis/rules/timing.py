@@ -3,8 +3,9 @@
 from collections.abc import Iterator
 
 from sim.diagnosis.look import Look
+from sim.diagnosis.room import room_for
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, entity_of, place_of
-from sim.diagnosis.words import group_of, listed, often, who
+from sim.diagnosis.words import group_of, listed, often, threads_for, who, with_threads
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
 from sim.trace.model import Entity, Nanoseconds, Span, Wait, Window
 from sim.trace.summary_text import duration
@@ -84,6 +85,8 @@ class OverrunTimer(Rule):
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Tell how many ticks the longest call cost."""
         entity = entity_of(found, timeline)
+        alone = threads_for([found.subject], found.until, timeline) == 1
+        threads = f", with {with_threads(2)}" if alone else ""
         missed = (found.lasted - 1) // entity.period
         ticks = "1 tick" if missed == 1 else f"{missed} ticks"
         subject = who(found.subject, timeline)
@@ -91,7 +94,8 @@ class OverrunTimer(Rule):
             f"{subject} took {duration(found.lasted)} with a period of {duration(entity.period)}: "
             f"{ticks} missed or late{often(found.count, 'overruns in all')}",
             "the timer is not called again before its callback is over; missed ticks are not made up for",
-            f"let {subject} return sooner: do long work step by step, or in a callback of another group",
+            f"let {subject} return sooner: do long work step by step, or in a callback of another group"
+            + threads,
             place_of(found.subject, timeline),
         )
 
@@ -128,7 +132,7 @@ class LongCallbackAmongSensors(Rule):
 
     def _spans_behind(self, part: Wait, until: Nanoseconds, look: Look) -> Iterator[Span]:
         holder = look.timeline.entities.get(part.holder)
-        if until - part.start < self.threshold or holder is None:
+        if until - part.start < self.threshold or holder is None or holder.id in look.nested_spinners:
             return
         if _kind_of_group(holder, look) is GroupKind.EXCLUSIVE:
             for span in look.spans(holder.id):
@@ -141,16 +145,17 @@ class LongCallbackAmongSensors(Rule):
         """Name the subscriptions."""
         subject = who(found.subject, timeline)
         entity = entity_of(found, timeline)
-        sensors = listed(
-            each.spoken_name
+        sensors = [
+            each
             for each in timeline.group_members(entity.group)
             if each.kind is EntityKind.SUBSCRIPTION and each.id != entity.id
-        )
+        ]
+        room = room_for([each.id for each in sensors], found.subject, Window(found.at, found.until), timeline)
         return Explanation(
             f"{subject} slept or worked for {duration(found.lasted)} in {group_of(found.subject, timeline)}, "
-            f"which it shares with {sensors}{often(found.count)}",
+            f"which it shares with {listed(each.spoken_name for each in sensors)}{often(found.count)}",
             "while it sleeps it holds the group, and nothing comes in from the sensors",
-            f"give {subject} a callback group of its own, or let it return at once and go on in a timer",
+            f"{room}; or let {subject} return at once, and go on in a timer",
             place_of(found.subject, timeline),
         )
 

@@ -4,8 +4,9 @@ from collections import defaultdict
 from collections.abc import Iterator
 
 from sim.diagnosis.look import LongWait, Look
+from sim.diagnosis.room import room_for
 from sim.diagnosis.rule import Explanation, Finding, Rule, place_of
-from sim.diagnosis.words import group_of, often, one_thread_more, thread_count, who
+from sim.diagnosis.words import group_of, often, threads_for, who
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
 from sim.trace.model import Entity, Nanoseconds, Window
 from sim.trace.summary_text import duration
@@ -33,13 +34,10 @@ class GroupStarvation(Rule):
         """Name who held the group."""
         subject, culprit = who(found.subject, timeline), who(found.culprit, timeline)
         group = group_of(found.subject, timeline)
-        cure = f"give {subject} a callback group of its own, apart from {culprit}"
-        if thread_count(timeline) == 1:
-            cure += f", and spin with {one_thread_more(timeline)}"
         return Explanation(
             f"{subject} waited {duration(found.lasted)}: {group} was held by {culprit}{often(found.count)}",
             f"{_admits(found.subject, timeline)}, however many threads are free",
-            cure,
+            room_for([found.subject], found.subject, Window(found.at, found.until), timeline),
             place_of(found.culprit, timeline) or place_of(found.subject, timeline),
         )
 
@@ -59,8 +57,9 @@ class NoFreeWorker(Rule):
         """Name who kept the threads."""
         subject, culprit = who(found.subject, timeline), who(found.culprit, timeline)
         beside_itself = len(timeline.spans_of(found.culprit, Window(found.at, found.at + 1)))
-        cure = f"spin with {one_thread_more(timeline)}, or keep {culprit} short"
-        if thread_count(timeline) == 1:
+        room = room_for([found.subject], found.subject, Window(found.at, found.until), timeline)
+        cure = f"{room}, or keep {culprit} short"
+        if threads_for([found.culprit, found.subject], found.until, timeline) == 1:
             busy = f"the only thread ran {culprit}"
         elif beside_itself > 1:
             busy = f"{beside_itself} calls of {culprit} kept a thread each, and no thread was free"
@@ -87,12 +86,15 @@ class NodeNeverSpins(Rule):
 
     def check(self, look: Look) -> Iterator[Finding]:
         """Yield for each node the callback that has waited longest."""
+        taken = {clash.node for clash in look.timeline.spin_clashes}
         longest: dict[int, LongWait] = {}
         for entity in look.entities():
             wait = next(reversed(look.waits(entity.id)), None)
             if wait is None or not wait.is_open or wait.parts[-1].reason is not Reason.NOBODY_SPINS:
                 continue
             since = wait.parts[-1].start
+            if entity.node in taken:
+                continue
             if look.end - since >= self.threshold and look.end_of_program(entity) is None:
                 known = longest.get(entity.node)
                 if known is None or since < known.parts[-1].start:
@@ -116,10 +118,7 @@ class NodeNeverSpins(Rule):
             what = "no executor that spins has its node"
             cure = "add the node to an executor, and call spin() on that: one that is only made runs nothing"
         elif ever:
-            cure = (
-                "keep spinning the node: spin() has returned, or spin_until_future_complete() "
-                "took the node away from its executor"
-            )
+            cure = "keep spinning the node: spin() has returned, or its executor was shut down"
         return Explanation(
             f"{subject} of {found.about} is ready for {duration(found.lasted)} and does not run: {what}",
             "callbacks run only inside spin()",
@@ -141,6 +140,8 @@ def _kept_waiting(
             for part in parts:
                 shares[part.holder] += wait.length(part)
             culprit = max(shares, key=shares.__getitem__)
+            if culprit in look.nested_spinners:
+                continue
             yield Finding(rule, wait.since, wait.until, entity.id, culprit, size=waited)
 
 

@@ -77,6 +77,7 @@ class Narrator:
             ev.CallbackEnded: self._callback_ended,
             ev.CallbackSuspended: self._callback_suspended,
             ev.CallbackResumed: self._callback_resumed,
+            ev.SpinClashed: self._spin_clashed,
             ev.CallbackFailed: self._running.fail,
             ev.Published: self._published,
             ev.QosMismatched: self._qos_mismatched,
@@ -257,6 +258,10 @@ class Narrator:
 
     def _lane_of(self, stretch: Stretch) -> TrackId:
         return self._stage.lane(self._stage.actor(stretch.entity).group, stretch.lane)
+
+    def _spin_clashed(self, event: ev.SpinClashed) -> None:
+        text = f"{event.function}() asks to spin what is being spun"
+        self._say("notices", event.t, text, {"line": event.line})
 
     # messages and services
 

@@ -1,0 +1,135 @@
+"""A spin inside a spin: told with the line that asks for it, and with what to do in its place."""
+
+from pathlib import Path
+
+import pytest
+
+from sim.diagnosis import Finding, diagnose
+from sim.trace.events import Printed, SpinClashed
+from tests.support.engine_runs import Run, run_program
+
+PROGRAM = """
+import threading
+import traceback
+import rclpy
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.node import Node
+from std_srvs.srv import SetBool
+
+
+class Caller(Node):
+    def __init__(self):
+        super().__init__("caller")
+        self.create_service(SetBool, "power", self.serve)
+        self.client = self.create_client(SetBool, "power")
+        self.create_timer(0.5, self.tick)
+
+    def serve(self, request, response):
+        return response
+
+    def tick(self):
+        future = self.client.call_async(SetBool.Request())
+        {ask}
+
+
+rclpy.init()
+caller = Caller()
+{spin}
+"""
+EXPLICIT = "executor = {}\nexecutor.add_node(caller)\nexecutor.spin()"
+SINGLE = EXPLICIT.format("SingleThreadedExecutor()")
+MULTI = EXPLICIT.format("MultiThreadedExecutor(3)")
+REFUSED = "tick spins the executor that runs tick, by {}(): RuntimeError: Executor is already spinning"
+TAKEN = "tick takes /caller from the executor that runs tick, by {}(): that serves it no more"
+
+
+def program(ask: str, spin: str = "rclpy.spin(caller)") -> str:
+    return PROGRAM.replace("{ask}", ask).replace("{spin}", spin)
+
+
+def found_in(run: Run) -> list[Finding]:
+    return [each for each in diagnose(run.timeline) if each.rule.id == "nested-spin"]
+
+
+@pytest.mark.parametrize(
+    ("ask", "spin", "what", "cure"),
+    [
+        (
+            "rclpy.spin_until_future_complete(self, future)",
+            "rclpy.spin(caller)",
+            REFUSED.format("spin_until_future_complete"),
+            "after call_async() let tick return",
+        ),
+        (
+            "self.executor.spin_until_future_complete(future)",
+            SINGLE,
+            REFUSED.format("spin_until_future_complete"),
+            "spin with MultiThreadedExecutor(num_threads=2)",
+        ),
+        ("rclpy.spin_once(self)", "rclpy.spin(caller)", REFUSED.format("spin_once"), "leave spin_once() out"),
+        ("rclpy.spin(self)", "rclpy.spin(caller)", REFUSED.format("spin"), "leave spin() out"),
+        (
+            "rclpy.spin_until_future_complete(self, future)",
+            SINGLE,
+            TAKEN.format("spin_until_future_complete"),
+            "after call_async() let tick return",
+        ),
+        (
+            "rclpy.spin_until_future_complete(self, future)",
+            MULTI,
+            TAKEN.format("spin_until_future_complete"),
+            "after call_async() let tick return",
+        ),
+    ],
+)
+def test_a_callback_that_spins_what_runs_it_is_told_with_its_line(
+    ask: str, spin: str, what: str, cure: str, tmp_path: Path
+) -> None:
+    run = run_program(tmp_path, program(ask, spin), 4.0)
+    findings = diagnose(run.timeline)
+    (found,) = found_in(run)
+    told = found.rule.explain(found, run.timeline)
+    assert findings[0] == found
+    assert not {"group-starvation", "node-never-spins"} & {each.rule.id for each in findings}
+    assert told.what == what
+    assert cure in told.cure
+    assert str(told.place) == "node.py:22"
+
+
+def test_a_node_of_its_own_may_be_spun_inside_a_callback(tmp_path: Path) -> None:
+    ask = "rclpy.spin_until_future_complete(helper, future, timeout_sec=0.1)"
+    spin = f"helper = rclpy.create_node('helper')\n{SINGLE}"
+    assert found_in(run_program(tmp_path, program(ask, spin))) == []
+
+
+def test_two_threads_that_spin_one_executor_are_told_of_too(tmp_path: Path) -> None:
+    spin = (
+        "threading.Thread(target=rclpy.spin, args=(caller,), daemon=True).start()\n"
+        "future = caller.client.call_async(SetBool.Request())\n"
+        "caller.get_clock().sleep_for(rclpy.duration.Duration(seconds=0.1))\n"
+        "rclpy.spin_until_future_complete(caller, future)"
+    )
+    run = run_program(tmp_path, program("pass", spin))
+    (found,) = found_in(run)
+    told = found.rule.explain(found, run.timeline)
+    assert told.what.startswith("the program spins an executor that another thread spins, by spin_until")
+    assert told.cure.startswith("spin each node in one thread only")
+    assert [(each.function, each.line) for each in run.events if isinstance(each, SpinClashed)] == [
+        ("spin_until_future_complete", 30)
+    ]
+
+
+def lines_printed(run: Run) -> list[str]:
+    return [each.text for each in run.events if isinstance(each, Printed)]
+
+
+def test_a_traceback_has_the_learners_lines_alone(tmp_path: Path) -> None:
+    run = run_program(tmp_path, program("rclpy.spin_until_future_complete(self, future)"))
+    assert lines_printed(run) == [
+        "Traceback (most recent call last):",
+        f'  File "{tmp_path}/node.py", line 27, in <module>',
+        "    rclpy.spin(caller)",
+        f'  File "{tmp_path}/node.py", line 22, in tick',
+        "    rclpy.spin_until_future_complete(self, future)",
+        "RuntimeError: Executor is already spinning",
+    ]
