@@ -32,6 +32,8 @@ def _lines(name: str, found: Mapping[int, Result], replays: Sequence[str]) -> It
         yield f"{sign} {such}, such as seed {seeds[0]}"
         yield from _result(result, found[seeds[0]])
     yield ""
+    if not all(result.repeatable for result in found.values()):
+        yield "This program is not repeatable: a seed orders its threads, and another run of it may differ."
     shown = next((seed for seed, result in found.items() if not result.well), min(found))
     yield "To see one again:"
     for command in replays:

@@ -14,6 +14,7 @@ import msgspec
 
 from cbtui.check_text import verdict_line
 from cbtui.checking import Observed, observe
+from cbtui.repeat import why_unrepeatable
 from cbtui.session import Session, engine_environment
 from lessons.checks import problems
 from lessons.judge import Judge
@@ -47,6 +48,8 @@ class Result:
     problems: tuple[str, ...] = ()
     notes: tuple[str, ...] = field(default=(), compare=False)
     """What the engine warned of, in its words."""
+    repeatable: bool = field(default=True, compare=False)
+    """Whether nothing is known that makes another run with the same seed differ."""
 
     @property
     def well(self) -> bool:
@@ -86,7 +89,8 @@ class Exploration:
         observed = observe(setup, self.name, self.limit, given_up, partial(Session, context=context))
         found = tuple(dict.fromkeys(each.rule.id for each in problems(observed.timeline)))
         failures = tuple(dict.fromkeys(self._failures(observed, found)))
-        return Result(failures, found, tuple(dict.fromkeys(_warnings(observed))))
+        repeatable = why_unrepeatable(observed.timeline.notices) is None
+        return Result(failures, found, tuple(dict.fromkeys(_warnings(observed))), repeatable)
 
     def _failures(self, observed: Observed, found: tuple[str, ...]) -> Iterator[Failure]:
         raised = [*_raised(observed)]

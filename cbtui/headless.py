@@ -17,6 +17,7 @@ from cbtui.interrupts import heard, whole
 from cbtui.listening import ListeningSession
 from cbtui.program_log import ProgramLog
 from cbtui.record import CannotRecordError, start_recording
+from cbtui.repeat import why_unrepeatable
 from sim.diagnosis import diagnose, findings_text
 from sim.engine.commands import Stop
 from sim.engine.setup import RunSetup, TimedCall, TimedLine
@@ -105,6 +106,7 @@ class _Headless:
     """One run: takes the news of its session on this thread, one batch after another."""
 
     def __init__(self, setup: RunSetup, file: EventsFile | None, recorder: Recorder | None) -> None:
+        self._setup = setup
         self._news: Queue[News] = Queue(_BATCHES)
         self._session = ListeningSession(setup, self._news.put, self._news.put)
         self._timeline = Timeline()
@@ -127,6 +129,8 @@ class _Headless:
         say(plain_text(summarise(self._timeline)))
         found = findings_text(diagnose(self._timeline), self._timeline)
         say(f"\n{found}" if found else "")
+        if self._setup.seed and why_unrepeatable(self._timeline.notices):
+            complain(f"this program is not repeatable: seed {self._setup.seed} orders its threads, no more")
         return self._verdict(loss) if self._told is None else 128 + self._told
 
     def _end_early(self, told: Signals) -> None:

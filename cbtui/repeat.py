@@ -1,6 +1,6 @@
 """Repeating a recorded run: its set-up, or another program's, with the inputs that the recording holds."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from itertools import chain
 from pathlib import Path
 
@@ -10,10 +10,15 @@ from cbtui.record import setup_of
 from sim.engine.inputs import UnknownInputError, inputs_of, stops
 from sim.engine.setup import RunSetup
 from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
-from sim.trace.events import AnyEvent, RunEnded
+from sim.trace.events import AnyEvent, Notice, RunEnded
 from sim.trace.recording import Recording, RecordingError, read
 
 _SECOND = 1_000_000_000
+
+
+def why_unrepeatable(events: Iterable[AnyEvent]) -> str | None:
+    """What a run did that no other will do exactly so, in the engine's words; None: nothing is known."""
+    return next((each.text for each in events if isinstance(each, Notice) and each.unrepeatable), None)
 
 
 class CannotRepeatError(Exception):
@@ -31,7 +36,8 @@ def repeated(
     """The set-up of a run that gets the inputs of a recorded one.
 
     ``program`` runs instead of the recorded one (None: that one again). ``seconds`` None: as long as the
-    recording; ``threads`` None: as many as it had. ``tell`` gets a sentence if inputs may be missing.
+    recording; ``threads`` None: as many as it had. ``tell`` gets a sentence if inputs may be missing, or
+    if the repetition will not be exact.
 
     Raises:
         CannotRepeatError: the recording cannot be read, was made on the real clock, lacks its set-up, or its
@@ -54,6 +60,8 @@ def repeated(
         raise CannotRepeatError(f"{path} is of a real-clock run; only virtual runs can be repeated exactly")
     if program is None:
         _check_programs(recorded, recording)
+        if reason := why_unrepeatable(events):
+            tell(f"{path} is of a program that is not repeatable ({reason}); it is run again all the same")
     if seconds is None:
         until = _end(recorded, events)
     else:

@@ -3,17 +3,13 @@
 import asyncio
 import selectors
 import threading
-from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from sim.clock.interface import Clock
 from sim.clock.paced import PacedClock
 from sim.clock.units import wait_ns
 from sim.clock.virtual import VirtualClock
 from sim.clock.virtual_threads import VirtualSignal
-
-if TYPE_CHECKING:
-    from _typeshed import FileDescriptorLike
 
 _Ready = list[tuple[selectors.SelectorKey, int]]
 _MAIN = "MainThread"
@@ -54,7 +50,7 @@ class ProgramLoops(asyncio.DefaultEventLoopPolicy):
 
 
 class VirtualEventLoop(asyncio.SelectorEventLoop):
-    """An event loop whose waits pass virtual time. It serves timers, tasks and threads, but no sockets."""
+    """An event loop whose waits pass virtual time; as on the wall while it has sockets or pipes to serve."""
 
     def __init__(self, clock: VirtualClock) -> None:
         self._waiting = _VirtualSelector(clock)
@@ -63,6 +59,9 @@ class VirtualEventLoop(asyncio.SelectorEventLoop):
     def _write_to_self(self) -> None:
         """Called by asyncio when another thread has something for this loop."""
         self._waiting.wake()
+        if self._waiting.reaches_outside:
+            loop: Any = super()
+            loop._write_to_self()
 
 
 class _PacedSelector(selectors.DefaultSelector):
@@ -84,45 +83,29 @@ class _PacedSelector(selectors.DefaultSelector):
                 return ready
 
 
-class _VirtualSelector(selectors.BaseSelector):
-    """Waits on the clock. All that it ever holds is the pipe by which a loop would wake itself."""
+class _VirtualSelector(selectors.PollSelector):
+    """Waits on the clock alone where it holds nothing but the pipe by which a loop wakes itself."""
 
     def __init__(self, clock: VirtualClock) -> None:
+        super().__init__()
         self._clock = clock
         self._signal: VirtualSignal = clock.signal()
-        self._keys: dict[Any, selectors.SelectorKey] = {}
 
     def wake(self) -> None:
         """End the wait that is going on, or the next one. Any thread may call it."""
         self._signal.set()
 
+    @property
+    def reaches_outside(self) -> bool:
+        """Whether it waits for sockets or pipes of the program's, too."""
+        return len(self.get_map()) > 1
+
     def select(self, timeout: float | None = None) -> _Ready:
-        """Wait ``timeout`` virtual seconds, or until woken; nothing is ever ready."""
+        """Wait ``timeout`` virtual seconds, until woken, or until something is ready."""
+        if self.reaches_outside:
+            return super().select(timeout)
         if timeout is None or timeout > 0:
             deadline = None if timeout is None else self._clock.now() + wait_ns(timeout)
             self._signal.wait(deadline)
             self._signal = self._clock.signal()
         return []
-
-    def register(self, fileobj: "FileDescriptorLike", events: int, data: Any = None) -> selectors.SelectorKey:
-        """Take the loop's own pipe.
-
-        Raises:
-            NotImplementedError: something else is to be waited for.
-        """
-        if self._keys:
-            raise NotImplementedError(
-                "asyncio's sockets and pipes do not live on virtual time; use --clock real"
-            )
-        number = fileobj if isinstance(fileobj, int) else fileobj.fileno()
-        key = selectors.SelectorKey(fileobj, number, events, data)
-        self._keys[fileobj] = key
-        return key
-
-    def unregister(self, fileobj: "FileDescriptorLike") -> selectors.SelectorKey:
-        """Give the pipe back."""
-        return self._keys.pop(fileobj)
-
-    def get_map(self) -> Mapping[Any, selectors.SelectorKey]:
-        """What it holds, by file."""
-        return self._keys

@@ -22,6 +22,7 @@ class Pace:
         """Whether time stands."""
         self.on_halt: Callable[[], None] = _nothing
         self._speed = speed
+        self._is_real = False
         self._hurries = False
         self._until: int | None = None
         self._steps = 0
@@ -37,6 +38,12 @@ class Pace:
         """Have time pass at another speed from ``now`` on."""
         self._anchor_at(now)
         self._speed = speed
+
+    def keep_real(self, wanted: bool, now: int) -> None:
+        """Have time pass as on the wall from ``now`` on, whatever speed or goal it has, or no longer."""
+        if wanted is not self._is_real:
+            self._anchor_at(now)
+            self._is_real = wanted
 
     def stand(self) -> None:
         """Let time stand; a goal is given up."""
@@ -74,19 +81,27 @@ class Pace:
         """Real nanoseconds to wait before ``target`` may come; None: until something happens outside."""
         if target is None or self.stands:
             return None
-        if self._speed is None or self._hurries:
+        rate = self._rate()
+        if rate is None:
             return 0
-        delay = self._anchor_real + (target - self._anchor_virtual) / self._speed - _monotonic_ns()
-        if delay < -_LAG_FORGIVEN:
+        delay = self._anchor_real + (target - self._anchor_virtual) / rate - _monotonic_ns()
+        if delay < -_LAG_FORGIVEN and not self._is_real:
             self._anchor_at(target)
         return delay
 
     def reached(self, now: int, limit: int | None) -> int:
         """Where the pace has brought a run that jumped to ``now`` last, at most to ``limit``."""
-        if self._speed is None or self._hurries or self.stands:
+        rate = self._rate()
+        if rate is None or self.stands:
             return now
-        paced = self._anchor_virtual + int((_monotonic_ns() - self._anchor_real) * self._speed)
+        paced = self._anchor_virtual + int((_monotonic_ns() - self._anchor_real) * rate)
         return max(now, paced if limit is None else min(paced, limit))
+
+    def _rate(self) -> float | None:
+        """Virtual seconds per real second; None: as fast as it can."""
+        if self._is_real:
+            return 1.0
+        return None if self._hurries else self._speed
 
     def _hurry(self, until: int | None) -> None:
         self._until = until

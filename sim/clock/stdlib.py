@@ -15,7 +15,14 @@ from collections.abc import Callable
 from types import CodeType, FrameType, TracebackType
 from typing import Any, TypeVar
 
+from sim.clock.alarms import Signals
+from sim.clock.child_processes import ChildProcesses
+from sim.clock.dates import replace_dates
+from sim.clock.descriptors import replace_descriptors
+from sim.clock.entropy import replace_entropy
 from sim.clock.outside import start_outside
+from sim.clock.outside_work import OutsideWork
+from sim.clock.replacing import Replacements
 from sim.clock.units import wait_ns
 from sim.clock.virtual import VirtualClock
 from sim.clock.virtual_threads import VirtualSignal, VirtualThread
@@ -163,16 +170,36 @@ class VirtualLock:
         self.holder = None
 
 
+def _tell_nobody(_what: str) -> None:
+    """Take what nobody wants to hear."""
+
+
 _ENTERS = VirtualLock.__enter__.__code__
 _LIBRARY = {__file__, _RLOCK_TAKES.co_filename, queue.Queue.get.__code__.co_filename}
 
 
-def live_on(clock: VirtualClock) -> None:
-    """Replace Python's ways to wait by virtual ones, for this process and for good."""
+def live_on(clock: VirtualClock, tell: Callable[[str], None] = _tell_nobody) -> None:
+    """Replace Python's ways to wait, to tell the time and to draw at random, for this process and for good.
+
+    Call it on the clock's main thread. ``tell`` is called on a program's thread with what it does that
+    cannot be the same in each run, as a clause of a sentence.
+    """
     VirtualLock._clock = clock
+    replacements = Replacements(clock)
+    kept = dict(vars(time))
     _replace_time(clock)
+    for name, real in kept.items():
+        if getattr(time, name) is not real:
+            replacements.note(real, getattr(time, name))
     _replace_locks()
     _replace_threads(clock)
+    outside = OutsideWork(clock, tell)
+    replace_dates(replacements, outside)
+    replace_entropy(replacements, outside)
+    replace_descriptors(replacements, outside)
+    ChildProcesses(outside).replace(replacements)
+    Signals(outside).replace(replacements)
+    replacements.hand_on()
 
 
 def _replace_time(clock: VirtualClock) -> None:
@@ -195,17 +222,14 @@ def _replace_time(clock: VirtualClock) -> None:
 
         return ask
 
-    modules: Any = (time, threading, queue)
-    modules[0].sleep = sleep
-    monotonic = here(lambda: clock.now() / 1e9, time.monotonic)
-    modules[0].monotonic = monotonic
-    modules[0].perf_counter = here(lambda: clock.now() / 1e9, time.perf_counter)
-    modules[0].time = here(lambda: (clock.epoch + clock.now()) / 1e9, time.time)
-    modules[0].monotonic_ns = here(clock.now, time.monotonic_ns)
-    modules[0].perf_counter_ns = here(clock.now, time.perf_counter_ns)
-    modules[0].time_ns = here(lambda: clock.epoch + clock.now(), time.time_ns)
-    modules[1]._time = monotonic
-    modules[2].time = monotonic
+    module: Any = time
+    module.sleep = sleep
+    module.monotonic = here(lambda: clock.now() / 1e9, time.monotonic)
+    module.perf_counter = here(lambda: clock.now() / 1e9, time.perf_counter)
+    module.time = here(lambda: (clock.epoch + clock.now()) / 1e9, time.time)
+    module.monotonic_ns = here(clock.now, time.monotonic_ns)
+    module.perf_counter_ns = here(clock.now, time.perf_counter_ns)
+    module.time_ns = here(lambda: clock.epoch + clock.now(), time.time_ns)
 
 
 def _replace_locks() -> None:

@@ -33,6 +33,9 @@ _allocate_lock = threading.Lock
 _get_ident = threading.get_ident
 _Thread = threading.Thread
 
+_LOOK = 20_000_000
+"""Real nanoseconds after which is looked again whether outside work goes on."""
+
 WAITS_TO_RECESS = 1_000
 """Waits between two recesses of a moment."""
 
@@ -79,6 +82,10 @@ class VirtualClock:
 
         It is called on that thread, and must not wait.
         """
+        self.outside_works: Callable[[], bool] = _no
+        """Whether something outside is at work, so that time passes as on the wall; it must not wait."""
+        self.handle_signals: Callable[[], None] = _do_nothing
+        """Called on the main thread when it goes on after a wait."""
         self.recess = 0
         """Which recess of its moment the run is in; 0: none."""
         self._recesses = 0
@@ -99,13 +106,20 @@ class VirtualClock:
         return self._now
 
     @property
+    def stopping(self) -> bool:
+        """Whether the run is over: no time passes any more."""
+        return self._stopping
+
+    @property
     def threads(self) -> Set[VirtualThread]:
         """The threads that live on it; to be asked for by the one that has the baton."""
         return self._threads
 
     def sleep(self, duration: int) -> None:
         """Let ``duration`` virtual nanoseconds pass; 0 lets every other thread that can run go first."""
-        self.park(self._now + max(duration, 0))
+        deadline = self._now + max(duration, 0)
+        while self.park(deadline) and self._now < deadline:
+            continue  # it handled a signal
 
     def signal(self) -> VirtualSignal:
         """A new signal, not set."""
@@ -144,7 +158,7 @@ class VirtualClock:
         heappush(self._deadlines, (max(time, self._now), next(self._order), action))
 
     def park(self, deadline: int | None) -> bool:
-        """Hand the baton on until unparked or until ``deadline``; True if unparked.
+        """Hand the baton on until unparked or until ``deadline``; True if unparked, which a signal does, too.
 
         Raises:
             KeyboardInterrupt: the thread was interrupted, or the run was stopped and this is its main thread.
@@ -163,7 +177,12 @@ class VirtualClock:
             heappush(self._deadlines, (deadline, me.current_wait, me))
         self._hand_on(me)
         self._raise_knock(me)
-        return self._wind_up(me) if self._stopped() else me.woken
+        if self._stopped():
+            return self._wind_up(me)
+        woken = me.woken
+        if me.is_main:
+            self.handle_signals()
+        return woken
 
     def unpark(self, thread: VirtualThread) -> None:
         """Let a parked thread run again, after those that can run already; else nothing happens."""
@@ -457,10 +476,12 @@ class VirtualClock:
                 return True  # the moment goes on to its end, even if time stands
             if self._inputs:
                 break
+            works = self.outside_works()
+            self.pace.keep_real(works, self._now)
             delay = self.pace.delay_until(target)
             if delay is not None and delay <= 0:
                 return True
-            self._rest(delay)
+            self._rest(min(delay, _LOOK) if works and delay is not None else delay)
         self._come_to(self.pace.reached(self._now, target))
         self._empty_inbox()
         return False
@@ -499,6 +520,15 @@ class _Steering:
 
 def _nothing() -> int | None:
     """Stand in for a hook that nobody set."""
+
+
+def _no() -> bool:
+    """Stand in for a question that nobody answers."""
+    return False
+
+
+def _do_nothing() -> None:
+    """Stand in for a listener that nobody set."""
 
 
 def _pass(_thread: VirtualThread) -> None:

@@ -58,10 +58,11 @@ class VirtualSignal:
 
     def wait(self, deadline: int | None) -> bool:
         """Wait until set, or until virtual time reaches ``deadline``; True if it was set."""
-        if not self._set and (deadline is None or deadline > self._clock.now()):
+        while not self._set and (deadline is None or deadline > self._clock.now()):
             self._waiter = self._clock.current
             try:
-                self._clock.park(deadline)
+                if not self._clock.park(deadline):
+                    break
             finally:
                 self._waiter = None
         was_set, self._set = self._set, False

@@ -5,7 +5,6 @@
 """
 
 import os
-import random
 import signal
 import sys
 import threading
@@ -34,6 +33,7 @@ from sim.engine.outbox import Outbox
 from sim.engine.output import ProcessStream
 from sim.engine.program import Outcome, script
 from sim.engine.programs import Programs
+from sim.engine.repeatability import Repeatability
 from sim.engine.requests import Requests
 from sim.engine.robot import provide_robot
 from sim.engine.setup import RunSetup
@@ -129,8 +129,7 @@ class Engine:
             Watchdog(self._virtual, self._outbox.record, self._give_up).start()
             self._virtual.on_recess = Standstill(self._virtual, self._outbox.record, self._give_up).look
             self._virtual.on_lock_wait = endless.begins
-            live_on(self._virtual)
-            random.seed(0)
+            live_on(self._virtual, Repeatability(self._clock, self._outbox.record).lose)
         elif isinstance(self._clock, PacedClock):
             follow(self._clock)
             HeldUp(self._clock, self._outbox.record).start()

@@ -477,11 +477,13 @@ class Notice(Event, frozen=True, tag="notice"):
     """The engine has something to say to the person about the run itself, in one sentence.
 
     ``entity`` is the callback that waits without an end, where that is what there is to say; 0: none.
+    ``unrepeatable``: it says why a run on virtual time cannot be repeated exactly.
     """
 
     severity: Severity
     text: str
     entity: EntityId = 0
+    unrepeatable: bool = False
 
 
 class EventsLost(Event, frozen=True, tag="lost"):

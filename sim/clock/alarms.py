@@ -1,0 +1,184 @@
+"""Signals on virtual time: alarms at their virtual moment, and handlers on the main thread in its turn."""
+
+import math
+import os
+import signal
+import sys
+from collections.abc import Iterable
+from types import FrameType
+from typing import Any
+
+from sim.clock.outside_work import OutsideWork
+from sim.clock.replacing import Replacements
+
+_SECOND = 1_000_000_000
+_signal = signal.signal
+_mask = signal.pthread_sigmask
+_taken = signal.sigtimedwait
+_pending = signal.sigpending
+_getsignal = signal.getsignal
+
+
+class Signals:
+    """The signals of a run's main thread. Make it on that thread; only threads of the clock may call it."""
+
+    def __init__(self, outside: OutsideWork) -> None:
+        self._outside = outside
+        self._clock = outside.clock
+        self._main = self._clock.current
+        self._handlers: dict[int, Any] = {}
+        self._waiting: list[int] = []
+        self._handled = 0
+        self._rings_at = 0
+        self._interval = 0
+        self._setting = 0
+
+    def replace(self, replacements: Replacements) -> None:
+        """Take the place of what the ``signal`` module does about alarms, waits and handlers."""
+        for name in ("alarm", "setitimer", "getitimer", "pause", "signal", "getsignal", "sigpending"):
+            replacements.put(signal, name, getattr(self, name))
+        replacements.put(signal, "sigwait", lambda wanted: self._wait_for(wanted, None, "signal.sigwait"))
+        replacements.put(
+            signal, "sigwaitinfo", lambda wanted: _info(self._wait_for(wanted, None, "signal.sigwaitinfo"))
+        )
+        replacements.put(signal, "sigtimedwait", self.sigtimedwait)
+        kill, raise_signal, pthread_kill = os.kill, signal.raise_signal, signal.pthread_kill
+        replacements.put(
+            os,
+            "kill",
+            lambda pid, number: None if pid == os.getpid() and self._came(number) else kill(pid, number),
+        )
+        replacements.put(
+            signal, "raise_signal", lambda number: None if self._came(number) else raise_signal(number)
+        )
+        replacements.put(
+            signal,
+            "pthread_kill",
+            lambda thread, number: None if number and self._came(number) else pthread_kill(thread, number),
+        )
+        self._clock.handle_signals = self._handle
+
+    def alarm(self, seconds: int) -> int:
+        """``signal.alarm``."""
+        return math.ceil(self.setitimer(signal.ITIMER_REAL, int(seconds))[0])
+
+    def setitimer(self, which: int, seconds: float, interval: float = 0.0) -> tuple[float, float]:
+        """``signal.setitimer``; timers of computing are refused, which takes no virtual time."""
+        before = self.getitimer(which)
+        if seconds < 0 or interval < 0:
+            raise signal.ItimerError(22, "Invalid argument")
+        self._setting += 1
+        self._interval = math.ceil(interval * _SECOND)
+        self._rings_at = 0
+        if seconds:
+            self._set(self._clock.now() + math.ceil(seconds * _SECOND))
+        return before
+
+    def getitimer(self, which: int) -> tuple[float, float]:
+        """``signal.getitimer``."""
+        if which != signal.ITIMER_REAL:
+            raise NotImplementedError(
+                "signal.ITIMER_VIRTUAL and ITIMER_PROF count computing, which takes no virtual time; "
+                "use --clock real"
+            )
+        left = max(self._rings_at - self._clock.now(), 0)
+        return left / _SECOND, self._interval / _SECOND
+
+    def _set(self, moment: int) -> None:
+        self._rings_at = moment
+        setting = self._setting
+
+        def ring() -> None:
+            if setting != self._setting:
+                return  # it was set anew
+            self._rings_at = 0
+            if self._interval:
+                self._set(moment + self._interval)
+            self._come(signal.SIGALRM)
+
+        self._clock.call_at(moment, ring)
+
+    def signal(self, number: int, handler: Any) -> Any:
+        """``signal.signal``: what comes from outside waits for the main thread's turn, too."""
+        before = self.getsignal(number)
+        _signal(number, self._hear if callable(handler) else handler)
+        self._handlers[number] = handler
+        return before
+
+    def getsignal(self, number: int) -> Any:
+        """``signal.getsignal``."""
+        return self._handlers.get(number, _getsignal(number))
+
+    def pause(self) -> None:
+        """``signal.pause``: wait until a handler has run."""
+        before = self._handled
+        while self._handled == before and not self._clock.stopping:
+            self._clock.park(None)
+
+    def sigtimedwait(self, wanted: Iterable[int], timeout: float) -> Any:
+        """``signal.sigtimedwait``."""
+        if timeout < 0:
+            raise ValueError("timeout must be non-negative")
+        return _info(self._wait_for(wanted, timeout, "signal.sigtimedwait"))
+
+    def sigpending(self) -> set[Any]:
+        """``signal.sigpending``."""
+        return {*_pending()} | {signal.Signals(number) for number in self._waiting if number in _blocked()}
+
+    def _wait_for(self, wanted: Iterable[int], timeout: float | None, what: str) -> Any:
+        numbers = set(wanted)
+
+        def look() -> int:
+            for number in self._waiting:
+                if number in numbers:
+                    self._waiting.remove(number)
+                    return number
+            found = _taken(numbers, 0)
+            return 0 if found is None else found.si_signo
+
+        number = self._outside.wait(look, timeout, what)
+        return signal.Signals(number) if number else None
+
+    def _came(self, number: int) -> bool:
+        """A signal for this process; whether it has a handler, or is waited for, and so has been seen to."""
+        if not callable(self.getsignal(number)):
+            return False
+        self._come(number)
+        if self._clock.current is self._main:
+            self._handle()
+        return True
+
+    def _hear(self, number: int, _frame: FrameType | None) -> None:
+        """A signal from outside, at whatever real moment."""
+        self._clock.inject(lambda: self._come(number))
+
+    def _come(self, number: int) -> None:
+        if number not in self._waiting:
+            self._waiting.append(number)
+        self._clock.unpark(self._main)
+
+    def _handle(self) -> None:
+        """Run the handlers of the signals that have come and are not blocked; called on the main thread."""
+        if not self._waiting:
+            return
+        blocked = _blocked()
+        for number in [each for each in self._waiting if each not in blocked]:
+            self._waiting.remove(number)
+            handler = self.getsignal(number)
+            if callable(handler):
+                self._handled += 1
+                handler(number, sys._getframe())
+            elif handler is signal.SIG_DFL and number == signal.SIGALRM:
+                raise SystemExit("its alarm rang and SIGALRM has no handler; signal.signal() gives it one")
+
+
+def _blocked() -> set[Any]:
+    blocked: set[Any] = _mask(signal.SIG_BLOCK, ())
+    return blocked
+
+
+def _info(number: Any) -> Any:
+    """What ``sigwaitinfo`` returns of a signal from within the process; None: none came."""
+    if number is None:
+        return None
+    return signal.struct_siginfo((number, 0, 0, os.getpid(), os.getuid(), 0, 0))

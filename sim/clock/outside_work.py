@@ -1,0 +1,111 @@
+"""Waits for what happens outside virtual time: processes, sockets, pipes, signals, locks of files.
+
+The thread looks again and again, in small steps of virtual time, and meanwhile time passes as on the wall. So
+outside work counts as long as it lasts, rounded up to a step, and the other threads go on at their moments.
+"""
+
+import math
+import threading
+import time
+from collections.abc import Callable, Generator
+from contextlib import contextmanager
+from typing import Any, TypeVar
+
+from sim.clock.outside import start_outside
+from sim.clock.virtual import VirtualClock
+
+# Kept from before sim.clock.stdlib puts the virtual ones in their place.
+_Thread = threading.Thread
+_real_sleep = time.sleep
+
+_FIRST_STEP = 1_000_000
+_LONGEST_STEP = 16_000_000
+"""Virtual nanoseconds between two looks: from the first on they double up to the longest."""
+
+_GLANCE = 1_000
+"""Virtual nanoseconds that a look takes which finds nothing: a loop of such looks comes to its end."""
+
+Found = TypeVar("Found")
+
+
+class OutsideWork:
+    """What goes on outside a virtual clock and holds its time to the pace of the wall."""
+
+    def __init__(self, clock: VirtualClock, tell: Callable[[str], None]) -> None:
+        self.clock = clock
+        self.tell = tell
+        """Called on the thread that does it with what cannot be repeated exactly: a clause of a sentence."""
+        self._waits = 0
+        self._others: list[Callable[[], bool]] = []
+        clock.outside_works = self._goes_on
+
+    def also(self, goes_on: Callable[[], bool]) -> None:
+        """Hold time to the pace of the wall as long as ``goes_on`` says so, too; it must not wait."""
+        self._others.append(goes_on)
+
+    def begin(self) -> None:
+        """Outside work begins: time passes as on the wall from here on."""
+        self.clock.pace.keep_real(True, self.clock.now())
+
+    def glance(self) -> None:
+        """The calling thread has looked for something outside in vain."""
+        self._pass(_GLANCE)
+
+    def wait(self, look: Callable[[], Found], timeout: float | None, what: str) -> Found:
+        """Look until something true is found, or for ``timeout`` seconds; what was found last.
+
+        ``what`` does the waiting, as ``select.select``.
+        """
+        found = look()
+        if found:
+            return found
+        if timeout is not None and timeout <= 0:
+            self.glance()
+            return found
+        self.tell(f"{what} waits for something outside virtual time, which takes as long as it takes")
+        left: float = math.inf if timeout is None else math.ceil(timeout * 1e9)
+        step = _FIRST_STEP
+        with self._waiting():
+            self.begin()
+            while not found and left > 0:
+                left -= self._pass(int(min(step, left)))
+                step = min(2 * step, _LONGEST_STEP)
+                found = look()
+        return found
+
+    def call(self, function: Callable[..., Found], *args: Any, what: str, **named: Any) -> Found:
+        """Call what blocks on a thread outside the clock, and wait for what it returns or raises."""
+        result: list[Found] = []
+        error: list[BaseException] = []
+
+        def work() -> None:
+            try:
+                result.append(function(*args, **named))
+            except BaseException as raised:  # noqa: BLE001 -- it is raised where it was called for
+                error.append(raised)
+
+        start_outside(_Thread(target=work, name=what, daemon=True))
+        self.wait(lambda: result or error, None, what)
+        if error:
+            raise error[0]
+        return result[0]
+
+    def _pass(self, step: int) -> int:
+        """Let a step of time pass; returns how long it was, which is less where a signal came."""
+        before = self.clock.now()
+        self.clock.park(before + step)
+        if self.clock.stopping:  # time stands for good, and the program winds up on the wall's
+            _real_sleep(step / 1e9)
+            return step
+        return self.clock.now() - before
+
+    @contextmanager
+    def _waiting(self) -> Generator[None, None, None]:
+        self._waits += 1
+        try:
+            yield
+        finally:
+            self._waits -= 1
+
+    def _goes_on(self) -> bool:
+        return self._waits > 0 or any(goes_on() for goes_on in self._others)

@@ -1,0 +1,24 @@
+"""Tells once in a run on virtual time of what a program does that no run can repeat exactly."""
+
+from collections.abc import Callable
+
+from sim.clock import Clock
+from sim.ros.own_code import place_of_caller
+from sim.trace.events import AnyEvent, Notice, Severity
+
+
+class Repeatability:
+    """Whether a run can be repeated exactly, as far as is known. ``record`` takes events."""
+
+    def __init__(self, clock: Clock, record: Callable[[AnyEvent], None]) -> None:
+        self._clock = clock
+        self._record = record
+        self._lost = False
+
+    def lose(self, what: str) -> None:
+        """The calling thread's program does something that will not be the same again, a clause says what."""
+        place = place_of_caller()
+        if place and not self._lost:
+            self._lost = True
+            text = f"{place}: {what}, so no other run will be exactly like this one"
+            self._record(Notice(self._clock.now(), Severity.WARN, text, unrepeatable=True))

@@ -1,0 +1,74 @@
+"""Each row of the table of the standard library does on virtual time what the table says."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import pytest
+
+from tests.clock.stdlib_table import PAGE, PRELUDE, ROWS, Does, Row, page_with, table
+
+_SLACK = 0.5
+"""Seconds that outside work may take longer on a loaded machine."""
+_HARNESS = """
+import asyncio, json, os, sys, traceback
+import sim.engine.process
+from sim.clock import VirtualClock
+from sim.clock.asyncio_loops import ProgramLoops
+from sim.clock.stdlib import live_on
+from sim.engine.children import refuse_children
+
+told = []
+clock = VirtualClock()
+refuse_children()
+live_on(clock, told.append)
+asyncio.set_event_loop_policy(ProgramLoops(clock))
+exec(sys.argv[2])
+for place, row in enumerate(json.loads(sys.argv[1])):
+    told.clear()
+    began, error = clock.now(), ""
+    try:
+        exec(row, dict(globals()))
+    except BaseException as raised:
+        error = "".join(traceback.format_exception(raised))
+    print("\\n" + json.dumps([place, (clock.now() - began) / 1e9, told[:1], error]), flush=True)
+os._exit(0)
+"""
+
+Came: TypeAlias = list[Any]
+
+
+@pytest.fixture(scope="module")
+def came() -> dict[str, Came]:
+    """What came of each row: seconds it took, what was told of it, and the error."""
+    done = subprocess.run(
+        [sys.executable, "-c", _HARNESS, json.dumps([row.body for row in ROWS]), PRELUDE],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        cwd=Path(__file__).parents[2],
+        check=False,
+    )
+    lines = [json.loads(line) for line in done.stdout.splitlines() if line.startswith("[")]
+    assert len(lines) == len(ROWS), done.stderr
+    return {ROWS[place].call: rest for place, *rest in lines}
+
+
+@pytest.mark.parametrize("row", ROWS, ids=lambda row: row.call)
+def test_a_row_does_what_the_table_says(row: Row, came: dict[str, Came]) -> None:
+    seconds, told, error = came[row.call]
+    if row.does is Does.REFUSED:
+        assert "use --clock real" in error
+        return
+    assert error == ""
+    assert bool(told) is (row.does in {Does.HOLDS, Does.NEW})
+    if row.does is Does.HOLDS:
+        assert row.takes <= seconds <= row.takes + _SLACK
+    else:
+        assert seconds == pytest.approx(row.takes, abs=1e-8)
+
+
+def test_the_page_has_the_table() -> None:
+    assert PAGE.read_text(encoding="utf-8") == page_with(table())
