@@ -49,7 +49,7 @@ class OutsideWork:
 
     def glance(self) -> None:
         """The calling thread has looked for something outside in vain."""
-        self._pass(_GLANCE)
+        self._pass(_GLANCE, math.inf)
 
     def wait(self, look: Callable[[], Found], timeout: float | None, what: str) -> Found:
         """Look until something true is found, or for ``timeout`` seconds; what was found last.
@@ -68,13 +68,14 @@ class OutsideWork:
         with self._waiting():
             self.begin()
             while not found and left > 0:
-                left -= self._pass(int(min(step, left)))
+                left -= self._pass(step, left)
                 step = min(2 * step, _LONGEST_STEP)
                 found = look()
         return found
 
     def call(self, function: Callable[..., Found], *args: Any, what: str, **named: Any) -> Found:
         """Call what blocks on a thread outside the clock, and wait for what it returns or raises."""
+        self.tell(f"{what} works outside virtual time, and takes as long as it takes")
         result: list[Found] = []
         error: list[BaseException] = []
 
@@ -90,9 +91,13 @@ class OutsideWork:
             raise error[0]
         return result[0]
 
-    def _pass(self, step: int) -> int:
-        """Let a step of time pass; returns how long it was, which is less where a signal came."""
+    def _pass(self, step: int, limit: float) -> int:
+        """Let a step of time pass, and what the wall is ahead; returns how long that was.
+
+        It is at most ``limit``, and shorter where a signal came.
+        """
         before = self.clock.now()
+        step = int(min(max(step, self.clock.pace.lag(before)), limit))
         self.clock.park(before + step)
         if self.clock.stopping:  # time stands for good, and the program winds up on the wall's
             _real_sleep(step / 1e9)

@@ -45,6 +45,10 @@ class Pace:
             self._anchor_at(now)
             self._is_real = wanted
 
+    def lag(self, now: int) -> int:
+        """Nanoseconds that the wall is ahead of a run that keeps to it; 0 for one that need not."""
+        return self.reached(now, None) - now if self._is_real else 0
+
     def stand(self) -> None:
         """Let time stand; a goal is given up."""
         self._give_up_goal()

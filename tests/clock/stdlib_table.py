@@ -13,8 +13,8 @@ PAGE = Path(__file__).parents[2] / "sim" / "clock" / "README.md"
 _TABLE = re.compile(r"(?<=<!-- table -->\n).*(?=<!-- end of the table -->)", re.DOTALL)
 
 PRELUDE = """
-import asyncio, concurrent.futures, contextlib, datetime, email.utils, fcntl, logging, multiprocessing, os, pty
-import queue, random, resource, sched, secrets, select, selectors, signal, socket, subprocess, sys, tempfile
+import asyncio, concurrent.futures, contextlib, datetime, email.utils, fcntl, logging, multiprocessing, os
+import pty, queue, random, resource, sched, secrets, select, selectors, signal, socket, subprocess, tempfile
 import threading, time, uuid
 from multiprocessing.pool import ThreadPool
 

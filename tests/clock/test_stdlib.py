@@ -48,6 +48,126 @@ def run(program: str) -> None:
 
 
 PROGRAMS = {
+    "other_threads_go_on_at_their_moments_while_a_process_runs": """
+        import subprocess
+        ticks = []
+        def tick():
+            for _ in range(3):
+                time.sleep(0.1)
+                ticks.append(time.monotonic())
+        ticking = thread(tick)
+        subprocess.run(["sleep", "0.35"])
+        assert ticks == [0.1, 0.2, 0.3] and 0.35 <= now() < 1, (ticks, now())
+    """,
+    "time_jumps_again_once_a_process_has_ended": """
+        import subprocess
+        process = subprocess.Popen(["sleep", "0.2"])
+        began = real_monotonic()
+        time.sleep(3600)
+        assert real_monotonic() - began < 3 and process.poll() == 0
+    """,
+    "looking_for_a_process_again_and_again_comes_to_its_end": """
+        import subprocess
+        process = subprocess.Popen(["sleep", "0.2"])
+        while process.poll() is None:
+            pass
+        assert 0.15 < now() < 1, now()
+    """,
+    "a_handler_that_raises_ends_the_wait_that_its_alarm_rang_in": """
+        import signal
+        def late(*_):
+            raise TimeoutError("too late")
+        signal.signal(signal.SIGALRM, late)
+        for wait in (threading.Event().wait, lambda: time.sleep(9), queue.Queue().get):
+            signal.alarm(2)
+            began = now()
+            try:
+                wait()
+            except TimeoutError:
+                assert now() == began + 2
+                continue
+            raise AssertionError
+    """,
+    "a_handler_that_sleeps_does_not_lengthen_a_sleep_nor_lose_a_wake_up": """
+        import signal
+        signal.signal(signal.SIGALRM, lambda *_: time.sleep(1))
+        signal.alarm(2)
+        time.sleep(5)
+        assert now() == 5
+        event = threading.Event()
+        after(2.5, event.set)
+        signal.alarm(2)
+        assert event.wait(60) and now() == 8, now()
+    """,
+    "an_alarm_is_set_anew_and_told_of": """
+        import signal
+        rings = []
+        signal.signal(signal.SIGALRM, lambda *_: rings.append(now()))
+        assert signal.alarm(5) == 0
+        time.sleep(1.5)
+        assert signal.alarm(10) == 4
+        assert signal.setitimer(signal.ITIMER_REAL, 0.5, 2) == (10, 0)
+        time.sleep(5)
+        assert signal.setitimer(signal.ITIMER_REAL, 0) == (1.5, 2)
+        time.sleep(5)
+        assert rings == [2, 4, 6], rings
+    """,
+    "a_signal_to_itself_interrupts_the_main_thread": """
+        import os, signal
+        after(0.5, lambda: os.kill(os.getpid(), signal.SIGINT))
+        try:
+            time.sleep(9)
+        except KeyboardInterrupt:
+            assert now() == 0.5
+        else:
+            raise AssertionError
+    """,
+    "a_signal_from_outside_is_handled_in_the_main_threads_turn": """
+        import signal, subprocess, os
+        came = []
+        def handle(number, _):
+            assert clock.current.is_main
+            came.append(number)
+        signal.signal(signal.SIGUSR2, handle)
+        subprocess.run(["sh", "-c", f"kill -USR2 {os.getpid()}; sleep 0.2"])
+        time.sleep(0)
+        assert came == [signal.SIGUSR2]
+    """,
+    "a_blocked_alarm_waits_until_it_is_let_through": """
+        import signal
+        rings = []
+        signal.signal(signal.SIGALRM, lambda *_: rings.append(now()))
+        signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGALRM})
+        signal.alarm(1)
+        time.sleep(2)
+        assert rings == [] and signal.sigpending() == {signal.SIGALRM}
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGALRM})
+        time.sleep(1)
+        assert len(rings) == 1
+    """,
+    "threads_outside_the_clock_keep_real_dates_and_real_randomness": """
+        import datetime, os
+        got, done = [], threading.Event()
+        def ask():
+            got.extend([datetime.datetime.now().year, time.localtime().tm_year, os.urandom(8)])
+            clock.inject(done.set)
+        orders.put(ask)
+        done.wait()
+        assert got[0] > 2024 and got[1] > 2024
+        assert datetime.datetime.now().year == time.localtime().tm_year == 2023
+    """,
+    "a_date_is_pickled_compared_and_subclassed_as_ever": """
+        import datetime, pickle
+        from datetime import datetime as imported
+        class Own(imported):
+            pass
+        told = imported.now()
+        assert type(told) is imported is datetime.datetime
+        assert pickle.loads(pickle.dumps(told)) == told == imported.fromtimestamp(time.time())
+        assert isinstance(Own.now(datetime.UTC), Own) and Own.now(datetime.UTC).tzinfo
+        time.sleep(1.5)
+        assert imported.now() - told == datetime.timedelta(seconds=1.5)
+    """,
     "a_lock_handed_to_one_who_is_interrupted_goes_to_the_next": """
         lock, ends, got = threading.Lock(), [], []
         def come():
