@@ -252,8 +252,7 @@ def _add_exercises(commands: "argparse._SubParsersAction[Parser]") -> None:
     grading = commands.add_parser(
         "grade",
         help="check the files of many learners",
-        description="Run and check what lies in DIR: a folder for each learner with files such as "
-        "split_groups.py, or a file for each. Ends with 0 if all pass. The files are programs, and are run.",
+        description=grade.DESCRIPTION,
     )
     grade.add_options(grading)
     grading.set_defaults(action=grade.grade)

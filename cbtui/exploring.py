@@ -1,12 +1,10 @@
 """Runs a program in other orders of its threads, several runs at once, and tells what came of each."""
 
-import multiprocessing
 import os
 from collections.abc import Generator, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass, field
 from functools import partial
-from multiprocessing import forkserver, resource_tracker
 from multiprocessing.context import BaseContext
 from threading import Event
 
@@ -14,11 +12,11 @@ import msgspec
 
 from cbtui.check_text import verdict_line
 from cbtui.checking import Observed, observe
+from cbtui.forking import forking_context
 from cbtui.repeat import why_unrepeatable
-from cbtui.session import Session, engine_environment
+from cbtui.session import Session
 from lessons.checks import problems
 from lessons.judge import Judge
-from sim.clean_start import without_current_folder
 from sim.engine.setup import RunSetup
 from sim.trace.events import Severity
 from sim.trace.model import Window
@@ -74,7 +72,7 @@ class Exploration:
         ``processes`` run at once, None: one for each core. Closing the iterator ends all of them.
         """
         given_up = Event()
-        context = _engine_context()
+        context = forking_context(_PRELOADED)
         with ThreadPoolExecutor(processes or _cores()) as pool:
             running = {pool.submit(self._result, seed, context, given_up): seed for seed in seeds}
             try:
@@ -126,17 +124,6 @@ def _raised(observed: Observed) -> Iterator[Failure]:
                 kind, _, text = span.error.partition(":")
                 detail = trouble if span.error in trouble else text.strip()
                 yield Failure(f"{entity.spoken_name} raised {kind}", detail)
-
-
-def _engine_context() -> BaseContext:
-    """Starts engines as copies of one process that has imported all; what a run changes stays in its copy."""
-    context = multiprocessing.get_context("forkserver")
-    context.set_forkserver_preload(_PRELOADED)
-    with without_current_folder():
-        resource_tracker.ensure_running()  # it lets SIGINT through when it has started, and forks must not
-    with engine_environment():
-        forkserver.ensure_running()
-    return context
 
 
 def _cores() -> int:

@@ -31,6 +31,8 @@ from sim.trace.events import AnyEvent, RunEnded, decode
 
 _GRACE = 0.4
 """Seconds that an engine gets to end by itself before it is killed."""
+_LONGEST_BATCH = 1 << 30
+"""Bytes; the length of a batch is what the program's process says it is."""
 _TO_WRITE = 0.2
 """Seconds that an engine gets to write down where its threads stand."""
 _redirecting = threading.Lock()
@@ -45,7 +47,7 @@ class Session:
     session's reader thread. An engine from which nothing comes is told of by a notice among the events. When
     the engine has ended, whatever processes it started are ended too; one that takes more memory than
     ``cbtui.warden.ceiling`` allows is, and so are all when this process is killed. ``context`` starts the
-    engine's process, None: afresh.
+    engine's process, None: afresh. ``unpack`` makes events of the bytes of a batch, on the reader thread.
     """
 
     def __init__(
@@ -54,7 +56,9 @@ class Session:
         deliver: Callable[[list[AnyEvent]], None],
         ended: Callable[[str | None], None],
         context: BaseContext | None = None,
+        unpack: Callable[[bytes], list[AnyEvent]] = decode,
     ) -> None:
+        self._unpack = unpack
         self._deliver = deliver
         self._ended = ended
         self._stopping = False
@@ -134,7 +138,7 @@ class Session:
         while True:
             try:
                 if self._pipe.poll(LOOK):
-                    events = silence.came(decode(self._pipe.recv_bytes()))
+                    events = silence.came(self._unpack(self._pipe.recv_bytes(_LONGEST_BATCH)))
                 else:
                     events = silence.nothing_came(stopped=self._family.is_stopped())
             except (EOFError, OSError):

@@ -1,4 +1,4 @@
-"""``cbtui grade``: the files of a folder of learners, checked one after another."""
+"""``cbtui grade``: the files of a folder of learners, run and checked one after another."""
 
 import argparse
 import os
@@ -11,9 +11,24 @@ from cbtui.commands.output import complain, hand_over, say
 from cbtui.commands.targets import folder_of, refuse, same_file
 
 if TYPE_CHECKING:
-    from cbtui.grading import Paper
+    from cbtui.grading import HandedIn, Paper
+    from cbtui.mark_sheet import MarkSheet
 
 _STANDARD_OUTPUT = "-"
+SUSPICIOUS = 3
+"""The exit code where a run shows something that no honest one can."""
+CHANGED = 4
+"""The exit code where a submission changed cbtui or a lesson, and grading stopped."""
+
+DESCRIPTION = """Run and check what lies in DIR: a folder for each learner with files such as split_groups.py, or a
+file for each. The files are programs, and are run: each on a copy, and with bwrap (of the package
+bubblewrap) in namespaces of its own, without a network, other processes, other submissions, checks
+and solutions. Without bwrap it can read and write whatever you can. Either way it shares the
+process that traces it: one that knows how can write a trace of its own. What gives that away (a
+broken seal, functions of the engine that were replaced, callbacks that were not handed in, events
+that cannot follow one another) is reported as suspicious and earns no marks; read such files
+yourself. Ends with 0 if all pass, 1 if some do not, 3 if something is suspicious, 4 if a submission
+changed cbtui or a lesson, which ends the grading."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -25,33 +40,85 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         metavar="OUT.csv",
         nargs="?",
         const=_STANDARD_OUTPUT,
-        help="write the table as CSV, to a file or to standard output",
+        help="write the table as CSV, row by row, to a file or to standard output",
+    )
+    parser.add_argument(
+        "--resume",
+        action="store_true",
+        help="keep the rows that are in OUT.csv already, and grade what is missing there or was changed",
     )
     add_limit(parser, 30)
     more_lessons.add_option(parser)
 
 
 def grade(options: argparse.Namespace) -> int:
-    """Check every learner's files; returns the exit code: 0 all pass, 1 some do not."""
+    """Check every learner's files; returns the exit code."""
     papers = _papers(options)
-    if options.csv not in {None, _STANDARD_OUTPUT}:
-        _check_table(Path(options.csv), papers)
-    from cbtui.grading import grades, line, table
+    path = None if options.csv in {None, _STANDARD_OUTPUT} else Path(options.csv)
+    if path is not None:
+        _check_table(path, papers)
+    elif options.resume:
+        refuse("--resume goes on with a table; name it with --csv OUT.csv")
+    from cbtui.confinement import Confinement
+    from cbtui.grading import HandedIn, PackagesChangedError, line
+    from cbtui.mark_sheet import MarkSheet, SheetFile, SheetStream
 
-    graded = []
-    for each in grades(papers, options.limit):
-        graded.append(each)
-        if options.csv != _STANDARD_OUTPUT:
-            say(f"{line(each)}\n")
-    if options.csv == _STANDARD_OUTPUT:
-        hand_over(table(graded))
-    elif options.csv is not None:
-        try:
-            Path(options.csv).write_text(table(graded), encoding="utf-8", errors="backslashreplace")
-        except OSError as error:
-            complain(f"{options.csv} cannot be written: {error.strerror}")
-            return 1
-    return 0 if all(each.good for each in graded) else 1
+    handed_in = HandedIn(papers)
+    sheet = MarkSheet(handed_in.most_checks)
+    if options.resume and path is not None:
+        _take_earlier(sheet, path, handed_in)
+    hidden = [Path(options.folder), *_hidden(papers), *([] if path is None else [path])]
+    confinement = Confinement.best(hidden)
+    if confinement.missing:
+        complain(
+            f"{confinement.missing}: each submission runs on a copy, but can read and write what you can, "
+            "end your processes and use the network; grade where it can do no harm"
+        )
+    missing = [entry for entry in handed_in.entries if not sheet.holds(entry.key)]
+    report = hand_over if options.csv == _STANDARD_OUTPUT else _nothing
+    out = SheetStream(sheet, report) if path is None else SheetFile(sheet, path)
+    try:
+        out.begin()
+        for each in handed_in.grades(missing, options.limit, confinement, out.mended):
+            out.append(sheet.add(each))
+            if options.csv != _STANDARD_OUTPUT:
+                say(f"{line(each)}\n")
+    except PackagesChangedError as error:
+        complain(str(error))
+        return CHANGED
+    except OSError as error:
+        if error.filename != options.csv:
+            raise
+        complain(f"{options.csv} cannot be written: {error.strerror}")
+        return 1
+    if any(row["suspicious"] for row in sheet.rows):
+        return SUSPICIOUS
+    return 0 if all(row["passed"] == row["total"] != "0" for row in sheet.rows) else 1
+
+
+def _nothing(_text: str) -> None:
+    """Stand for a table that nobody wants."""
+
+
+def _take_earlier(sheet: "MarkSheet", path: Path, handed_in: "HandedIn") -> None:
+    from cbtui.mark_sheet import BadSheetError
+
+    try:
+        text = path.read_text(encoding="utf-8", errors="replace") if path.exists() else ""
+        sheet.read(text, [entry.key for entry in handed_in.entries])
+    except OSError as error:
+        refuse(f"{path} cannot be read: {error.strerror}")
+    except BadSheetError as error:
+        refuse(f"--resume cannot go on with {path}: {error}")
+
+
+def _hidden(papers: "list[Paper]") -> "list[Path]":
+    """What no submission may see, wherever it lies."""
+    from lessons.catalogue import ROOT
+    from lessons.personal import config_folder, state_folder
+
+    folders = {paper.lesson.folder for paper in papers if paper.lesson is not None}
+    return [ROOT, *sorted(folders), state_folder(), config_folder()]
 
 
 def _check_table(path: Path, papers: "list[Paper]") -> None:

@@ -10,6 +10,7 @@ import sys
 import threading
 import time
 from functools import partial
+from itertools import count
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import NoReturn
@@ -31,6 +32,7 @@ from sim.engine.last_words import keep_last_words
 from sim.engine.lines import Lines
 from sim.engine.outbox import Outbox
 from sim.engine.output import ProcessStream
+from sim.engine.own_functions import OwnFunctions
 from sim.engine.program import Outcome, script
 from sim.engine.programs import Programs
 from sim.engine.repeatability import Repeatability
@@ -52,9 +54,12 @@ from sim.ros.host import Host, install
 from sim.ros.probe import Probe
 from sim.ros.process import Process, current_process, share_machine
 from sim.trace.events import AnyEvent, InputGiven, Notice, Printed, RunEnded, RunStarted, Severity, TimePassed
+from sim.trace.sealing import Seal
 
 _GRACE = 0.5
 """Real seconds that a program gets to wind up once its run is over."""
+_BATCHES_A_LOOK = 16
+"""Sealed batches to one that is sent with a look at the engine's own functions, which takes milliseconds."""
 
 # Kept from before a clock, a program or the keeping of last words put their own in their place.
 _real_sleep = time.sleep
@@ -83,15 +88,19 @@ class Engine:
             pipe,
             may_wait=self._virtual is not None,
             before_batch=self._look_at_waits_of_real_time,
-            pack=self._contents.pack,
+            pack=self._pack,
             heartbeat=self._heartbeat,
         )
+        self._seal = Seal(setup.seal) if setup.seal else None
+        self._own_functions: OwnFunctions | None = None
+        self._batches = count()
         self._control = (
             RealControl(clock, self._outbox.record)
             if isinstance(clock, PacedClock)
             else VirtualControl(clock, self._outbox.record)
         )
         probe = Probe(self._clock, self._control.record, self._contents)
+        self._probe = probe
         self._host = Host(self._clock, probe, threads=setup.threads, tuning=tuning_of(setup))
         self._endless: EndlessWaits | None = None
         self._requests = Requests(self._host, self._outbox.record)
@@ -134,6 +143,9 @@ class Engine:
             follow(self._clock)
             HeldUp(self._clock, self._outbox.record).start()
         self._schedule()
+        if self._seal is not None:
+            parts = {"outbox": self._outbox, "probe": self._probe, "host": self._host, "clock": self._clock}
+            self._own_functions = OwnFunctions(parts)
         self._end(self._run_programs())
 
     def _run_programs(self) -> Outcome:
@@ -288,6 +300,16 @@ class Engine:
             return []
         self._passed = now
         return [TimePassed(now)]
+
+    def _pack(self, events: list[AnyEvent]) -> bytes:
+        packed = self._contents.pack(events)
+        if self._seal is None:
+            return packed
+        replaced: tuple[str, ...] = ()
+        is_last = bool(events) and isinstance(events[-1], RunEnded)
+        if self._own_functions is not None and (is_last or next(self._batches) % _BATCHES_A_LOOK == 0):
+            replaced = self._own_functions.replaced()
+        return self._seal.close(packed, replaced)
 
     def _make_room(self) -> None:
         self._outbox.flush()

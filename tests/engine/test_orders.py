@@ -6,7 +6,7 @@ from queue import Queue
 import msgspec
 
 from cbtui.checking import setup_to_judge
-from cbtui.exploring import _engine_context
+from cbtui.forking import forking_context
 from cbtui.session import Session
 from lessons.catalogue import find
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
@@ -25,7 +25,10 @@ def forked(seed: int) -> list[AnyEvent]:
     """The events of a run in a copy of a process that has imported all."""
     news: Queue[list[AnyEvent] | str | None] = Queue()
     session = Session(
-        msgspec.structs.replace(SETUP, seed=seed), news.put, news.put, context=_engine_context()
+        msgspec.structs.replace(SETUP, seed=seed),
+        news.put,
+        news.put,
+        context=forking_context(["sim.engine.process"]),
     )
     session.start()
     events: list[AnyEvent] = []

@@ -19,8 +19,8 @@ from lessons.lesson import Lesson
 from sim.engine.setup import GroupChange, PeriodChange, RunSetup, TimedCall, TimedLine
 from sim.trace.events import AnyEvent, EventsLost, RunEnded
 from sim.trace.jsonl import JsonLines
+from sim.trace.message_counts import MessageCounts
 from tests.soak.footprint import Footprint, footprint, growth
-from tests.soak.message_counts import MessageCounts
 
 SECOND = 1_000_000_000
 _LENGTHS = (30.0, 120.0, 600.0, 1800.0)

@@ -9,11 +9,11 @@ from random import Random
 import pytest
 
 from sim.trace.events import AnyEvent, CallbackStarted, EntityReady, MessageDropped, Published
+from sim.trace.message_counts import MessageCounts
 from tests.ros.schedules import Trouble, random_system
 from tests.soak import keys, lessons, schedules
 from tests.soak.footprint import footprint, growth
 from tests.soak.lesson_runs import SECOND, Came, choose, run_twice
-from tests.soak.message_counts import MessageCounts
 from tests.soak.walks import Walk
 from tests.support.builder import Run
 
