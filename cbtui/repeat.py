@@ -1,11 +1,13 @@
 """Repeating a recorded run: its set-up, or another program's, with the inputs that the recording holds."""
 
 from collections.abc import Callable, Iterable
+from dataclasses import dataclass
 from itertools import chain
 from pathlib import Path
 
 import msgspec
 
+from cbtui.reading import Watched
 from cbtui.record import setup_of
 from sim.engine.inputs import UnknownInputError, inputs_of, stops
 from sim.engine.setup import RunSetup
@@ -45,8 +47,8 @@ def repeated(
     """
     try:
         recording = read(path)
-        events = list(chain.from_iterable(recording.batches()))
-        inputs = inputs_of(events)
+        known = _Known()
+        inputs = inputs_of(map(known.seen, chain.from_iterable(Watched(recording).batches())))
     except (RecordingError, UnknownInputError) as error:
         raise CannotRepeatError(str(error)) from None
     except OSError as error:
@@ -60,10 +62,10 @@ def repeated(
         raise CannotRepeatError(f"{path} is of a real-clock run; only virtual runs can be repeated exactly")
     if program is None:
         _check_programs(recorded, recording)
-        if reason := why_unrepeatable(events):
-            tell(f"{path} is of a program that is not repeatable ({reason}); it is run again all the same")
+        if known.unrepeatable:
+            tell(f"{path} is of a program that is not repeatable ({known.unrepeatable}); it is run again all the same")
     if seconds is None:
-        until = _end(recorded, events)
+        until = recorded.until if recorded.until is not None or known.ended else known.last
     else:
         until = round(seconds * _SECOND)
         inputs = tuple(each for each in inputs if not stops(each))
@@ -79,11 +81,23 @@ def repeated(
     return setup if threads is None else msgspec.structs.replace(setup, threads=threads)
 
 
-def _end(recorded: RunSetup, events: list[AnyEvent]) -> int | None:
-    """When the repetition is over, unless by itself: a run that broke off lasts as long as is known of it."""
-    if recorded.until is not None or any(isinstance(event, RunEnded) for event in events):
-        return recorded.until
-    return max((event.t for event in events), default=0)
+@dataclass
+class _Known:
+    """What its events tell of a recorded run."""
+
+    last: int = 0
+    """Nanoseconds of the run that are on record."""
+    ended: bool = False
+    """Whether it came to its end by then."""
+    unrepeatable: str | None = None
+    """What no other run of its program will do exactly so."""
+
+    def seen(self, event: AnyEvent) -> AnyEvent:
+        """Take note of an event."""
+        self.last = max(self.last, event.t)
+        self.ended = self.ended or isinstance(event, RunEnded)
+        self.unrepeatable = self.unrepeatable or why_unrepeatable([event])
+        return event
 
 
 def _check_programs(recorded: RunSetup, recording: Recording) -> None:

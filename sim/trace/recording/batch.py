@@ -17,6 +17,8 @@ CAST = "application/x-cbtui-events"
 """The media type of the attachments that hold, once more, the events by which a run's parts appear."""
 DEFINITION = "uint32 version\nuint8[] events\n"
 
+_MOST = 16_000_000
+"""Bytes that a batch may have; read, its events take many times as much memory."""
 _LITTLE_ENDIAN_CDR = b"\x00\x01\x00\x00"
 _HEAD = struct.Struct("<4sII")
 
@@ -46,8 +48,8 @@ def unpack_batch(data: bytes) -> list[AnyEvent]:
         NewerFormatError: a later version packed it.
         BatchError: it is something else.
     """
-    if len(data) < _HEAD.size:
-        raise BatchError("too short")
+    if not _HEAD.size <= len(data) <= _MOST:
+        raise BatchError("too short or too long")
     encapsulation, version, length = _HEAD.unpack_from(data)
     if encapsulation != _LITTLE_ENDIAN_CDR:
         raise BatchError("no CDR")

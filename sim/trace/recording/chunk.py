@@ -21,14 +21,21 @@ _MOST = 256_000_000
 """Bytes that a chunk may unpack to: the largest message and a little."""
 _MOST_LZ4 = 255
 """Times that lz4 can make something smaller."""
+_FEW = 100_000_000
+"""Bytes that any recording may unpack to, however small it is."""
+
+
+def unpacked_most(size: int) -> int:
+    """Bytes that a recording of a size may unpack to: as many as lz4 can make of it."""
+    return max(_FEW, _MOST_LZ4 * size)
 
 
 class ChunkError(Exception):
     """A chunk that is damaged, or cannot be unpacked."""
 
 
-def unpack_chunk(chunk: bytes) -> bytes:
-    """What a chunk record contains.
+def unpack_chunk(chunk: bytes, most: int = _MOST) -> bytes:
+    """What a chunk record contains, of at most so many bytes.
 
     Raises:
         ChunkError: it is damaged, too large, or compressed in an unknown way.
@@ -42,7 +49,7 @@ def unpack_chunk(chunk: bytes) -> bytes:
     except struct.error:
         raise ChunkError("it is too short") from None
     packed = chunk[start + _COMPRESSED_LENGTH.size :]
-    if length != len(packed) or size > _MOST:
+    if length != len(packed) or size > min(most, _MOST):
         raise ChunkError("its size is wrong")
     unpacked = _decompress(compression, packed, size)
     if len(unpacked) != size or (checksum and zlib.crc32(unpacked) != checksum):

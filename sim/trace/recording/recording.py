@@ -18,7 +18,7 @@ from mcap.records import Attachment, Channel, Header, Metadata, Schema
 from sim.trace.events import AnyEvent, RunStarted
 from sim.trace.recording import batch
 from sim.trace.recording.about import NAME, About, from_metadata
-from sim.trace.recording.chunk import ChunkError, records_in, unpack_chunk
+from sim.trace.recording.chunk import ChunkError, records_in, unpack_chunk, unpacked_most
 from sim.trace.recording.container import Container, Record
 from sim.trace.recording.recorder import EVENTS_CHANNEL, LIBRARY
 
@@ -86,8 +86,11 @@ class Recording:
         """The text of the programs' files, by their paths."""
         self._library = ""
         self._cast: list[AnyEvent] = []
+        self.share = 0.0
+        """How much of the file the latest reading has come through, from 0 to 1."""
         self._chunks: list[Record] = []
         self._damaged: set[int] = set()
+        self._unpacked_too_much = False
         self._channels: dict[int, Channel] = {}
         self._schemas: dict[int, Schema] = {}
         self._counts: Counter[int] | None = None
@@ -230,18 +233,22 @@ class Recording:
     def _messages(self) -> Iterator[_Message]:
         """Every message of every chunk that is not damaged; counts them when all have been seen."""
         counts: Counter[int] = Counter()
+        room = unpacked_most(self._size)
         with self.path.open("rb") as file:
             container = Container(file)
             for chunk in self._chunks:
+                self.share = chunk.offset / self._size
                 try:
                     content = unpack_chunk(container.read(chunk))
-                    messages = list(self._messages_in(content))
+                    if len(content) > room:
+                        self._unpacked_too_much = True
+                        break
+                    for message in self._messages_in(content):
+                        counts[message[0]] += 1
+                        yield message
+                    room -= len(content)
                 except (ChunkError, *_UNREADABLE):
                     self._damaged.add(chunk.offset)
-                    continue
-                for message in messages:
-                    counts[message[0]] += 1
-                    yield message
         self._counts = counts
 
     def _messages_in(self, content: bytes) -> Iterator[_Message]:
@@ -265,6 +272,11 @@ class Recording:
         if parts:
             first = min([*self._gaps, *self._damaged])
             troubles.append(f"{_parts(parts)} damaged, the first at byte {first:,}, and left out")
+        if self._unpacked_too_much:
+            troubles.append(
+                f"it unpacks to more than {unpacked_most(self._size) // 1_000_000:,} MB, which no recording "
+                "of its size does, and the rest is left out"
+            )
         if not self._whole:
             troubles.append(f"it breaks off at byte {self._size:,}, since it was cut or its recorder killed")
         elif not self._indexed:
