@@ -18,6 +18,7 @@ from cbtui.listening import ListeningSession
 from cbtui.program_log import ProgramLog
 from cbtui.record import CannotRecordError, start_recording
 from cbtui.repeat import why_unrepeatable
+from cbtui.room import RoomWatch
 from sim.diagnosis import diagnose, findings_text
 from sim.engine.commands import Stop
 from sim.engine.setup import RunSetup, TimedCall, TimedLine
@@ -112,6 +113,7 @@ class _Headless:
         self._timeline = Timeline()
         self._file = file
         self._recorder = recorder
+        self._room = RoomWatch(self._timeline)
         self._log = ProgramLog()
         self._told: Signals | None = None
         self._patient_until = 0.0
@@ -145,7 +147,16 @@ class _Headless:
             with whole():
                 self._keep(events)
             self._log.print(events)
+            self._tell_of_room()
         return self._loss
+
+    def _tell_of_room(self) -> None:
+        if self._recorder is None:
+            news = self._room.news(None, 0)
+        else:
+            news = self._room.news(self._recorder.path, self._recorder.size)
+        if news is not None:
+            complain(news)
 
     def _keep(self, events: list[AnyEvent]) -> None:
         if self._recorder is not None:

@@ -39,6 +39,16 @@ class LiveRecording:
         return None if self._recorder is None else self._recorder.count
 
     @property
+    def path(self) -> Path | None:
+        """The file that is being written; None if there is none."""
+        return None if self._recorder is None else self._recorder.path
+
+    @property
+    def size(self) -> int:
+        """Bytes in that file; 0 if there is none."""
+        return 0 if self._recorder is None else self._recorder.size
+
+    @property
     def lost(self) -> int:
         """How many events came too fast to be recorded; 0 if nothing is being recorded."""
         return 0 if self._recorder is None else self._recorder.lost

@@ -7,6 +7,7 @@ from typing import Protocol, TypeAlias
 
 from cbtui.live_export import Material
 from cbtui.live_recording import Finish, LiveRecording
+from cbtui.room import RoomWatch
 from cbtui.silence import SILENT
 from sim.engine.commands import (
     CallService,
@@ -75,6 +76,7 @@ class LiveRun:
     def __init__(self, setup: RunSetup, open_session: OpenSession, deliver: Deliver, ended: Ended) -> None:
         self.setup = setup
         self.timeline = Timeline()
+        self._room = RoomWatch(self.timeline)
         self._recording = LiveRecording(setup)
         self._tape = Tape()
         self.speed = setup.speed if self.virtual else setup.speed or 1.0
@@ -127,7 +129,7 @@ class LiveRun:
         return complaint
 
     def take(self, events: list[AnyEvent]) -> str | None:
-        """Add what the session delivered; a sentence if it could not be recorded as it should."""
+        """Add what the session delivered; a sentence on what it could not be kept in, or soon cannot."""
         self.timeline.extend(events)
         self._tape.take(events)
         self._silent = any(isinstance(event, Notice) and event.text.startswith(SILENT) for event in events)
@@ -139,7 +141,7 @@ class LiveRun:
         failure = self._recording.take(events)
         if failure is not None:
             self._session.send(KeepContents(wanted=False))
-        return failure
+        return failure or self._room.news(self._recording.path, self._recording.size)
 
     def over(self, loss: str | None) -> Finish | None:
         """Note that the engine is gone; ``loss`` says how, if it should not be.
@@ -163,6 +165,11 @@ class LiveRun:
     def recorded(self) -> int | None:
         """How many events have been recorded; None if the run is not being recorded."""
         return self._recording.count
+
+    @property
+    def recorded_bytes(self) -> int:
+        """How large the recording is by now."""
+        return self._recording.size
 
     @property
     def unrecorded(self) -> int:

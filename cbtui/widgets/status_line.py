@@ -22,6 +22,8 @@ _WARN = Ink(Role.WARN)
 _GAP = Run("   ", _PLAIN)
 _LEAST_TITLE = 5
 """Columns of the title that are worth more than what is told of a recording."""
+_WORTH_TELLING = 10_000_000
+"""Bytes from which on the size of a recording is told."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +31,8 @@ class Status:
     """What the line tells.
 
     ``back`` is how long before the end the moment on screen lies, 0 for live; ``recorded`` how many events
-    have been recorded, None if nothing is being recorded, ``unrecorded`` how many came too fast for that;
+    have been recorded, None if nothing is being recorded, ``unrecorded`` how many came too fast for that,
+    ``recorded_bytes`` how large the recording is;
     ``exported`` is how many per cent of an export are done, None if there is none.
     """
 
@@ -43,6 +46,7 @@ class Status:
     lost: int
     recorded: int | None = None
     unrecorded: int = 0
+    recorded_bytes: int = 0
     exported: int | None = None
 
 
@@ -63,6 +67,7 @@ def status_of(
         lost=timeline.lost,
         recorded=run.recorded,
         unrecorded=run.unrecorded,
+        recorded_bytes=run.recorded_bytes,
         exported=exported,
     )
 
@@ -141,7 +146,8 @@ def _recording(status: Status) -> list[Run]:
     if status.recorded is None:
         return []
     lost = f", lost {status.unrecorded:,}" if status.unrecorded else ""
-    return [Run(f"REC {status.recorded:,}{lost}", _WARN), _GAP]
+    size = f" {status.recorded_bytes // 1_000_000:,} MB" if status.recorded_bytes >= _WORTH_TELLING else ""
+    return [Run(f"REC {status.recorded:,}{size}{lost}", _WARN), _GAP]
 
 
 def _losses(status: Status) -> list[Run]:

@@ -32,7 +32,7 @@ class Folded:
     """
 
     def __init__(self) -> None:
-        spill = Spill()
+        self.spill = spill = Spill()
         self.started: ev.RunStarted | None = None
         self.ended: ev.RunEnded | None = None
         self.arena: ev.ArenaShown | None = None

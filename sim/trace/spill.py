@@ -1,5 +1,7 @@
 """Where a timeline puts what is old: bytes in a temporary file without a name, read back by place."""
 
+import errno
+import os
 from collections import OrderedDict
 from collections.abc import Callable
 from io import FileIO
@@ -26,7 +28,8 @@ class Spill:
     def __init__(self, at_hand: int = AT_HAND, entries: int = ENTRIES_IN_BLOCK) -> None:
         self.entries = entries
         self._file: FileIO | None = None
-        self._full = False
+        self.failure = ""
+        """Why the file takes no more; empty as long as it does."""
         self._length = 0
         self._kept: dict[int, bytes] = {}
         self._at_hand: OrderedDict[int, tuple[int, Any]] = OrderedDict()
@@ -82,15 +85,16 @@ class Spill:
         return cast("bytes", file.read(length))
 
     def _written(self, place: int, data: bytes) -> bool:
-        if self._full:
+        if self.failure:
             return False
         try:
             file = self._opened()
             file.seek(place)
-            self._full = file.write(data) != len(data)
-        except OSError:
-            self._full = True
-        return not self._full
+            if file.write(data) != len(data):
+                self.failure = os.strerror(errno.ENOSPC)
+        except OSError as error:
+            self.failure = error.strerror or str(error)
+        return not self.failure
 
     def _opened(self) -> FileIO:
         if self._file is None:

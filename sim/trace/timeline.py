@@ -58,6 +58,11 @@ class Timeline:
         self._moment = None
         self._run.extend(events)
 
+    @property
+    def spill_failure(self) -> str:
+        """Why no more goes to the temporary file, so that memory grows with the run; empty if it does."""
+        return self._run.spill.failure
+
     # the run as a whole
 
     @property

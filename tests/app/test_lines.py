@@ -60,6 +60,7 @@ def test_a_status_line_is_as_wide_as_the_screen(
         (replace(LIVE, lost=7), "trace lost 7"),
         (replace(LIVE, recorded=1234), "REC 1,234"),
         (replace(LIVE, recorded=1234, unrecorded=1050), "REC 1,234, lost 1,050"),
+        (replace(LIVE, recorded=1234, recorded_bytes=41_900_000), "REC 1,234 41 MB"),
         (replace(LIVE, state=State.REPLAY_STANDS, back=3_000_000_000), "‖ REPLAY"),
         (replace(LIVE, state=State.REPLAY_PLAYS, back=3_000_000_000), "▶ REPLAY"),
     ],

@@ -48,6 +48,11 @@ class BackgroundRecorder:
         return self._recorder.failure
 
     @property
+    def size(self) -> int:
+        """Bytes in the file."""
+        return self._recorder.size
+
+    @property
     def waiting(self) -> int:
         """Bytes, as far as can be told, that wait to be recorded."""
         return self._taken - self._written

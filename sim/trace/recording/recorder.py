@@ -97,6 +97,11 @@ class Recorder:
         self._guarded(lambda: self._begin(about))
         self._flusher.start()
 
+    @property
+    def size(self) -> int:
+        """Bytes in the file."""
+        return self._file.tell()
+
     def take(self, events: Iterable[AnyEvent]) -> None:
         """Record a batch: the events as they are, and messages under their topics."""
         self._guarded(lambda: self._take(events))

@@ -2,6 +2,7 @@
 
 import tracemalloc
 from pathlib import Path
+from typing import Any
 
 import pytest
 from mcap.writer import CompressionType, Writer
@@ -20,7 +21,7 @@ LITTLE = 60_000_000
 def write(path: Path, chunks: list[list[bytes]], compression: CompressionType = CompressionType.ZSTD) -> None:
     """Write a recording of packed batches, each list a chunk of its own."""
     with path.open("wb") as file:
-        writer = Writer(file, chunk_size=10**12, compression=compression)
+        writer: Any = Writer(file, chunk_size=10**12, compression=compression)
         writer.start(profile="ros2", library="cbtui 1")
         writer.add_metadata(NAME, to_metadata(About(title="swollen", clock="virtual")))
         schema = writer.register_schema(batch.TYPE, "ros2msg", batch.DEFINITION.encode())

@@ -1,0 +1,63 @@
+"""The room on disks that a run takes: what a person is told of it while the run goes on, each thing once."""
+
+import shutil
+import tempfile
+from pathlib import Path
+
+from sim.trace.timeline import Timeline
+
+_LARGE = 1_000_000_000
+"""Bytes of a recording at which it is told how large it is, and again whenever it has doubled."""
+_LITTLE = 500_000_000
+"""Bytes left on a disk, or the share below, whichever are fewer, that are worth a word before it is full."""
+_SHARE = 0.05
+_BETWEEN = 10_000_000
+"""Bytes by which a recording grows between two looks at its disk."""
+
+
+class RoomWatch:
+    """Looks after the temporary file of a timeline, and after one recording at a time."""
+
+    def __init__(self, timeline: Timeline) -> None:
+        self._timeline = timeline
+        self._told_of_temporary = False
+        self._recording: Path | None = None
+        self._large = 0
+        self._look_at = 0
+        self._told_of_disk = False
+
+    def news(self, recording: Path | None, size: int) -> str | None:
+        """One sentence that was not told before; ``size`` is in bytes, 0 without a recording."""
+        if recording != self._recording:
+            self._recording, self._large = recording, _LARGE
+            self._look_at, self._told_of_disk = 0, False
+        failure = self._timeline.spill_failure
+        if failure and not self._told_of_temporary:
+            self._told_of_temporary = True
+            return (
+                f"The folder for temporary files, {tempfile.gettempdir()}, takes no more ({failure}): "
+                "the run stays in memory from here on; free room there, or name another folder in TMPDIR"
+            )
+        return None if recording is None else self._of_recording(recording, size)
+
+    def _of_recording(self, recording: Path, size: int) -> str | None:
+        if size >= self._large:
+            self._large = 2 * size
+            return f"The recording {recording.name} has {_megabytes(size)} by now, and goes on"
+        if size >= self._look_at and not self._told_of_disk:
+            self._look_at = size + _BETWEEN
+            try:
+                disk = shutil.disk_usage(recording.absolute().parent)
+            except OSError:
+                return None
+            if disk.free < min(_LITTLE, _SHARE * disk.total):
+                self._told_of_disk = True
+                return (
+                    f"The disk has {_megabytes(disk.free)} left for the recording {recording.name}, "
+                    "which ends when it is full; free some room, or end the recording"
+                )
+        return None
+
+
+def _megabytes(size: int) -> str:
+    return f"{size / 1e6:,.0f} MB"
