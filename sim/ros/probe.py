@@ -233,9 +233,16 @@ class Probe:
         """A request found nobody that offers its service."""
         self._sink(events.RequestLost(self._now(), call, service))
 
-    def qos_mismatched(self, topic: str, node: int, subscription: int, policy: str) -> None:
-        """A publisher and a subscription do not match; 0 for what is no part of the program."""
-        self._sink(events.QosMismatched(self._now(), topic, node, subscription, policy))
+    def place_of_call(self) -> tuple[str, int]:
+        """File and line of the learner's code that calls on this thread; empty for what is not traced."""
+        _, file, line = call_into_ros()
+        return file, line
+
+    def qos_mismatched(
+        self, topic: str, node: int, entity: int, policy: str, ends: tuple[tuple[str, int], tuple[str, int]]
+    ) -> None:
+        """A publisher and a subscription, made at ``ends``, do not match; 0 for one outside the program."""
+        self._sink(events.QosMismatched(self._now(), topic, node, entity, policy, *ends))
 
     def call_blocked(self, call: int, service: str) -> None:
         """The calling thread stands still until a reply comes."""
@@ -269,6 +276,10 @@ class SilentProbe(Probe):
 
     def __init__(self, clock: "Clock") -> None:
         super().__init__(clock, _forget)
+
+    def place_of_call(self) -> tuple[str, int]:
+        """Nowhere: it is no part of the program."""
+        return "", 0
 
 
 class PublishingProbe(SilentProbe):

@@ -58,6 +58,7 @@ class Publisher:
         self.qos_profile = qos_profile
         self._host = node.context.host
         self._probe = node.context.probe
+        self.made_at = self._probe.place_of_call()
         self.gid = self._host.new_gid()
         self._reached: tuple[Subscription, ...] = ()
         self._kept: deque[Delivery] | None = None
@@ -199,6 +200,7 @@ class Publisher:
                 self.node.trace_id if ours.visible else 0,
                 subscription.trace_id if theirs.visible else 0,
                 policy,
+                (self.made_at, subscription.made_at),
             )
 
     def destroy(self) -> None:

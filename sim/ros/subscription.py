@@ -73,6 +73,7 @@ class Subscription(Entity):
         self.qos_profile = qos_profile
         self.depth = qos_profile.queue_length or 0
         self._probe = node.context.probe
+        self.made_at = self._probe.place_of_call()
         self.gid = node.context.host.new_gid()
         self._clock = node.context.host.clock
         self._queue: deque[Delivery] = deque()

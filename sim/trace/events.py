@@ -276,13 +276,17 @@ class QosMismatched(Event, frozen=True, tag="qos_mismatch"):
     """A publisher and a subscription of one topic do not match, so no message goes between them.
 
     ``node`` is the publisher's (0: one outside the program), ``entity`` the subscription (0: one outside),
-    ``policy`` the quality of service that the two do not agree on, as ROS names it.
+    ``policy`` the quality of service that the two do not agree on, as ROS names it. ``publisher`` and
+    ``subscription`` are where the program makes the two, ``("", 0)`` for one that it does not make; a
+    subscription that no executor serves, as ``wait_for_message`` makes it, is no entity and has a place.
     """
 
     topic: str
     node: NodeId
     entity: EntityId
     policy: str
+    publisher: tuple[str, int] = ("", 0)
+    subscription: tuple[str, int] = ("", 0)
 
 
 class TopicAppeared(Event, frozen=True, tag="topic"):

@@ -210,11 +210,13 @@ class JsonLines:
         }
 
     def _qos_mismatched(self, event: ev.QosMismatched) -> Line:
+        ends = {"publisher": event.publisher, "subscription": event.subscription}
         return {
             "node": self._node(event.node),
             **self._by_callback(event.entity),
             "entity": event.topic,
             "policy": event.policy,
+            **{name: f"{end[0]}:{end[1]}" for name, end in ends.items() if end[0]},
         }
 
     def _topic_appeared(self, event: ev.TopicAppeared) -> Line:

@@ -71,7 +71,7 @@ FULL: list[AnyEvent] = [
     ProcessAppeared(0, 1, "talker-1"),
     *CAST[1:],
     Published(1_500_000_000, 7, "/odom", 0, 2),
-    QosMismatched(1_500_000_000, "/odom", 1, 1, "RELIABILITY"),
+    QosMismatched(1_500_000_000, "/odom", 1, 1, "RELIABILITY", ("node.py", 9), ("node.py", 12)),
     TopicAppeared(1_500_000_000, 1, "/odom", "std_msgs/msg/Bool", "bool data\n"),
     MessageSent(1_500_000_000, 7, 1, bytes([0, 1, 0, 0, 1])),
     EntityReady(1_502_000_000, 1, 1, 7),

@@ -57,7 +57,7 @@ def test_golden_lines() -> None:
     assert b"".join(JsonLines().lines(FULL)).decode().splitlines()[len(CAST) + 1 :] == [
         '{"t":1.5,"event":"publish","node":"robot","callback":"timer_callback","entity":"/odom","message_id":7}',
         '{"t":1.5,"event":"qos_mismatch","node":"/sub_node","callback":"odom_callback","entity":"/odom",'
-        '"policy":"RELIABILITY"}',
+        '"policy":"RELIABILITY","publisher":"node.py:9","subscription":"node.py:12"}',
         '{"t":1.5,"event":"topic","entity":"/odom","type":"std_msgs/msg/Bool","definition":"bool data\\n"}',
         '{"t":1.5,"event":"message","entity":"/odom","message_id":7,"size":5}',
         f'{{"t":1.502,"event":"ready",{about},"depth":1,"message_id":7}}',
@@ -79,6 +79,8 @@ def test_golden_lines() -> None:
         '{"t":2.2,"event":"service_reply","entity":"/motor_power","call":1,'
         '"response":"SetBool_Response(success=True, message=\'\')"}',
         '{"t":2.2,"event":"unblocked","thread":"talker-1 MainThread","call":1}',
+        '{"t":2.25,"event":"spin_clash","node":"/sub_node","callback":"odom_callback",'
+        '"function":"spin_until_future_complete","file":"node.py","line":60}',
         f'{{"t":2.25,"event":"callback_error",{about},"thread":"talker-1 MainThread",'
         '"message":"IndexError: no beam 720","file":"node.py","line":60}',
         f'{{"t":2.25,"event":"callback_end",{about},"thread":"talker-1 MainThread"}}',

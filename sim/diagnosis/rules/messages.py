@@ -7,7 +7,7 @@ from operator import attrgetter
 
 from sim.diagnosis.look import LongWait, Look
 from sim.diagnosis.room import room_for
-from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, entity_of, place_of
+from sim.diagnosis.rule import Explanation, Finding, Place, Rule, Weight, entity_of, place_of
 from sim.diagnosis.words import often, who
 from sim.trace.events import EntityId, EntityKind
 from sim.trace.model import Nanoseconds, Span, Window
@@ -126,14 +126,32 @@ class QosMismatch(Rule):
             yield Finding(self, each.t, each.t, each.entity, about=each.topic, detail=each.policy)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name the policy."""
-        subject = who(found.subject, timeline) if found.subject else "a subscription outside the program"
-        return Explanation(
-            f"{subject} hears nothing from a publisher of {found.about}: {found.detail} does not match",
-            _PROMISES.get(found.detail, "a publisher has to offer at least what a subscription requests"),
-            f"give both ends of {found.about} the same QoSProfile",
-            place_of(found.subject, timeline),
+        """Name the policy, and both ends with their lines."""
+        publisher, subscription = next(
+            (_made_at(each.publisher), _made_at(each.subscription))
+            for each in timeline.mismatches
+            if (each.t, each.entity, each.topic) == (found.at, found.subject, found.about)
         )
+        end = "a subscription of the program" if subscription else "a subscription outside the program"
+        subject = who(found.subject, timeline) if found.subject else end
+        outside = "" if publisher else " outside the program"
+        ends = [f"the {name} of {place}" for name, place in zip(_ENDS, (publisher, subscription), strict=True) if place]
+        cure = f"give both ends of {found.about} the same QoSProfile"
+        return Explanation(
+            f"{subject} hears nothing from a publisher of {found.about}{outside}: "
+            f"{found.detail} does not match",
+            _PROMISES.get(found.detail, "a publisher has to offer at least what a subscription requests"),
+            f"{cure}: {' and '.join(ends)}" if ends else cure,
+            subscription or publisher or place_of(found.subject, timeline),
+        )
+
+
+_ENDS = ("publisher", "subscription")
+
+
+def _made_at(end: tuple[str, int]) -> Place | None:
+    file, line = end
+    return Place(file, line, line) if file else None
 
 
 _PROMISES = {
