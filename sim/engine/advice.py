@@ -9,33 +9,14 @@ from types import FrameType
 
 from sim.ros.process import current_process
 
-_GEOMETRY = "a few lines of math or numpy turn quaternions into angles"
-_TRANSFORMS = "publish tf2_msgs/msg/TFMessage on /tf, or subscribe to it"
-_PICTURES = "numpy.frombuffer(message.data, numpy.uint8) reads a sensor_msgs/msg/Image"
-_TESTS = "test with pytest, where sim.ros.importing.install() makes rclpy importable"
-_ROS_ONLY = {
-    "cv_bridge": _PICTURES,
-    "image_geometry": _PICTURES,
-    "launch_pytest": _TESTS,
-    "launch_testing": _TESTS,
-    "launch_testing_ros": _TESTS,
-    "message_filters": "subscribe to each topic and match the stamps in the callbacks",
-    "nav2_simple_commander": "send the goals with rclpy.action.ActionClient",
-    "rosbag2_py": "cbtui run --events records what happens",
-    "tf2_geometry_msgs": _GEOMETRY,
-    "tf2_py": _TRANSFORMS,
-    "tf2_ros": _TRANSFORMS,
-    "tf_transformations": _GEOMETRY,
-    "transforms3d": _GEOMETRY,
-}
-"""Python packages that ROS programs import and that are not here, with what does the work in their place."""
-
 
 def advice_on(error: BaseException, frame: FrameType | None) -> str:
     """What to add to the text of an exception that came up in ``frame``; empty where that says it all."""
     match error:
         case ModuleNotFoundError(name=str(name)):
-            advice = _on_missing(name)
+            from sim.engine.missing import on_missing
+
+            advice = on_missing(name)
         case ImportError(name=str(module), msg=str(text)) if module in sys.modules:
             advice = _nearest(text.split("'")[1], dir(sys.modules[module]))
         case NameError(name=str(name)) if frame is not None:
@@ -45,17 +26,6 @@ def advice_on(error: BaseException, frame: FrameType | None) -> str:
         case _:
             advice = ""
     return f"; {advice}" if advice else ""
-
-
-def _on_missing(module: str) -> str:
-    from sim.ros.interfaces import known_packages_sentence, packages
-
-    package = module.partition(".")[0]
-    if package in sys.modules and package not in packages():
-        return _nearest(module, (each for each in sys.modules if each.startswith(f"{package}.")))
-    if package in _ROS_ONLY:
-        return f"{package} belongs to a ROS 2 machine and is not modelled here; {_ROS_ONLY[package]}"
-    return known_packages_sentence(package)
 
 
 def _on_unready_node(attribute: str, obj: object) -> str:

@@ -8,7 +8,7 @@ from sim.ros.interfaces import (
     UnknownInterfaceError,
     interface_names,
     interface_text,
-    known_packages_sentence,
+    kinds_sentence,
     prototype,
 )
 
@@ -60,7 +60,6 @@ def test_a_wrong_name_says_what_is_wrong(name: str, text: str) -> None:
     assert text in str(unknown.value)
 
 
-def test_an_unknown_package_leads_to_the_nearest_and_to_all_that_are_known() -> None:
-    assert known_packages_sentence("geometry_msg").startswith("did you mean 'geometry_msgs'? ")
-    assert "std_msgs, std_srvs" in known_packages_sentence("qqq")
-    assert known_packages_sentence("std_srvs") == "std_srvs has services only"
+def test_a_package_tells_what_kinds_of_interfaces_it_has() -> None:
+    assert kinds_sentence("std_srvs") == "std_srvs has services only"
+    assert kinds_sentence("nav_msgs") == "nav_msgs has messages and services only"

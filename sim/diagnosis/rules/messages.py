@@ -135,7 +135,11 @@ class QosMismatch(Rule):
         end = "a subscription of the program" if subscription else "a subscription outside the program"
         subject = who(found.subject, timeline) if found.subject else end
         outside = "" if publisher else " outside the program"
-        ends = [f"the {name} of {place}" for name, place in zip(_ENDS, (publisher, subscription), strict=True) if place]
+        ends = [
+            f"the {name} of {place}"
+            for name, place in zip(_ENDS, (publisher, subscription), strict=True)
+            if place
+        ]
         cure = f"give both ends of {found.about} the same QoSProfile"
         return Explanation(
             f"{subject} hears nothing from a publisher of {found.about}{outside}: "

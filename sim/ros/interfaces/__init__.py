@@ -19,7 +19,7 @@ from sim.ros.interfaces.known import (
     packages,
     service,
 )
-from sim.ros.interfaces.listing import interface_names, interface_text, known_packages_sentence, prototype
+from sim.ros.interfaces.listing import interface_names, interface_text, kinds_sentence, prototype
 from sim.ros.interfaces.workspace import find_definition_folders
 
 __all__ = [
@@ -39,7 +39,7 @@ __all__ = [
     "interface_module",
     "interface_names",
     "interface_text",
-    "known_packages_sentence",
+    "kinds_sentence",
     "message",
     "message_of_type",
     "names",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from difflib import get_close_matches
 from typing import get_args
 
 from sim.ros.interfaces.interface_definition import Kind, UnknownInterfaceError
@@ -79,22 +78,9 @@ def split_type_name(type_name: str) -> tuple[str, Kind, str]:
     return package, kind, name
 
 
-def known_packages_sentence(name: str) -> str:
-    """Return what to tell someone whose import of the package ``name`` failed.
-
-    It gives the likeliest package meant, and which are known; for a known package, what it holds.
-    """
-    known = sorted(packages())
-    if name in known:
-        kinds = [_PLURALS[kind] for kind in _KINDS if names(name, kind)]
-        return f"{name} has {' and '.join(kinds)} only"
-    close = get_close_matches(name, known, n=2, cutoff=0.7)
-    if close:
-        return f"did you mean {' or '.join(map(repr, close))}? Known interface packages: {', '.join(known)}"
-    return (
-        f"known interface packages: {', '.join(known)}; your own are found beside the file "
-        f"or in its workspace, as {name}/msg/Name.msg"
-    )
+def kinds_sentence(package: str) -> str:
+    """Which kinds of interfaces a known package has: what to tell someone who imports another one."""
+    return f"{package} has {' and '.join(_PLURALS[kind] for kind in _KINDS if names(package, kind))} only"
 
 
 def _nested(line: str, package: str, depth: int) -> Iterator[str]:

@@ -1,0 +1,163 @@
+"""What a learner has to do about a module that cannot be found: what it is, and where it comes from."""
+
+import sys
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+from sim.ros.interfaces import kinds_sentence, packages
+
+_PIP = {
+    "Crypto": "pycryptodome",
+    "OpenGL": "PyOpenGL",
+    "PIL": "pillow",
+    "RPi": "RPi.GPIO",
+    "bs4": "beautifulsoup4",
+    "can": "python-can",
+    "cv2": "opencv-python",
+    "dateutil": "python-dateutil",
+    "dotenv": "python-dotenv",
+    "dt_apriltags": "dt-apriltags",
+    "dynamixel_sdk": "dynamixel-sdk",
+    "git": "GitPython",
+    "paho": "paho-mqtt",
+    "pupil_apriltags": "pupil-apriltags",
+    "quaternion": "numpy-quaternion",
+    "roboticstoolbox": "roboticstoolbox-python",
+    "serial": "pyserial",
+    "simple_pid": "simple-pid",
+    "skimage": "scikit-image",
+    "sklearn": "scikit-learn",
+    "spatialmath": "spatialmath-python",
+    "speech_recognition": "SpeechRecognition",
+    "stable_baselines3": "stable-baselines3",
+    "usb": "pyusb",
+    "wx": "wxPython",
+    "yaml": "pyyaml",
+    "zmq": "pyzmq",
+}
+"""Modules of PyPI that robots' programs import, with the distribution that each comes in."""
+_PIP_BY_NAME = """
+    PyQt5 PySide6 casadi control cvxpy depthai filterpy flask gpiozero gymnasium keyboard matplotlib mediapipe
+    networkx numba open3d pandas plotly pyaudio pygame pymavlink pynput pyproj pyrealsense2 requests scipy
+    seaborn shapely smbus2 sympy tensorflow torch torchvision tqdm transforms3d ultralytics utm websockets
+""".split()  # noqa: SIM905 -- one to a line they would hide the rest
+"""Those whose distributions are named as they are."""
+
+_ROS_1 = {
+    "actionlib": "rclpy.action has ActionClient and ActionServer",
+    "catkin": "ament and colcon build packages",
+    "catkin_pkg": "ament and colcon build packages",
+    "dynamic_reconfigure": "nodes have parameters with callbacks, node.add_on_set_parameters_callback()",
+    "genpy": "rclpy.serialization reads and writes messages",
+    "move_base_msgs": "nav2_msgs has the action NavigateToPose",
+    "moveit_commander": "moveit_py plans, on a ROS 2 machine",
+    "rosbag": "cbtui run --record records, and ros2 bag on a ROS 2 machine",
+    "roslaunch": "launch files are Python that imports launch and launch_ros",
+    "roslib": "nothing takes its place, leave it out",
+    "rosnode": "node.get_node_names() lists nodes",
+    "rosparam": "node.declare_parameter() and node.get_parameter() handle parameters",
+    "rospkg": "ament_index_python finds packages",
+    "rospy": "rclpy takes its place",
+    "rosservice": "node.get_service_names_and_types() lists services",
+    "rostopic": "node.get_topic_names_and_types() lists topics",
+    "smach": "yasmin or py_trees take its place",
+    "tf": "tf2_ros takes its place, on a ROS 2 machine",
+}
+"""Packages of ROS 1, with what ROS 2 has in their place."""
+
+_GEOMETRY = "a few lines of math or numpy turn quaternions into angles"
+_TRANSFORMS = "publish tf2_msgs/msg/TFMessage on /tf, or subscribe to it"
+_PICTURES = "numpy.frombuffer(message.data, numpy.uint8) reads a sensor_msgs/msg/Image"
+_TESTS = "test with pytest, where sim.ros.importing.install() makes rclpy importable"
+_THERE = "run what needs it there"
+_ROS_2 = {
+    "PyKDL": _GEOMETRY,
+    "cv_bridge": _PICTURES,
+    "diagnostic_updater": "publish diagnostic_msgs/msg/DiagnosticArray on /diagnostics",
+    "image_geometry": _PICTURES,
+    "image_transport": _PICTURES,
+    "launch_param_builder": _THERE,
+    "launch_pytest": _TESTS,
+    "launch_testing": _TESTS,
+    "launch_testing_ros": _TESTS,
+    "laser_geometry": "a few lines of math or numpy turn ranges into points",
+    "message_filters": "subscribe to each topic and match the stamps in the callbacks",
+    "moveit": _THERE,
+    "moveit_configs_utils": _THERE,
+    "nav2_common": _THERE,
+    "nav2_simple_commander": "send the goals with rclpy.action.ActionClient",
+    "py_trees_ros": _THERE,
+    "ros2cli": "the lines of ros2 that are known here run without it",
+    "ros2launch": "the lines of ros2 that are known here run without it",
+    "ros2pkg": "the lines of ros2 that are known here run without it",
+    "rosbag2_py": "cbtui run --events records what happens",
+    "rqt_gui": _THERE,
+    "rqt_gui_py": _THERE,
+    "tf2_geometry_msgs": _GEOMETRY,
+    "tf2_kdl": _GEOMETRY,
+    "tf2_py": _TRANSFORMS,
+    "tf2_ros": _TRANSFORMS,
+    "tf2_sensor_msgs": _GEOMETRY,
+    "tf_transformations": _GEOMETRY,
+    "turtle_tf2_py": _TRANSFORMS,
+    "urdf_parser_py": _THERE,
+    "xacro": "give robot_description as URDF",
+}
+"""Python packages of ROS 2 that are not here, with what does the work in their place."""
+
+_INTERFACES = """
+    aruco_msgs autoware_msgs can_msgs cartographer_ros_msgs control_msgs controller_manager_msgs
+    crazyflie_interfaces foxglove_msgs geographic_msgs gps_msgs grid_map_msgs irobot_create_msgs
+    mavros_msgs moveit_msgs nmea_msgs novatel_gps_msgs object_recognition_msgs octomap_msgs
+    pcl_msgs px4_msgs radar_msgs robot_localization ros_gz_interfaces rtcm_msgs slam_toolbox turtlebot3_msgs
+    ublox_msgs ur_msgs velodyne_msgs vision_msgs webots_ros2_msgs
+""".split()  # noqa: SIM905 -- as above
+"""Packages of interfaces that others publish, and that are not here."""
+
+_HERE = "into the Python that runs cbtui"
+_OWN = "your own are found beside the file or in its workspace, as {0}/msg/Name.msg"
+_KNOWN = {
+    **{name: f"pip install {distribution}, {_HERE}" for name, distribution in _PIP.items()},
+    **{name: f"pip install {name}, {_HERE}" for name in _PIP_BY_NAME},
+    **{name: f"{name} is a package of ROS 1; in ROS 2, {there}" for name, there in _ROS_1.items()},
+    **{
+        name: f"{name} belongs to a ROS 2 machine and is not modelled here; {instead}"
+        for name, instead in _ROS_2.items()
+    },
+    **{
+        name: f"{name} is a package of interfaces that is not here; copy its definitions into the workspace, "
+        f"as {name}/msg/Name.msg"
+        for name in _INTERFACES
+    },
+}
+
+
+def on_missing(module: str) -> str:
+    """What to do about a module that cannot be imported, in half a sentence."""
+    package = module.partition(".")[0]
+    if package in packages():
+        return kinds_sentence(package)
+    if package in sys.modules:
+        return _nearest(module, (each for each in sys.modules if each.startswith(f"{package}.")))
+    known = {*packages(), *sys.stdlib_module_names, *_KNOWN, "launch", "launch_ros", "numpy", "rclpy"}
+    return _KNOWN.get(package) or _nearest(package, known) or _on_unknown(package)
+
+
+def _on_unknown(package: str) -> str:
+    if package.endswith(("_msgs", "_msg", "_srvs", "_interfaces", "_actions")):
+        return f"ros2 interface packages lists those that are here; {_OWN.format(package)}"
+    return (
+        f"{package} is neither beside the file, nor in its workspace, nor installed; "
+        f"what comes from PyPI is installed with pip, {_HERE}"
+    )
+
+
+def _nearest(name: str, known: Iterable[str]) -> str:
+    """A likely slip of the fingers; that both end with ``_msgs`` does not make two packages alike."""
+    stems = {_stem(each): each for each in known if not each.startswith("_")}
+    close = get_close_matches(_stem(name), stems, n=1, cutoff=0.75)
+    return f"did you mean {stems[close[0]]!r}?" if close else ""
+
+
+def _stem(name: str) -> str:
+    return name.removesuffix("s").removesuffix("_msg")
