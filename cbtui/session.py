@@ -20,7 +20,7 @@ import msgspec
 from cbtui.family import MARK, Family
 from cbtui.interrupts import whole
 from cbtui.orphans import ENDS_ITSELF, watch_over
-from cbtui.silence import LOOK, Silence
+from cbtui.silence import LOOK, Silence, why_silent
 from cbtui.warden import Warden, ceiling
 from sim.clean_start import without_current_folder
 from sim.engine.commands import Command, Stop, encode
@@ -140,7 +140,7 @@ class Session:
                 if self._pipe.poll(LOOK):
                     events = silence.came(self._unpack(self._pipe.recv_bytes(_LONGEST_BATCH)))
                 else:
-                    events = silence.nothing_came(stopped=self._family.is_stopped())
+                    events = silence.nothing_came(self._why_silent)
             except (EOFError, OSError):
                 break
             except msgspec.DecodeError as error:
@@ -151,6 +151,24 @@ class Session:
             if events:
                 self._deliver(events)
         self._ended(None if finished or self._stopping else self._epitaph())
+
+    def _why_silent(self) -> str:
+        if self._family.is_stopped():
+            return "its process was stopped"
+        return why_silent(self._place_in_program(), self._place_in_program())
+
+    def _place_in_program(self) -> str:
+        """Where in the program the engine stands now; what it wrote down of that is forgotten."""
+        self._ask_where_it_stands()
+        place = self._place_written()
+        self._last_words.seek(0)  # for the engine too, as the two share the position
+        self._last_words.truncate()
+        return place
+
+    def _place_written(self) -> str:
+        size = os.fstat(self._last_words.fileno()).st_size
+        words = os.pread(self._last_words.fileno(), size, 0).decode(errors="replace")
+        return place_in(words, [program.path for program in self._setup.programs])
 
     def _ask_where_it_stands(self) -> None:
         os.kill(self._family.pid, ASKED)

@@ -1,5 +1,6 @@
 """An engine from which nothing comes, though it says several times a second that it is there."""
 
+from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from sim.trace.events import AnyEvent, Notice, Severity
@@ -18,6 +19,18 @@ _PATIENCE_AT_FIRST = 60
 """Looks that an engine gets to import all that it needs."""
 
 
+def why_silent(stands: str, stands_later: str) -> str:
+    """Why an engine does not answer whose program stood at these places in its code; "" for nowhere.
+
+    Python code that computes moves on, and lets the engine's own threads in between.
+    """
+    if not stands_later:
+        return "the machine has no time for it"
+    if stands == stands_later:
+        return f"code in C keeps it, called from {stands}"
+    return f"the program computes ({stands_later}), and the machine has no time for both"
+
+
 class Silence:
     """Turns what comes from an engine, and what does not, into batches. It belongs to the reader's thread."""
 
@@ -25,13 +38,12 @@ class Silence:
         self._t: Nanoseconds = 0
         self._looks_left = _PATIENCE_AT_FIRST
 
-    def nothing_came(self, stopped: bool) -> list[AnyEvent]:
-        """Return what is to be told when a look found nothing; ``stopped``: its process cannot go on."""
+    def nothing_came(self, why: Callable[[], str]) -> list[AnyEvent]:
+        """Return what is to be told when a look found nothing; ``why`` is asked for the reason, if it is told."""
         self._looks_left -= 1
         if self._looks_left != 0:
             return []
-        why = "its process was stopped" if stopped else "code in C keeps it, or the machine has no time"
-        return [Notice(self._t, Severity.WARN, f"{SILENT}: {why}")]
+        return [Notice(self._t, Severity.WARN, f"{SILENT}: {why()}")]
 
     def came(self, events: list[AnyEvent]) -> list[AnyEvent]:
         """Return what is to be told when a batch came, which may be empty."""

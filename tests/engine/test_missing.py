@@ -24,7 +24,10 @@ PIP = "pip install {}, into the Python that runs cbtui"
         ("actionlib", "actionlib is a package of ROS 1; in ROS 2, rclpy.action has ActionClient"),
         ("xacro", "xacro belongs to a ROS 2 machine and is not modelled here; "),
         ("tf2_ros.buffer", "tf2_ros belongs to a ROS 2 machine and is not modelled here; "),
-        ("moveit_msgs", "moveit_msgs is a package of interfaces that is not here; copy its definitions: "),
+        (
+            "moveit_msgs",
+            "moveit_msgs is a package of interfaces that is not here; copy its definitions into ",
+        ),
         ("my_robot_msgs", "ros2 interface packages lists those that are here; your own are found beside"),
         ("geometry_msg", "did you mean 'geometry_msgs'?"),
         ("sensr_msgs", "did you mean 'sensor_msgs'?"),

@@ -111,12 +111,12 @@ async def test_an_engine_that_code_in_c_keeps_is_told_of(
 def test_a_machine_that_slept_says_nothing_of_the_engine() -> None:
     silence = Silence()
     silence.came([RunStarted(0, "", "real", 0), Printed(7, "last", error=False)])
-    assert [silence.nothing_came(stopped=False) for _ in range(9)] == [[]] * 9
-    (notice,) = silence.nothing_came(stopped=False)
+    assert [silence.nothing_came(lambda: "why") for _ in range(9)] == [[]] * 9
+    (notice,) = silence.nothing_came(lambda: "why")
     assert isinstance(notice, Notice)
     assert (notice.t, notice.severity) == (7, Severity.WARN)
     assert notice.text.startswith(SILENT)
-    assert silence.nothing_came(stopped=False) == []
+    assert silence.nothing_came(lambda: "why") == []
     assert silence.came([]) == [Notice(7, Severity.INFO, "the engine answers again")]
     assert silence.came([]) == []
 

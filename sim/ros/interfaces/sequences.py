@@ -108,12 +108,15 @@ def _check_items(field: str, of: SequenceType, element: Element) -> Check:
 
 
 def _check_numbers(field: str, of: SequenceType, code: str, element: Element) -> Check:
-    """Return the check of a sequence of numbers; it returns an ``array.array``."""
+    """Return the check of a sequence of numbers; it returns an ``array.array``.
+
+    What has its numbers in memory is looked at in one piece, as pictures have millions.
+    """
     check_items, fits = _check_items(field, of, element), _length_rule(of)
     complaint = _complaint(field, of, element)
     wrong_code = f"The '{field}' array.array() must have the type code of '{code}'"
     too_long = f"The '{field}' array.array() must have a size <= {getattr(of, 'maximum_size', 0)}"
-    number = str(of.value_type)
+    number, native = str(of.value_type), np.dtype(code)
 
     def check(values: Any) -> array[Any]:
         if isinstance(values, array):
@@ -122,10 +125,13 @@ def _check_numbers(field: str, of: SequenceType, code: str, element: Element) ->
             if not fits(len(values)):
                 raise AssertionError(too_long)
             return values
+        if isinstance(values, bytes | bytearray | memoryview):
+            values = np.frombuffer(values, np.uint8) if _is_of_octets(values) else values.tolist()
         if isinstance(values, np.ndarray):
-            if not fits(values.size) or not _holds(values, number):
+            fitting = values.dtype == native and values.ndim == 1
+            if not fits(values.size) or not (fitting or _holds(values, number)):
                 raise AssertionError(complaint)
-            return array(code, values.astype(code).tobytes())
+            return array(code, values.astype(native, copy=False).tobytes())
         # A list, because an array would take bytes as its memory.
         return array(code, list(check_items(values)))
 
@@ -148,6 +154,10 @@ def _check_fixed(field: str, of: Array, dtype: np.dtype[Any], element: Element) 
         return np.array(list(check_items(values)), dtype)
 
     return check
+
+
+def _is_of_octets(values: bytes | bytearray | memoryview) -> bool:
+    return not isinstance(values, memoryview) or values.format == "B"
 
 
 def _length_rule(of: SequenceType) -> Callable[[int], bool]:
