@@ -39,7 +39,7 @@ class Silence:
         self._looks_left = _PATIENCE_AT_FIRST
 
     def nothing_came(self, why: Callable[[], str]) -> list[AnyEvent]:
-        """Return what is to be told when a look found nothing; ``why`` is asked for the reason, if it is told."""
+        """Return what is to be told when a look found nothing; ``why`` is asked for the reason then."""
         self._looks_left -= 1
         if self._looks_left != 0:
             return []

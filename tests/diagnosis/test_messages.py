@@ -1,10 +1,14 @@
 """Messages that are lost, that are old when used, or that never come."""
 
+import re
+from pathlib import Path
+
 import pytest
 
 from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
 from sim.ros.node import Node
 from sim.ros.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from sim.ros.wait_for_message import wait_for_message
 from tests.diagnosis.findings import Diagnosed, Int32, diagnosed, once, spin
 from tests.support.builder import ns
 from tests.support.simulation import Simulation
@@ -125,7 +129,24 @@ def test_a_subscription_that_asks_for_more_than_is_offered_is_told(
     assert run.told() == {("qos-mismatch", "hear")}
     told = run.explained("qos-mismatch")
     assert told.what == f"hear hears nothing from a publisher of /t: {policy} does not match"
-    assert told.place is not None
+    ends = re.search(r"the publisher of (.*):(\d+) and the subscription of (.*):(\d+)$", told.cure)
+    assert ends is not None
+    assert ends[1] == ends[3] == Path(__file__).name
+    lines = Path(__file__).read_text().splitlines()
+    assert "create_publisher" in lines[int(ends[2]) - 1]
+    assert "create_subscription" in lines[int(ends[4]) - 1]
+    assert str(told.place) == f"{ends[3]}:{ends[4]}"
+
+
+def test_a_subscription_that_waits_for_a_message_is_one_of_the_program() -> None:
+    def program(_: Simulation) -> None:
+        node = Node("n")
+        node.create_publisher(Int32, "t", BEST_EFFORT)
+        wait_for_message(Int32, node, "t", qos_profile=RELIABLE, time_to_wait=0.1)
+
+    told = diagnosed(program).explained("qos-mismatch")
+    assert told.what.startswith("a subscription of the program hears nothing from a publisher of /t: ")
+    assert told.cure.count(Path(__file__).name) == 2
 
 
 @pytest.mark.parametrize(

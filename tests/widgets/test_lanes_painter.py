@@ -255,12 +255,30 @@ def test_the_services_that_every_node_brings_along_have_no_lanes() -> None:
     assert "get_parameters" not in Painter().text(told(run), *last(10, 10), 80, 20)
 
 
+POOL = ("ThreadPoolExecutor-0_0", "ThreadPoolExecutor-0_1")
+
+
 def test_a_main_thread_that_only_hands_out_work_has_no_lane() -> None:
     run = Run()
     run.thread("MainThread")
     worker = run.thread("ThreadPoolExecutor-0_0")
     run.callback(run.timer(run.exclusive(run.node("/n")), "tick_callback", 1.0), worker, 1.0, 1.0)
     assert "MainThread" not in Painter().text(told(run), *last(10, 10), 80, 20)
+
+
+def test_a_thread_of_the_programs_own_is_not_said_to_be_unneeded() -> None:
+    run = Run()
+    own, worker, _ = (run.thread(name) for name in ("beeper", *POOL))
+    timer = run.timer(run.exclusive(run.node("/n")), "tick_callback", 1.0)
+    run.callback(timer, worker, 1.0, 1.0)
+    run.log("beep", 2.0, own)
+    shown = Painter().text(told(run), *last(10, 10), 120, 20).splitlines()
+    (beeper,) = (line for line in shown if "beeper" in line)
+    (unused,) = (line for line in shown if POOL[1] in line)
+    assert "never needed" in unused
+    assert "never needed" not in beeper
+    assert "0%" not in beeper
+    assert "no callbacks" in beeper
 
 
 def test_where_room_is_short_those_who_wait_and_run_stay() -> None:

@@ -125,8 +125,10 @@ def _check_numbers(field: str, of: SequenceType, code: str, element: Element) ->
             if not fits(len(values)):
                 raise AssertionError(too_long)
             return values
-        if isinstance(values, bytes | bytearray | memoryview):
-            values = np.frombuffer(values, np.uint8) if _is_of_octets(values) else values.tolist()
+        if isinstance(values, bytes | bytearray):
+            values = memoryview(values)
+        if isinstance(values, memoryview):
+            values = np.asarray(values)
         if isinstance(values, np.ndarray):
             fitting = values.dtype == native and values.ndim == 1
             if not fits(values.size) or not (fitting or _holds(values, number)):
@@ -154,10 +156,6 @@ def _check_fixed(field: str, of: Array, dtype: np.dtype[Any], element: Element) 
         return np.array(list(check_items(values)), dtype)
 
     return check
-
-
-def _is_of_octets(values: bytes | bytearray | memoryview) -> bool:
-    return not isinstance(values, memoryview) or values.format == "B"
 
 
 def _length_rule(of: SequenceType) -> Callable[[int], bool]:
