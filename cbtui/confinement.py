@@ -10,7 +10,7 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Self
 
@@ -46,6 +46,18 @@ class Confinement:
     hidden: tuple[Path, ...] = ()
     missing: str = ""
 
+    libraries: tuple[Path, ...] = field(default_factory=lambda: tuple(_libraries()))
+    """Folders with Python, installed packages and the engine."""
+
+    @property
+    def import_path(self) -> list[str]:
+        """Where programs import from: ``sys.path`` without the folder that the grader was started in."""
+        return [
+            entry
+            for entry in sys.path
+            if Path(entry) == PACKAGES or any(Path(entry).is_relative_to(each) for each in self.libraries)
+        ]
+
     @classmethod
     def best(cls, hidden: Sequence[Path]) -> Self:
         """Return the strictest that works on this machine, tried once."""
@@ -54,7 +66,7 @@ class Confinement:
             return cls(None, missing="bwrap (of the package bubblewrap) is not installed")
         everywhere = dict.fromkeys(form for path in hidden for form in (path.absolute(), path.resolve()))
         confinement = cls(bwrap, tuple(everywhere))
-        probe = f"import sys; sys.path[:] = {import_path()!r}; {_PROBE}"
+        probe = f"import sys; sys.path[:] = {confinement.import_path!r}; {_PROBE}"
         words = [*confinement._words(None), sys.executable, "-P", "-c", probe]
         try:
             tried = subprocess.run(
@@ -87,9 +99,8 @@ class Confinement:
         assert self.bwrap is not None
         yield from (self.bwrap, "--unshare-all", "--die-with-parent", "--cap-drop", "ALL")
         yield from ("--proc", "/proc", "--dev", "/dev", "--size", str(_TMP_BYTES), "--tmpfs", "/tmp")
-        seen = {
-            path: None for found in (*map(Path, _SYSTEM), *libraries()) for path in (found, found.resolve())
-        }
+        known = (*map(Path, _SYSTEM), *self.libraries)
+        seen = dict.fromkeys(path for each in known for path in (each, each.resolve()))
         for path in seen:
             yield from ("--ro-bind-try", str(path), str(path))
         for path in self.hidden:
@@ -98,19 +109,11 @@ class Confinement:
                 yield from (*covered, str(path))
         if folder is not None:
             yield from ("--bind", str(folder), str(folder), "--chdir", str(folder))
+        yield from ("--remount-ro", "/")
 
 
-def libraries() -> list[Path]:
-    """The folders with Python, installed packages and the engine."""
-    installed = [path for path in map(Path, sys.path) if path.name in {"site-packages", "dist-packages"}]
-    return [Path(sys.base_prefix), Path(sys.prefix), *installed, PACKAGES / "cbtui", PACKAGES / "sim"]
-
-
-def import_path() -> list[str]:
-    """Where programs import from: ``sys.path`` without the folder that the grader was started in."""
-    known = libraries()
-    return [
-        entry
-        for entry in sys.path
-        if Path(entry) == PACKAGES or any(Path(entry).is_relative_to(folder) for folder in known)
-    ]
+def _libraries() -> Iterator[Path]:
+    yield from (Path(sys.base_prefix), Path(sys.prefix), PACKAGES / "cbtui", PACKAGES / "sim")
+    given = [Path(entry).absolute() for entry in os.environ.get("PYTHONPATH", "").split(os.pathsep) if entry]
+    yield from (path for path in given if path.resolve() != PACKAGES.resolve())
+    yield from (path for path in map(Path, sys.path) if path.name in {"site-packages", "dist-packages"})

@@ -23,7 +23,7 @@ import msgspec
 
 from cbtui.check_text import verdict_line
 from cbtui.checking import observe, setup_to_judge
-from cbtui.confinement import Confinement, import_path, libraries
+from cbtui.confinement import Confinement
 from cbtui.forking import forking_context
 from cbtui.session import Session
 from cbtui.submission import Submission
@@ -61,6 +61,7 @@ class Assignment:
     folder: Path
     launcher: Path | None
     environment: Mapping[str, str]
+    confinement: Confinement
 
 
 def mark(submission: Submission, lesson: Path, limit: float, confinement: Confinement) -> Marks:
@@ -68,9 +69,17 @@ def mark(submission: Submission, lesson: Path, limit: float, confinement: Confin
     with tempfile.TemporaryDirectory(prefix="cbtui-grade-", ignore_cleanup_errors=True) as place:
         folder = Path(place).resolve() / "copy"
         folder.mkdir()
-        launcher = confinement.launcher(folder, folder.with_name("launcher"))
-        environment = confinement.environment(folder)
-        return _marks_by_supervisor(Assignment(submission, lesson, limit, folder, launcher, environment))
+        return _marks_by_supervisor(
+            Assignment(
+                submission,
+                lesson,
+                limit,
+                folder,
+                confinement.launcher(folder, folder.with_name("launcher")),
+                confinement.environment(folder),
+                confinement,
+            )
+        )
 
 
 def _marks_by_supervisor(assignment: Assignment) -> Marks:
@@ -103,7 +112,7 @@ def _supervise(assignment: Assignment, grader: Connection) -> None:
         os.dup2(nothing, number)
     os.environ.clear()
     os.environ.update(assignment.environment)
-    sys.path[:] = import_path()
+    sys.path[:] = assignment.confinement.import_path
     sys.dont_write_bytecode = True
     os.chdir(assignment.folder)
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
@@ -119,7 +128,8 @@ def _marks(assignment: Assignment) -> Marks:
     program = submission.write_to(assignment.folder)
     key = secrets.token_bytes(32)
     setup = msgspec.structs.replace(setup_to_judge(lesson, program), packages=(), seal=key)
-    witness = Witness(key, submission, assignment.folder, libraries(), virtual=setup.clock == "virtual")
+    libraries = assignment.confinement.libraries
+    witness = Witness(key, submission, assignment.folder, libraries, virtual=setup.clock == "virtual")
     run = observe(setup, program.name, assignment.limit, open_session=partial(Session, unpack=witness.unpack))
     doubts = witness.doubts(whole=run.trouble is None)
     if doubts or run.trouble is not None:

@@ -7,6 +7,7 @@ from pathlib import Path
 from types import CodeType
 
 from cbtui.submission import Submission
+from lessons.catalogue import ROOT as LESSONS
 from sim.trace.events import AnyEvent, EntityAppeared, decode
 from sim.trace.plausibility import Plausibility
 from sim.trace.sealing import BrokenSealError, Seal
@@ -26,6 +27,7 @@ class Witness:
         self, key: bytes, submission: Submission, folder: Path, libraries: Sequence[Path], *, virtual: bool
     ) -> None:
         self._seal = Seal(key)
+        self._is_broken = False
         self._submission = submission
         self._folder = folder
         self._libraries = libraries
@@ -43,7 +45,9 @@ class Witness:
         try:
             batch = self._seal.open(data)
         except BrokenSealError as error:
-            self._doubt(str(error))
+            if not self._is_broken:
+                self._doubt(str(error))
+            self._is_broken = True
             return []
         for name in batch.replaced[:1]:
             self._doubt(f"the program replaced {name}, which is the engine's own")
@@ -72,7 +76,8 @@ class Witness:
     def _look_at_origin(self, event: EntityAppeared) -> None:
         file = Path(event.file)
         if not file.is_relative_to(self._folder):
-            if not any(file.is_relative_to(folder) for folder in self._libraries):
+            known = any(file.is_relative_to(folder) for folder in self._libraries)
+            if not known or file.is_relative_to(LESSONS):
                 self._doubt(f"the callback {event.callback} is in {file}, which was not handed in")
             return
         name = str(file.relative_to(self._folder))

@@ -20,8 +20,8 @@ SUSPICIOUS = 3
 CHANGED = 4
 """The exit code where a submission changed cbtui or a lesson, and grading stopped."""
 
-DESCRIPTION = """Run and check what lies in DIR: a folder for each learner with files such as split_groups.py, or a
-file for each. The files are programs, and are run: each on a copy, and with bwrap (of the package
+DESCRIPTION = """Run and check what lies in DIR: a folder for each learner with files such as split_groups.py,
+or a file for each. The files are programs, and are run: each on a copy, and with bwrap (of the package
 bubblewrap) in namespaces of its own, without a network, other processes, other submissions, checks
 and solutions. Without bwrap it can read and write whatever you can. Either way it shares the
 process that traces it: one that knows how can write a trace of its own. What gives that away (a

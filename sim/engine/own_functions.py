@@ -14,14 +14,18 @@ class OwnFunctions:
     def __init__(self, parts: Mapping[str, object]) -> None:
         self._parts = parts
         self._code = dict(_functions())
-        self._held = {name: _callables(part) for name, part in parts.items()}
+        self._held = dict(self._callables())
 
     def replaced(self) -> tuple[str, ...]:
         """Return the names of those that are no longer what they were."""
-        now = dict(_functions())
-        functions = [name for name, code in self._code.items() if now.get(name) is not code]
-        held = [name for name, part in self._parts.items() if _callables(part) != self._held[name]]
-        return (*functions, *held)
+        code, held = dict(_functions()), dict(self._callables())
+        functions = [name for name, was in self._code.items() if code.get(name) is not was]
+        callables = [name for name in {**self._held, **held} if held.get(name) != self._held.get(name)]
+        return (*functions, *callables)
+
+    def _callables(self) -> Iterator[tuple[str, object]]:
+        for place, part in self._parts.items():
+            yield from ((f"{place}.{name}", each) for name, each in vars(part).items() if callable(each))
 
 
 def _functions() -> Iterator[tuple[str, CodeType]]:
@@ -42,7 +46,3 @@ def _in(place: str, holder: object) -> Iterator[tuple[str, CodeType]]:
         inner = member.fget if isinstance(member, property) else getattr(member, "__func__", member)
         if isinstance(inner, FunctionType):
             yield f"{place}.{name}", inner.__code__
-
-
-def _callables(part: object) -> dict[str, object]:
-    return {name: value for name, value in vars(part).items() if callable(value)}

@@ -9,7 +9,8 @@ from sim.trace.events import AnyEvent, EntityId, GroupId, GroupKind, ThreadId
 from sim.trace.message_counts import MessageCounts
 from sim.trace.model import Nanoseconds
 
-_MOST_FAULTS = 5
+_MOST_FAULTS = 2
+"""One thing that is wrong makes others wrong."""
 _INTRODUCED: dict[type, str] = {
     ev.ProcessAppeared: "process",
     ev.ThreadAppeared: "thread",

@@ -1,0 +1,1 @@
+"""Grading what hostile and honest learners hand in."""
