@@ -104,11 +104,16 @@ def _replace_files(replacements: Replacements, outside: OutsideWork) -> None:
         return read(descriptor, size)
 
     def write_ready(descriptor: int, data: Any) -> int:
-        await_ready(descriptor, select.POLLOUT, "os.write")
-        return write(descriptor, data)
+        if not _may_block(descriptor):
+            return write(descriptor, data)
+        left = memoryview(data).cast("B")
+        while left:
+            await_ready(descriptor, select.POLLOUT, "os.write")
+            left = left[write(descriptor, left[: select.PIPE_BUF]) :]
+        return memoryview(data).nbytes
 
     class Pipe(io.FileIO):
-        """The reading end of a pipe."""
+        """An end of a pipe."""
 
         def readinto(self, buffer: Any) -> Any:
             if owns():
@@ -121,14 +126,23 @@ def _replace_files(replacements: Replacements, outside: OutsideWork) -> None:
         def readall(self) -> bytes:
             return b"".join(iter(lambda: io.RawIOBase.read(self, io.DEFAULT_BUFFER_SIZE), b""))
 
+        def write(self, data: Any) -> Any:
+            if not owns():
+                return super().write(data)
+            await_ready(self.fileno(), select.POLLOUT, "writing to a pipe")
+            return super().write(memoryview(data).cast("B")[: select.PIPE_BUF])
+
     def open_(file: Any, mode: str = "r", buffering: int = -1, *rest: Any, **named: Any) -> Any:
-        if not isinstance(file, int) or not mode.startswith("r") or "+" in mode or not _may_block(file):
+        if not isinstance(file, int) or not {*mode} <= {*"rwbt"} or not _may_block(file):
             return real_open(file, mode, buffering, *rest, **named)
-        raw = Pipe(file, "rb", named.pop("closefd", True))
+        raw = Pipe(file, mode.replace("t", ""), named.pop("closefd", True))
         if buffering == 0:
             return raw
-        binary = io.BufferedReader(raw, buffering if buffering > 1 else io.DEFAULT_BUFFER_SIZE)
-        return binary if "b" in mode else io.TextIOWrapper(binary, *rest, **named)
+        buffered = io.BufferedReader if "r" in mode else io.BufferedWriter
+        binary = buffered(raw, buffering if buffering > 1 else io.DEFAULT_BUFFER_SIZE)
+        if "b" in mode:
+            return binary
+        return io.TextIOWrapper(binary, *rest, line_buffering=buffering == 1, **named)  # type: ignore[misc]
 
     replacements.put(os, "read", read_ready)
     replacements.put(os, "write", write_ready)

@@ -204,13 +204,13 @@ class VirtualClock:
         if not self.explores or self.held_together or self._stopping or not self.owns_current_thread():
             return
         me = self.current
-        if self._ready and not me.ending and self._schedule.leaves(me, self._ready):
+        if self._ready and not me.stays and self._schedule.leaves(me, self._ready):
             self._ready.append(me)
             self._hand_on(me)
 
     def end_thread(self) -> None:
         """Have the calling thread run to its end from here, which it is near: others may join it for real."""
-        self.current.ending = True
+        self.current.stays = True
 
     def inject(self, action: Callable[[], None]) -> None:
         """Have ``action`` run at the moment the run has reached; it must not wait. Any thread may call it."""

@@ -18,13 +18,13 @@ class VirtualThread:
 
     __slots__ = (
         "current_wait",
-        "ending",
         "gate",
         "ident",
         "interrupted",
         "is_main",
         "knocked",
         "name",
+        "stays",
         "waiting",
         "wants",
         "woken",
@@ -34,7 +34,8 @@ class VirtualThread:
         self.name = name
         self.is_main = False
         self.ident = 0
-        self.ending = False
+        self.stays = False
+        """Whether it is not left at switch points."""
         self.interrupted = False
         self.knocked = False
         self.gate = _allocate_lock()

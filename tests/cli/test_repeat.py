@@ -122,3 +122,17 @@ def test_a_program_that_is_gone_cannot_be_repeated(
 ) -> None:
     said = refusal(recording_of(tmp_path, "virtual", tmp_path / "node.py"), capsys)
     assert "node.py is not there any more; name the file that is to run instead" in said
+
+
+def test_a_program_that_is_not_repeatable_says_so_for_seeds_inputs_and_orders(tmp_path: Path) -> None:
+    program, recording = tmp_path / "program.py", tmp_path / "run.mcap"
+    program.write_text("import subprocess\nsubprocess.run(['sleep', '0.1'])\n", encoding="utf-8")
+    short = ["--for", "5", "--no-robot"]
+    seeded = cbtui("run", str(program), "--seed", "3", "--record", str(recording), *short)
+    assert "program.py:2, in <module>: subprocess starts a process" in seeded.stderr
+    assert "this program is not repeatable: seed 3 orders its threads, no more" in seeded.stderr
+    again = cbtui("run", "--inputs", str(recording))
+    assert f"{recording} is of a program that is not repeatable (program.py:2" in again.stderr
+    assert again.returncode == 0
+    orders = cbtui("explore", str(program), "--schedules", "1", "--for", "5")
+    assert "This program is not repeatable: a seed orders its threads" in orders.stdout

@@ -307,8 +307,12 @@ ROWS = (
         process.wait()
         with os.popen("sleep 0.1; echo c") as lines:
             assert lines.read() == "c\\n"
+        reader, writer = os.pipe()
+        with os.fdopen(writer, "w") as text:
+            thread(lambda: (time.sleep(0.1), os.fdopen(reader).read()))
+            text.write("x" * 200_000)
         """,
-        0.3,
+        0.4,
     ),
     Row(
         "os.system", Does.HOLDS, "assert os.waitstatus_to_exitcode(os.system('sleep 0.2; exit 3')) == 3", 0.2

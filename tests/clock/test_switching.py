@@ -24,6 +24,15 @@ def at_once(*targets):
 """
 
 PROGRAMS = {
+    "threads_that_import_the_same_module_do_not_hold_each_other_up": """
+        import pathlib, tempfile
+        folder = tempfile.mkdtemp()
+        pathlib.Path(folder, "asks_often.py").write_text("import time\\nfor _ in range(50): time.time()")
+        sys.path.insert(0, folder)
+        def load():
+            import asks_often
+        at_once(load, load, load)
+    """,
     "an_update_gets_lost_in_some_rounds_and_not_in_others": """
         def round():
             global count

@@ -8,13 +8,22 @@ from random import Random
 
 import pytest
 
-from sim.trace.events import AnyEvent, CallbackStarted, EntityReady, MessageDropped, Published
+from sim.trace.events import (
+    AnyEvent,
+    CallbackStarted,
+    EntityReady,
+    MessageDropped,
+    Printed,
+    Published,
+    RunEnded,
+)
 from sim.trace.message_counts import MessageCounts
 from tests.ros.schedules import Trouble, random_system
-from tests.soak import keys, lessons, schedules
+from tests.soak import keys, lessons, schedules, stdlib_calls
 from tests.soak.footprint import footprint, growth
 from tests.soak.lesson_runs import SECOND, Came, choose, run_twice
 from tests.soak.walks import Walk
+from tests.support import engine_runs
 from tests.support.builder import Run
 
 
@@ -137,3 +146,30 @@ def test_schedules_are_recorded_if_that_is_wanted(
     assert (soak, part) == ("schedules", "executors")
     assert {**entry, "date": ""} == {"date": "", "seed": 1, "schedules": 4, "seconds": 0, "faults": 1}
     assert "4 schedules from seed 7, 1 with a fault" in capsys.readouterr().out
+
+
+def test_a_row_of_the_standard_library_that_takes_too_long_is_found(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    composition = stdlib_calls.compose(2)
+    assert composition == stdlib_calls.compose(2)
+    assert composition.repeats
+    rows = [(place, number) for place, part in enumerate(composition.parts) for number in range(len(part))]
+    late: list[AnyEvent] = [
+        Printed(t=1, error=False, text=f'came [{place}, {number}, 9000000000, ""]') for place, number in rows
+    ]
+    run = engine_runs.Run([*late, RunEnded(t=2, reason="it returned", failed=False)])
+    assert len(list(stdlib_calls._troubles_of_run(composition, run))) == len(rows)
+
+    kept: list[tuple[str, str, dict[str, object]]] = []
+    monkeypatch.setattr(stdlib_calls, "troubles_of", _once(["seed 5: too late"]))
+    monkeypatch.setattr(stdlib_calls, "record", lambda *what: kept.append(what))
+    monkeypatch.setattr(
+        sys, "argv", ["soak", "--minutes", "1e-9", "--seed", "5", "--processes", "1", "--record"]
+    )
+    monkeypatch.setattr(stdlib_calls.time, "monotonic", iter([0.0, 0.0, 9.0, 9.0]).__next__)
+    assert stdlib_calls.main() == 1
+    ((soak, part, entry),) = kept
+    assert (soak, part) == ("stdlib", "calls")
+    assert {**entry, "date": ""} == {"date": "", "seed": 5, "programs": 1, "seconds": 9, "troubles": 1}
+    assert capsys.readouterr().err == "seed 5: too late\n"
