@@ -69,7 +69,7 @@ def setup_to_judge(lesson: Lesson, file: Path | None = None) -> RunSetup:
     terms = lesson.run
     setup = setup_for(lesson, threads=terms.threads if file is None else None, speed=None)
     if file is not None:
-        program = ProgramSetup(str(file.resolve()), tuple(lesson.setup.arguments))
+        program = ProgramSetup(str(file.absolute()), tuple(lesson.setup.arguments))
         setup = msgspec.structs.replace(setup, programs=(program,))
     return msgspec.structs.replace(
         setup,

@@ -19,6 +19,7 @@ from cbtui.program_log import ProgramLog
 from cbtui.record import CannotRecordError, start_recording
 from cbtui.repeat import why_unrepeatable
 from cbtui.room import RoomWatch
+from cbtui.session import LONGEST_END
 from sim.diagnosis import diagnose, findings_text
 from sim.engine.commands import Stop
 from sim.engine.setup import RunSetup, TimedCall, TimedLine
@@ -31,8 +32,6 @@ from sim.trace.timeline import Timeline
 _SECOND = 1_000_000_000
 _LOOK = 0.1
 """Real seconds between two looks whether an engine that was told to end still has not."""
-_LAST_NEWS = 2.0
-"""Real seconds that it gets."""
 _BATCHES = 64
 """Batches that may wait for this process; a full queue holds the engine up, and nothing is lost."""
 
@@ -138,7 +137,7 @@ class _Headless:
     def _end_early(self, told: Signals) -> None:
         """Have the engine end, which it tells of as of everything else."""
         self._told = told
-        self._patient_until = time.monotonic() + _LAST_NEWS
+        self._patient_until = time.monotonic() + LONGEST_END
         self._session.send(Stop())
 
     def _follow(self) -> str | None:

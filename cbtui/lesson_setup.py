@@ -44,7 +44,7 @@ def setup_for_files(
     """
     return RunSetup(
         title=" ".join(path.name for path in paths),
-        programs=tuple(ProgramSetup(str(path.resolve()), tuple(arguments)) for path in paths),
+        programs=tuple(ProgramSetup(str(path.absolute()), tuple(arguments)) for path in paths),
         clock="real",
         packages=_LESSON_PACKAGES,
         robot=RobotUse.WHEN_USED,

@@ -63,7 +63,8 @@ def repeated(
     if program is None:
         _check_programs(recorded, recording)
         if known.unrepeatable:
-            tell(f"{path} is of a program that is not repeatable ({known.unrepeatable}); it runs all the same")
+            why = known.unrepeatable
+            tell(f"{path} is of a program that is not repeatable ({why}); it is run again all the same")
     if seconds is None:
         until = recorded.until if recorded.until is not None or known.ended else known.last
     else:

@@ -24,13 +24,16 @@ from cbtui.silence import LOOK, Silence, why_silent
 from cbtui.warden import Warden, ceiling
 from sim.clean_start import without_current_folder
 from sim.engine.commands import Command, Stop, encode
+from sim.engine.ending import GRACE, TO_LEAVE
 from sim.engine.last_words import ASKED, overflowed, place_in
 from sim.engine.outbox import TRACE_CLOSED
 from sim.engine.setup import RunSetup
 from sim.trace.events import AnyEvent, RunEnded, decode
 
 _GRACE = 0.4
-"""Seconds that an engine gets to end by itself before it is killed."""
+"""Seconds that an engine without a program to end gets to end by itself before it is killed."""
+LONGEST_END = GRACE + TO_LEAVE
+"""Seconds that one with a program gets."""
 _LONGEST_BATCH = 1 << 30
 """Bytes; the length of a batch is what the program's process says it is."""
 _TO_WRITE = 0.2
@@ -44,7 +47,8 @@ class Session:
 
     ``deliver`` gets every batch of events in order, ``ended`` is called once when no more will come, with
     None if the run ended as it should and with a sentence if the engine was lost. Both are called on the
-    session's reader thread. An engine from which nothing comes is told of by a notice among the events. When
+    session's reader thread. An engine from which nothing comes is told of by a notice among the events. One
+    that is stopped while it runs has ``LONGEST_END`` for its program's own ending. When
     the engine has ended, whatever processes it started are ended too; one that takes more memory than
     ``cbtui.warden.ceiling`` allows is, and so are all when this process is killed. ``context`` starts the
     engine's process, None: afresh. ``unpack`` makes events of the bytes of a batch, on the reader thread.
@@ -63,6 +67,7 @@ class Session:
         self._ended = ended
         self._stopping = False
         self._started = False
+        self._runs = False
         self._setup = setup
         self._context = context or multiprocessing.get_context("spawn")
         self._pipe, self._far_end = self._context.Pipe()
@@ -120,7 +125,7 @@ class Session:
 
     def _stop(self) -> None:
         self.send(Stop())
-        self._family.wait_for_end(_GRACE)
+        self._family.wait_for_end(LONGEST_END if self._runs and not self._family.is_stopped() else _GRACE)
         self._warden.stop()
         self._process.kill()
         self._process.join()
@@ -148,6 +153,7 @@ class Session:
                 self._ended(f"the engine sent something unreadable: {error}")
                 return
             finished = finished or any(isinstance(event, RunEnded) for event in events)
+            self._runs = not finished
             if events:
                 self._deliver(events)
         self._ended(None if finished or self._stopping else self._epitaph())

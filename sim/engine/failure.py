@@ -55,8 +55,11 @@ def _innermost(error: BaseException, path: str, folder: str) -> tuple[FrameType,
 
 
 def _is_own(file: str, path: str, folder: str) -> bool:
-    if file == path:
-        return True
+    return file == path or is_learners(file, folder)
+
+
+def is_learners(file: str, folder: str | Path) -> bool:
+    """Whether a file in ``folder`` or below is the learner's, and neither installed nor the model's."""
     where = Path(file)
     within = where.is_relative_to(folder) and not where.is_relative_to(_MODEL)
     return within and "site-packages" not in where.parts

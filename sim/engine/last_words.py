@@ -57,7 +57,8 @@ def place_in(last_words: str, programs: Iterable[str]) -> str:
     ``programs`` are the paths of the programs. The thread that crashed comes first, of the others one that
     was computing in a file of theirs.
     """
-    folders = tuple(f"{Path(path).parent}{os.sep}" for path in programs)
+    paths = [Path(each) for path in programs for each in (path, os.path.realpath(path))]
+    folders = tuple(f"{path.parent}{os.sep}" for path in paths)
     threads = [_frames(text) for text in _threads(last_words)]
     busy = [frames for frames in threads[1:] if frames and _is_own(frames[0].file, folders)]
     for frames in (*threads[:1], *busy, *threads[1:]):

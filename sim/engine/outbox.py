@@ -99,8 +99,8 @@ class Outbox:
     def close(self, last: AnyEvent) -> None:
         """Record ``last`` as the last event of all, and send everything."""
         if not self._closed:
-            self._waiting.append(last)
             self._closed = True
+            self._waiting.append(last)
         self.flush()
 
     def _send_for_ever(self) -> None:

@@ -1,6 +1,7 @@
 """What programs print: every line becomes an event, so that it cannot spoil the screen."""
 
 import io
+import sys
 from codecs import getincrementaldecoder
 from collections.abc import Callable
 from functools import cached_property
@@ -107,3 +108,10 @@ class ProcessStream(_TextStream):
     def _sink(self) -> LineSink:
         process = current_process()
         return LineSink(lambda line: self._take(process, line))
+
+
+def finish_lines() -> None:
+    """Hand on the last lines of the calling thread's process, though they are not ended."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, ProcessStream):
+            stream.finish()

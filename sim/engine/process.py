@@ -1,7 +1,7 @@
 """The engine process: sets up host, robot and clock, runs the program, and ends.
 
-``run`` is what the process does, from its first line to ``os._exit``: whatever a program leaves behind
-(threads that never end, exit handlers) must not keep the process alive.
+``run`` is what the process does, from its first line to ``os._exit``. A program ends as under CPython, and is
+on the trace until it has; what takes longer than ``sim.engine.ending.GRACE`` does not keep the process alive.
 """
 
 import os
@@ -25,15 +25,22 @@ from sim.clock.stdlib import live_on
 from sim.engine import commands
 from sim.engine.children import allow_children, refuse_children
 from sim.engine.descriptors import Descriptors, leave_terminal
+from sim.engine.ending import (
+    GRACE,
+    VIRTUAL_GRACE,
+    finalise,
+    flush_files_soon,
+    set_engine_apart,
+)
 from sim.engine.endless_waits import EndlessWaits
-from sim.engine.failure import breakdown
+from sim.engine.failure import breakdown, is_learners
 from sim.engine.held_up import HeldUp
 from sim.engine.last_words import keep_last_words
 from sim.engine.lines import Lines
 from sim.engine.outbox import Outbox
-from sim.engine.output import ProcessStream
+from sim.engine.output import ProcessStream, finish_lines
 from sim.engine.own_functions import OwnFunctions
-from sim.engine.program import Outcome, script
+from sim.engine.program import Outcome, script, threads_left_by
 from sim.engine.programs import Programs
 from sim.engine.repeatability import Repeatability
 from sim.engine.requests import Requests
@@ -48,7 +55,7 @@ from sim.engine.tuned import tuning_of
 from sim.engine.unheard import tell_of_unheard
 from sim.engine.watchdog import Watchdog
 from sim.robot.bullet import WorldUnavailable
-from sim.ros import importing
+from sim.ros import importing, own_code
 from sim.ros.contents import Contents
 from sim.ros.host import Host, install
 from sim.ros.probe import Probe
@@ -56,14 +63,18 @@ from sim.ros.process import Process, current_process, share_machine
 from sim.trace.events import AnyEvent, InputGiven, Notice, Printed, RunEnded, RunStarted, Severity, TimePassed
 from sim.trace.sealing import Seal
 
-_GRACE = 0.5
-"""Real seconds that a program gets to wind up once its run is over."""
+_SIGNAL_AFTER = 0.5
+"""Real seconds after which a program on virtual time that comes to no wait is interrupted by a signal."""
+_CONTEXTS_END_AFTER = 1_000_000_000
+"""Nanoseconds after which a program's contexts end if it was interrupted and still runs."""
 _BATCHES_A_LOOK = 16
 """Sealed batches to one that is sent with a look at the engine's own functions, which takes milliseconds."""
+_STOPPED = "it was stopped"
 
 # Kept from before a clock, a program or the keeping of last words put their own in their place.
 _real_sleep = time.sleep
 _leave = os._exit
+_allocate_lock = threading.Lock
 
 
 class Engine:
@@ -108,23 +119,24 @@ class Engine:
         self._starter = Starter(self._programs, self._setup)
         self._lines = Lines(self._host, self._outbox.record, self._starter, self._programs.look)
         self._descriptors = Descriptors(self._take_line)
-        self._over = False
         self._passed = 0
-        self._grace_begins = threading.Lock()
-        self._grace_begins.acquire()
+        self._ending: tuple[str, bool] | None = None
+        self._modules = set(sys.modules)
+        self._leaves = _allocate_lock()
+        self._grace_begins = threading.Semaphore(0)
 
     def run(self) -> None:
         """Run the program to its end or the run's, and leave the process."""
         self._outbox.start()
         self._outbox.record(RunStarted(0, self._setup.title, self._setup.clock, self._clock.epoch))
         threading.Thread(target=self._obey, name="commands", daemon=True).start()
-        threading.Thread(target=self._leave_after_grace, name="grace", daemon=True).start()
+        threading.Thread(target=self._end_in_time, name="grace", daemon=True).start()
         self._redirect_output()
         keep_last_words(self._last_words, self._outbox.flush)
         if not self._setup.whole_tracebacks:
             leave_out_own_frames()
         for program in self._setup.programs[:1]:
-            tell_of_unheard(self._tell_of_error, program.path, str(Path(program.path).parent))
+            tell_of_unheard(self._tell_of_error, program.path, str(Path(program.path).resolve().parent))
         install(self._host)
         importing.install()
         self._starter.add_own_interfaces()
@@ -146,6 +158,7 @@ class Engine:
         if self._seal is not None:
             parts = {"outbox": self._outbox, "probe": self._probe, "host": self._host, "clock": self._clock}
             self._own_functions = OwnFunctions(parts)
+        self._modules = set_engine_apart()
         self._end(self._run_programs())
 
     def _run_programs(self) -> Outcome:
@@ -160,7 +173,7 @@ class Engine:
             self._lines.interrupt_all()
             self._programs.interrupt_all()
             self._programs.wait_until(lambda: not self._programs.any_run)
-            return Outcome("it was stopped", failed=False)
+            return Outcome(_STOPPED, failed=False)
         except StartError as error:
             self._programs.interrupt_all()
             return Outcome(str(error), failed=True, status=1)
@@ -175,8 +188,7 @@ class Engine:
                 self._programs.start(script(program.path, program.arguments), label, _nobody_waits)
 
     def _fail(self, sentence: str) -> None:
-        self._finish_run(sentence, failed=True)
-        self._interrupt()
+        self._have_end(sentence, failed=True)
 
     def _schedule(self) -> None:
         for call in self._setup.calls:
@@ -196,56 +208,108 @@ class Engine:
     def _time_is_up(self) -> None:
         failures = self._programs.failures
         sentence = "; ".join(["its time was up", *failures[:1]])
-        self._finish_run(sentence, failed=bool(failures))
-        self._interrupt()
+        self._have_end(sentence, failed=bool(failures))
 
-    def _finish_run(self, reason: str, *, failed: bool) -> None:
-        if not self._over:
-            self._over = True
-            if self._endless is not None:
-                self._endless.finish()
+    def _have_end(self, reason: str, *, failed: bool) -> None:
+        """Have the program end as by Ctrl-C, and the run with it; by force if that takes too long."""
+        self._grace_begins.release()
+        if self._conclude(reason, failed):
+            self._control.let_go()
+            if self._virtual is None:
+                self._interrupt()
+            elif self._virtual.owns_current_thread():
+                self._interrupt_on(self._virtual)
+            else:
+                self._virtual.inject(partial(self._interrupt_on, self._virtual))
+
+    def _conclude(self, reason: str, failed: bool) -> bool:
+        """Take the reason that the run ends for, if it is the first; whether it is."""
+        if self._ending is not None:
+            return False
+        self._ending = reason, failed
+        if self._endless is not None:
+            self._endless.finish()
+        if self._host.tuning is not None and not failed:
             with self._host.lock:
-                if self._host.tuning is not None and not failed:
-                    for sentence in self._host.tuning.unmet():
-                        self._outbox.record(Notice(self._clock.now(), Severity.WARN, sentence))
-                self._outbox.close(RunEnded(self._clock.now(), reason, failed))
+                for sentence in self._host.tuning.unmet():
+                    self._outbox.record(Notice(self._clock.now(), Severity.WARN, sentence))
+        return True
 
     def _interrupt(self) -> None:
-        """Have the program end as Ctrl-C would, and the process a little later whatever it does."""
-        if self._grace_begins.locked():
-            self._grace_begins.release()
-        if self._virtual is not None:
-            self._virtual.stop()
-        else:
-            self._control.let_go()
-            main = threading.main_thread().ident
-            assert main is not None
-            signal.pthread_kill(main, signal.SIGINT)
+        self._clock.call_at(self._clock.now() + _CONTEXTS_END_AFTER, self._programs.end_contexts)
+        _signal_main()
 
-    def _leave_after_grace(self) -> None:
+    def _interrupt_on(self, clock: VirtualClock) -> None:
+        clock.resume()
+        clock.set_speed(None)
+        clock.call_at(clock.now() + _CONTEXTS_END_AFTER, self._programs.end_contexts)
+        clock.call_at(clock.now() + VIRTUAL_GRACE, partial(self._end_by_force, VIRTUAL_GRACE / 1e9))
+        clock.interrupt(threading.main_thread().ident or 0)
+
+    def _end_in_time(self) -> None:
+        """Wait on a thread outside the clock for the run to be over, and see that the process ends then."""
         self._grace_begins.acquire()
-        _real_sleep(_GRACE)
-        self._starter.close()
-        _leave(0)
+        _real_sleep(_SIGNAL_AFTER)
+        if self._virtual is not None and self._main_computes_on(self._virtual):
+            self._conclude(_STOPPED, failed=False)
+            _signal_main()
+        _real_sleep(GRACE - _SIGNAL_AFTER)
+        self._end_by_force(GRACE)
+
+    def _main_computes_on(self, clock: VirtualClock) -> bool:
+        """Whether the main thread has come to no wait since it was to be interrupted there."""
+        main = clock.current
+        unheard = main.is_main and not clock.rests and (main.knocked or self._ending is None)
+        main.knocked = main.knocked and not unheard
+        return unheard
+
+    def _end_by_force(self, seconds: float) -> None:
+        self._conclude(_STOPPED, failed=False)
+        text = (
+            f"{self._setup.title} had not ended {seconds:g} s after it was told to{self._where_it_stands()}"
+        )
+        self._outbox.record(Notice(self._clock.now(), Severity.WARN, f"{text}: it was ended by force"))
+        flush_files_soon()
+        self._leave()
+
+    def _where_it_stands(self) -> str:
+        """What keeps the program from ending, as " (worker: node.py:12, in work)"."""
+        frames = sys._current_frames()
+        left = [thread for process in self._programs.processes for thread in threads_left_by(process)]
+        for thread in (threading.main_thread(), *left):
+            place = own_code.place_of(frames.get(thread.ident or 0))
+            if place:
+                return f" ({thread.name}: {place})"
+        return ""
 
     def _give_up(self, sentence: str) -> None:
         if self._setup.speed is None:
-            self._finish_run(sentence, failed=True)
-            _leave(1)
+            self._have_end(sentence, failed=True)
 
     def _end(self, outcome: Outcome) -> None:
+        """End as CPython does once a script has, and leave."""
+        folders = {Path(program.path).resolve().parent for program in self._setup.programs}
+        finalise(self._modules, lambda file: any(is_learners(file, folder) for folder in folders))
         if os.getpid() != self._pid:
             _leave(outcome.status)  # a program forked, and this is the other one
-        self._descriptors.finish()
-        self._finish_run(outcome.sentence, failed=outcome.failed)
-        self._starter.close()
-        _leave(0)
+        self._conclude(outcome.sentence, outcome.failed)
+        finish_lines()
+        self._leave()
 
     def _break_down(self, error: Exception) -> NoReturn:
+        self._conclude(breakdown(error), failed=True)
+        self._leave()
+
+    def _leave(self) -> NoReturn:
+        """Send what the run ended for as the last of all, and leave the process. For any thread, once."""
+        if not self._leaves.acquire(blocking=False):
+            while True:
+                _real_sleep(GRACE)  # another thread is at it
         self._descriptors.finish()
-        self._finish_run(breakdown(error), failed=True)
+        reason, failed = self._ending or (_STOPPED, False)
+        self._outbox.close(RunEnded(self._clock.now(), reason, failed))
         self._starter.close()
-        _leave(1)
+        _leave(0)
 
     def _redirect_output(self) -> None:
         def stream(error: bool) -> ProcessStream:
@@ -287,10 +351,10 @@ class Engine:
     def _look_at_waits(self) -> int | None:
         if self._endless is not None:
             self._endless.look()
-        return self._host.explain_waits()
+        return None if self._ending else self._host.explain_waits()
 
     def _look_at_waits_of_real_time(self) -> None:
-        if self._virtual is None and not self._over:
+        if self._virtual is None and self._ending is None:
             self._host.explain_waits()
 
     def _heartbeat(self) -> list[AnyEvent]:
@@ -342,6 +406,7 @@ class Engine:
             self._outbox.record(Notice(clock.now(), Severity.WARN, text))
         clock.give(lambda: self._carry_out(command))
         if isinstance(command, commands.Stop):
+            self._grace_begins.release()
             self._control.let_go()
 
     def _carry_out(self, command: commands.WorldCommand) -> None:
@@ -362,8 +427,13 @@ class Engine:
             case commands.KeepContents(wanted=wanted):
                 self._contents.wanted = wanted
             case commands.Stop():
-                self._finish_run("it was stopped", failed=False)
-                self._interrupt()
+                self._have_end(_STOPPED, failed=False)
+
+
+def _signal_main() -> None:
+    main = threading.main_thread().ident
+    assert main is not None
+    signal.pthread_kill(main, signal.SIGINT)
 
 
 def _nobody_waits(_end: object) -> None:
@@ -379,11 +449,10 @@ def run(packed_setup: bytes, pipe: Connection, last_words: Connection) -> None:
     engine = Engine(setup, pipe, last_words)
     try:
         engine.run()
-    except KeyboardInterrupt:  # it was stopped before its program began, and has told so
-        engine._starter.close()
-        _leave(0)
+    except KeyboardInterrupt:  # it was stopped before its program began
+        engine._leave()
     except WorldUnavailable as error:
-        engine._finish_run(str(error), failed=True)
-        _leave(1)
+        engine._conclude(str(error), failed=True)
+        engine._leave()
     except Exception as error:  # noqa: BLE001 - an error of the engine's own, which nobody else tells of
         engine._break_down(error)

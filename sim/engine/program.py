@@ -8,17 +8,19 @@ import threading
 import traceback
 import warnings
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from types import CodeType, ModuleType
 from typing import Any
 
-from sim.clock import Stopped
 from sim.engine.advice import misplaced, silence
+from sim.engine.ending import run_thread_exit_functions
 from sim.engine.failure import failure, place_of
-from sim.engine.output import ProcessStream
+from sim.engine.output import finish_lines
 from sim.engine.source import NothingToRunError, read_source
-from sim.ros.process import current_process
+from sim.ros.process import Process, current_process, process_of
+from sim.ros.signals import deliver_sigint
 
 _INTERRUPTED = 130
 
@@ -38,8 +40,8 @@ class Program:
 
 
 def script(path: str, arguments: tuple[str, ...] = ()) -> Program:
-    """The program that a file is, as Python runs it."""
-    return Program(path, str(Path(path).parent), arguments)
+    """The program that a file is, as Python runs it: what a link leads to imports from its own folder."""
+    return Program(path, str(Path(path).resolve().parent), arguments)
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,9 +62,13 @@ def run_program(program: Program) -> Outcome:
     if program.folder not in sys.path:
         sys.path.insert(0, program.folder)
     outcome = _outcome_of(program)
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, ProcessStream):
-            stream.finish()
+    if outcome.status == _INTERRUPTED:
+        deliver_sigint(current_process())  # what spins on threads ends
+    for _ in range(2):  # Ctrl-C while main waits for its threads does not end these
+        with suppress(KeyboardInterrupt):
+            _join_left_threads()
+            break
+    finish_lines()
     return outcome
 
 
@@ -74,7 +80,7 @@ def _outcome_of(program: Program) -> Outcome:
         return _exited(exit_, program)
     except NothingToRunError as error:
         return Outcome(str(error), failed=True, status=1)
-    except (KeyboardInterrupt, Stopped):
+    except KeyboardInterrupt:
         return Outcome("it was stopped", failed=False, status=_INTERRUPTED)
     except BaseException as error:  # noqa: BLE001 -- whatever a learner's program raises ends its run, not the engine
         traceback.print_exception(error)
@@ -171,11 +177,27 @@ def _as_short_warning(
 
 
 def _join_left_threads() -> None:
-    me = threading.current_thread()
-    process = getattr(me, "ros_process", None)
-    for thread in threading.enumerate():
-        if not thread.daemon and thread is not me and getattr(thread, "ros_process", None) is process:
-            thread.join()
+    if current_process().number == 0:
+        run_thread_exit_functions()
+    for thread in threads_left_by(current_process()):
+        thread.join()
+
+
+def threads_left_by(process: Process) -> list[threading.Thread]:
+    """The threads of a process that Python waits for: neither daemons nor the calling one.
+
+    Those of a pool in a run of several programs end with the run, as they serve it until then.
+    """
+    pools = sys.modules.get("concurrent.futures.thread")
+    pooled = getattr(pools, "_threads_queues", ())
+    return [
+        each
+        for each in threading.enumerate()
+        if not each.daemon
+        and each is not threading.current_thread()
+        and process_of(each) is process
+        and (process.number == 0 or each not in pooled)
+    ]
 
 
 def _exited(exit_: SystemExit, program: Program) -> Outcome:

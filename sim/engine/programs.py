@@ -39,8 +39,12 @@ class RunningProgram:
 
     def interrupt(self) -> None:
         """Have it end as Ctrl-C would; nothing happens once it has ended."""
+        deliver_sigint(self.process)
+        self.raise_interrupt()
+
+    def raise_interrupt(self) -> None:
+        """Have KeyboardInterrupt raised in its main thread, if it has begun and not ended."""
         if self.outcome is None and self.thread is not None:
-            deliver_sigint(self.process)
             self.process.host.clock.interrupt(self.thread)
 
     def terminate(self) -> None:
@@ -62,13 +66,16 @@ class Programs:
     failures: list[str] = field(default_factory=list)
     """Sentences on the programs, and on what started programs, that failed."""
     _running: list[RunningProgram] = field(default_factory=list)
+    _only: list[Process] = field(default_factory=list)
     _numbers: "count[int]" = field(default_factory=lambda: count(1))
     _held: int = 0
     _waiters: list[Signal] = field(default_factory=list)
 
     def run_only(self, program: Program) -> Outcome:
         """Run the run's only program on the calling thread."""
-        Process(self.host, arguments=[program.path, *program.arguments]).enter()
+        process = Process(self.host, arguments=[program.path, *program.arguments])
+        process.enter()
+        self._only.append(process)
         return run_program(program)
 
     def start(
@@ -163,7 +170,17 @@ class Programs:
         """Whether a program runs, or something that starts programs."""
         return bool(self._running) or self._held > 0
 
+    @property
+    def processes(self) -> list[Process]:
+        """Those of the programs that run; that of an only one also as it ends."""
+        return [*(running.process for running in self._running), *self._only]
+
     def interrupt_all(self) -> None:
-        """Interrupt every program that runs."""
+        """Raise KeyboardInterrupt in every program that runs; its contexts go on: it may publish."""
         for running in tuple(self._running):
-            running.interrupt()
+            running.raise_interrupt()
+
+    def end_contexts(self) -> None:
+        """End the contexts of every program as Ctrl-C does, so that what spins on their threads ends."""
+        for process in self.processes:
+            deliver_sigint(process)

@@ -160,9 +160,10 @@ class RealControl:
                 self._clock.resume()
 
     def let_go(self) -> None:
-        """Have time pass, so that the run can end."""
+        """Have time pass as it does, so that the run can end."""
         self._wanted = None
         self._clock.resume()
+        self._clock.set_speed(1.0)
 
     def _change_speed(self, speed: float | None) -> None:
         if speed is None:

@@ -27,7 +27,7 @@ def load_description(path: Path) -> LaunchDescription:
     from sim.launch.launch.launch_description import LaunchDescription
 
     install()
-    file = path.resolve()
+    file = path.absolute()
     if file.suffix != ".py":
         raise LaunchError(f"{file.name}: launch files in XML and YAML are not supported; write it in Python")
     generate = vars(_run(file)).get(_GENERATE)

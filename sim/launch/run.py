@@ -37,7 +37,7 @@ class LaunchRun:
         packages: Packages | None = None,
         on_finish: Callable[[int], None] | None = None,
     ) -> None:
-        self._path = path.resolve()
+        self._path = path.absolute()
         self._arguments = tuple(arguments)
         self._packages = packages if packages is not None else find_packages(self._path)
         self._on_finish = on_finish

@@ -100,7 +100,7 @@ def test_each_program_has_its_own_context_executor_and_arguments(tmp_path: Path)
     assert printed == [(1, "talker ['-x', '1'] True"), (2, "listener ['-x', '1']"), (2, "done")]
     logged = [(event.logger, event.text) for event in run.events if isinstance(event, Logged)]
     assert logged == [("listener", "heard 1"), ("listener", "heard 2")]
-    (ended,) = (event for event in run.events if isinstance(event, ProcessEnded))
+    ended, _ = (event for event in run.events if isinstance(event, ProcessEnded))
     assert (ended.t, ended.process, ended.status) == (2 * SECOND, 2, 3)
     ticks = [event.t for event in run.events if isinstance(event, CallbackStarted)]
     assert max(ticks) == 3 * SECOND, "the talker goes on when the listener has shut its own context down"

@@ -39,7 +39,7 @@ class LaunchDescriptionSource:
         path = Path(performed(context, self._location))
         if not path.is_file():
             raise LaunchFailure(f"the included launch file {path} does not exist")
-        return load_description(path), path.resolve()
+        return load_description(path), path.absolute()
 
     def known_description(self) -> LaunchDescription | None:
         """The description if its place is known before the launch runs and it can be read."""

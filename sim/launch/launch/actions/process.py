@@ -139,11 +139,10 @@ class ExecuteProcess(ExecuteLocal):
         path = (cwd or Path()) / words[0]
         if not path.is_file():
             raise LaunchFailure(f"the file {path} of an ExecuteProcess does not exist")
-        path = path.resolve()
         return ProcessSpec(
             label=self.label(context, program),
-            path=path,
-            folder=path.parent,
+            path=path.absolute(),
+            folder=path.resolve().parent,
             arguments=tuple(words[1:]),
             environment=self.environment(context),
             output=self.output(context),

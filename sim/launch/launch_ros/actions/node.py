@@ -75,8 +75,7 @@ class Node(ExecuteLocal):
             raise LaunchFailure(
                 f"a Node without a package has a file as its executable, but {path} does not exist"
             )
-        path = path.resolve()
-        return Executable(path.name, path, path.parent)
+        return Executable(path.name, path.absolute(), path.resolve().parent)
 
     def _all_arguments(self, context: LaunchContext) -> list[str]:
         found = [performed(context, each) for each in self._arguments]

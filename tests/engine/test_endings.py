@@ -1,0 +1,222 @@
+"""A program ends as under CPython, whatever ends it, and is on the trace until it has."""
+
+import gzip
+import subprocess
+import sys
+from pathlib import Path
+from queue import Queue
+from signal import SIGINT, SIGTERM
+from time import monotonic
+
+import msgspec
+import pytest
+
+from cbtui.session import Session
+from sim.engine.commands import Stop
+from sim.engine.ending import GRACE
+from sim.trace.events import AnyEvent, Notice, Printed, RunEnded
+from tests.support.engine_runs import Run, program_setup, run_program
+
+LEAVES = """
+import atexit, gzip, tempfile, threading, time, weakref
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+here = Path(__file__).parent
+log = open(here / "log.csv", "w")
+packed = gzip.open(here / "log.gz", "wt")
+for number in range(20):
+    print(number, file=log)
+    print(number, file=packed)
+
+class Motor:
+    def __del__(self):
+        print("motor off")
+
+class Arm:
+    pass
+
+motor, arm = Motor(), Arm()
+motor.itself = motor
+finalizer = weakref.finalize(arm, print, "arm down")
+scratch = tempfile.TemporaryDirectory()
+(here / "scratch").write_text(scratch.name)
+atexit.register(print, "atexit")
+pool = ThreadPoolExecutor(2)
+pool.submit(time.sleep, 0.1)
+threading.Thread(target=lambda: (time.sleep(0.2), print("thread"))).start()
+threading.Thread(target=time.sleep, args=(1000,), daemon=True).start()
+"""
+
+LAST = """
+try:
+    print("ready")
+    time.sleep(1000)
+except KeyboardInterrupt:
+    print("interrupted")
+    time.sleep(0.1)
+    raise
+finally:
+    time.sleep(0.1)
+    print("last line")
+"""
+
+ENDINGS = {
+    "returns": ("", "the program returned"),
+    "raises": ("\n1 / 0", "node.py:31: the program raised ZeroDivisionError: division by zero"),
+    "exits": ("\nimport sys; sys.exit(3)", "the program ended with exit code 3 (node.py:31)"),
+    "time is up": (LAST, "its time was up"),
+}
+
+
+def printed(run: Run) -> list[str]:
+    """Lines of standard output, but for that of a thread, which may come at any time."""
+    lines = [event.text for event in run.events if isinstance(event, Printed) and not event.error]
+    return [line for line in lines if line != "thread"]
+
+
+def check_what_is_left(folder: Path, run: Run) -> None:
+    twenty = "".join(f"{number}\n" for number in range(20))
+    assert (folder / "log.csv").read_text() == twenty
+    with gzip.open(folder / "log.gz", "rt") as file:
+        assert file.read() == twenty
+    assert not Path((folder / "scratch").read_text()).exists()
+    assert printed(run)[-3:] == ["atexit", "arm down", "motor off"]
+    assert any(isinstance(event, Printed) and event.text == "thread" for event in run.events)
+    assert isinstance(run.events[-1], RunEnded)
+    assert not [event for event in run.events if isinstance(event, Notice)]
+
+
+@pytest.mark.parametrize("clock", ["virtual", "real"])
+@pytest.mark.parametrize("how", ENDINGS)
+def test_files_exit_functions_and_objects_are_seen_to_however_a_program_ends(
+    tmp_path: Path, how: str, clock: str
+) -> None:
+    source, reason = ENDINGS[how]
+    run = run_program(tmp_path, LEAVES + source, seconds=3.0 if source == LAST else 20.0, clock=clock)
+    assert run.loss is None
+    assert run.ending.reason == reason
+    check_what_is_left(tmp_path, run)
+    if source == LAST:
+        assert printed(run)[-5:-3] == ["interrupted", "last line"]
+
+
+@pytest.mark.parametrize("clock", ["virtual", "real"])
+def test_a_run_that_is_stopped_shows_its_programs_ending_to_the_last_line(tmp_path: Path, clock: str) -> None:
+    path = tmp_path / "node.py"
+    path.write_text(LEAVES + LAST)
+    news: Queue[list[AnyEvent] | str | None] = Queue()
+    setup = msgspec.structs.replace(program_setup(path, 1000.0, clock), speed=1.0)
+    session, run = Session(setup, news.put, news.put), Run()
+    session.start()
+    while "ready" not in printed(run):
+        run.events += news.get(timeout=30)  # type: ignore[arg-type]
+    session.stop()
+    while isinstance(batch := news.get(timeout=5), list):
+        run.events += batch
+    assert run.ending.reason == "it was stopped"
+    assert printed(run)[-5:-3] == ["interrupted", "last line"]
+    check_what_is_left(tmp_path, run)
+
+
+@pytest.mark.parametrize("number", [SIGINT, SIGTERM])
+def test_a_run_in_the_terminal_that_is_ended_shows_it_too(tmp_path: Path, number: int) -> None:
+    path = tmp_path / "node.py"
+    path.write_text(LEAVES + LAST)
+    words = [sys.executable, "-m", "cbtui", "run", str(path)]
+    with subprocess.Popen(words, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout is not None
+        while process.stdout.readline() != "ready\n":
+            pass
+        process.send_signal(number)
+        text = process.stdout.read()
+    assert process.returncode == 128 + number
+    assert "interrupted\nlast line\natexit\narm down\nmotor off\n" in text.replace("thread\n", "")
+    assert (tmp_path / "log.csv").read_text().count("\n") == 20
+
+
+@pytest.mark.parametrize(
+    ("clock", "ends"),
+    [("virtual", "time.sleep(1000)"), ("real", "time.sleep(1000)"), ("virtual", "while True: pass")],
+)
+def test_an_ending_that_does_not_end_is_ended_by_force_and_told_of(
+    tmp_path: Path, clock: str, ends: str
+) -> None:
+    source = f"""
+import time
+log = open({str(tmp_path / "log.csv")!r}, "w")
+log.write("1")
+try:
+    time.sleep(1000)
+finally:
+    {ends}
+"""
+    began = monotonic()
+    run = run_program(tmp_path, source, seconds=3.0, clock=clock)
+    assert monotonic() - began < GRACE + 20
+    assert run.ending.reason == "its time was up"
+    (notice,) = (event.text for event in run.events if isinstance(event, Notice))
+    assert "node.py had not ended" in notice
+    assert "(MainThread: node.py:8, in <module>)" in notice
+    assert (tmp_path / "log.csv").read_text() == "1"
+
+
+def test_what_an_exit_function_raises_is_told_with_its_place(tmp_path: Path) -> None:
+    source = "import atexit\n@atexit.register\ndef off():\n    1 / 0\natexit.register(print, 'before')"
+    run = run_program(tmp_path, source)
+    assert run.ending.reason == "the program returned"
+    (notice,) = (event.text for event in run.events if isinstance(event, Notice))
+    assert notice == "node.py:4: ZeroDivisionError: division by zero; Python drops what comes out of off"
+    text = [event.text for event in run.events if isinstance(event, Printed)]
+    assert text[0] == "before"
+    assert not any("sim/" in line for line in text)
+
+
+def test_a_callback_that_computes_without_end_hears_of_the_runs_end(tmp_path: Path) -> None:
+    source = "try:\n    print('ready')\n    while True: pass\nfinally:\n    print('last line')"
+    path = tmp_path / "node.py"
+    path.write_text(source)
+    news: Queue[list[AnyEvent] | str | None] = Queue()
+    session, run = Session(program_setup(path, 1000.0), news.put, news.put), Run()
+    session.start()
+    while "ready" not in printed(run):
+        run.events += news.get(timeout=30)  # type: ignore[arg-type]
+    session.send(Stop())
+    while isinstance(batch := news.get(timeout=30), list):
+        run.events += batch
+    session.stop()
+    assert printed(run) == ["ready", "last line"]
+    assert run.ending.reason == "it was stopped"
+
+
+@pytest.mark.parametrize("clock", ["virtual", "real"])
+def test_an_interrupted_program_may_call_services_join_and_shut_down(tmp_path: Path, clock: str) -> None:
+    source = """
+import threading, rclpy
+from rclpy.executors import MultiThreadedExecutor
+from rclpy.node import Node
+from std_srvs.srv import SetBool
+rclpy.init()
+node = Node("ends")
+node.create_service(SetBool, "motor", lambda request, answer: answer)
+client = node.create_client(SetBool, "motor")
+executor = MultiThreadedExecutor(2)
+executor.add_node(node)
+spinning = threading.Thread(target=executor.spin)
+spinning.start()
+other = Node("other")
+try:
+    rclpy.spin(other)
+except KeyboardInterrupt:
+    future = client.call_async(SetBool.Request())
+    rclpy.spin_until_future_complete(other, future)
+    print("answered", future.done())
+finally:
+    spinning.join()
+    executor.shutdown()
+    rclpy.try_shutdown()
+    print("last line")
+"""
+    run = run_program(tmp_path, source, seconds=3.0, clock=clock)
+    assert printed(run) == ["answered True", "last line"]
+    assert not [event for event in run.events if isinstance(event, Notice)]
