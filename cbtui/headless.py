@@ -20,9 +20,10 @@ from cbtui.record import CannotRecordError, start_recording
 from cbtui.repeat import why_unrepeatable
 from cbtui.room import RoomWatch
 from cbtui.session import LONGEST_END
+from cbtui.standard_input import StandardInput
 from sim.diagnosis import diagnose, findings_text
 from sim.engine.commands import Stop
-from sim.engine.setup import RunSetup, TimedCall, TimedLine
+from sim.engine.setup import Keyboard, RunSetup, TimedCall, TimedLine, TimedText
 from sim.trace.events import AnyEvent
 from sim.trace.recording import Recorder
 from sim.trace.summary import summarise
@@ -45,6 +46,7 @@ def run_headless(
     calls: Sequence[float],
     call_data: bool,
     lines: Sequence[tuple[float, str]],
+    typed: Sequence[tuple[float, str]] = (),
     events_path: str | None,
     recording_path: str | None = None,
     replace_recording: bool = False,
@@ -55,14 +57,17 @@ def run_headless(
     all the same; the exit code then is 128 and the signal's number.
 
     ``seconds`` is how long the run lasts in its own time, ``calls`` when its SetBool service is called,
-    ``lines`` which ``ros2`` lines are carried out when. A recording replaces another one only with
-    ``replace_recording``.
+    ``lines`` which ``ros2`` lines are carried out when, ``typed`` what is typed when at the programs'
+    terminal; without any of that, the terminal is this process's standard input. A recording replaces
+    another one only with ``replace_recording``.
     """
     setup = msgspec.structs.replace(
         program,
         until=round(seconds * _SECOND),
         calls=tuple(TimedCall(round(at * _SECOND), call_data) for at in sorted(calls)),
         lines=tuple(TimedLine(round(at * _SECOND), text) for at, text in sorted(lines, key=itemgetter(0))),
+        typed=tuple(TimedText(round(at * _SECOND), text) for at, text in sorted(typed, key=itemgetter(0))),
+        keyboard=Keyboard.NOBODY if typed else Keyboard.LIVE,
         contents=recording_path is not None,
     )
     return run_set_up(
@@ -113,7 +118,8 @@ class _Headless:
         self._file = file
         self._recorder = recorder
         self._room = RoomWatch(self._timeline)
-        self._log = ProgramLog()
+        self._input = StandardInput(self._session.send) if setup.keyboard is Keyboard.LIVE else None
+        self._log = ProgramLog(echo=self._input is None)
         self._told: Signals | None = None
         self._patient_until = 0.0
 
@@ -126,7 +132,10 @@ class _Headless:
                     complain(complaint)
                 loss = self._follow()
         finally:
+            if self._input is not None:
+                self._input.close()
             self._session.stop()
+        self._log.finish()
         say(plain_text(summarise(self._timeline)))
         found = findings_text(diagnose(self._timeline), self._timeline)
         say(f"\n{found}" if found else "")
@@ -146,6 +155,8 @@ class _Headless:
             with whole():
                 self._keep(events)
             self._log.print(events)
+            if self._input is not None:
+                self._input.follow(events)
             self._tell_of_room()
         return self._loss
 

@@ -17,15 +17,21 @@ from sim.trace.events import (
     RunStarted,
     ThreadAppeared,
     ThreadId,
+    Typed,
 )
 
 _SECOND = 1_000_000_000
 
 
 class ProgramLog:
-    """Prints what the program logs as ROS does, and what it prints where it printed it."""
+    """Prints what the program logs as ROS does, and what it prints where it printed it.
 
-    def __init__(self) -> None:
+    With ``echo`` it also prints what is typed behind a line that was begun, as a terminal would.
+    """
+
+    def __init__(self, *, echo: bool = False) -> None:
+        self._echo = echo
+        self._line_begun = False
         self._epoch = 0
         self._prefixes: dict[ProcessId, str] = {}
         self._processes: dict[ThreadId, ProcessId] = {}
@@ -40,8 +46,13 @@ class ProgramLog:
                     write_line(
                         f"{prefix}[{severity}] [{seconds}.{nanoseconds:09d}] [{logger}]: {text}", error=True
                     )
-                case Printed(text=text, error=error, process=process):
-                    write_line(f"{self._prefix(process)}{text}", error=error)
+                case Printed(text=text, error=error, process=process, ends=ends):
+                    write_line(f"{self._prefix(process)}{text}", error=error, ends=ends)
+                    self._line_begun = not ends
+                case Typed(text=text) if self._line_begun:
+                    self._line_begun = False
+                    if self._echo:
+                        write_line(text.removesuffix("\n"), error=False)
                 case LineGiven(text=text):
                     write_line(f"$ {text}", error=False)
                 case LineSaid(text=text, error=error):
@@ -55,17 +66,26 @@ class ProgramLog:
                 case RunStarted(epoch=epoch):
                     self._epoch = epoch
 
+    def finish(self) -> None:
+        """End a line that was begun."""
+        if self._line_begun:
+            write_line("", error=False)
+
     def _prefix(self, process: ProcessId) -> str:
         """What ``ros2 launch`` puts before the lines of one of several programs."""
         return self._prefixes.get(process, "")
 
 
-def write_line(line: str, *, error: bool) -> None:
-    """Write to standard output or error; control characters are shown, not obeyed.
+def write_line(line: str, *, error: bool, ends: bool = True) -> None:
+    """Write a line, or without ``ends`` the beginning of one, to standard output or error.
+
+    Control characters are shown, not obeyed.
 
     Raises BrokenPipeError and CannotSayError, as ``cbtui.commands.output.saying``.
     """
     stream = sys.stderr if error else sys.stdout
     text = "\n".join(visible(part, Charset.BRAILLE) for part in line.split("\n"))
     with saying():
-        stream.write(f"{text}\n")
+        stream.write(f"{text}\n" if ends else text)
+        if not ends:
+            stream.flush()

@@ -10,7 +10,7 @@ import msgspec
 from cbtui.reading import Watched
 from cbtui.record import setup_of
 from sim.engine.inputs import UnknownInputError, inputs_of, stops
-from sim.engine.setup import RunSetup
+from sim.engine.setup import Keyboard, RunSetup
 from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
 from sim.trace.events import AnyEvent, Notice, RunEnded
 from sim.trace.recording import Recording, RecordingError, read
@@ -76,6 +76,8 @@ def repeated(
         until=until,
         calls=recorded.calls,
         lines=recorded.lines,
+        typed=recorded.typed,
+        keyboard=Keyboard.NOBODY if recorded.keyboard is Keyboard.NOBODY else Keyboard.REPEATED,
         inputs=inputs,
         contents=recorded.contents,
     )

@@ -1,4 +1,4 @@
-"""The options that give a run inputs at moments of it: calls of its service, and ``ros2`` lines."""
+"""The options that give a run inputs at moments of it: calls of its service, ``ros2`` lines, and keys."""
 
 import argparse
 from collections.abc import Iterable
@@ -30,9 +30,24 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_typing(parser: argparse.ArgumentParser) -> None:
+    """Give a command ``--type``."""
+    parser.add_argument(
+        "--type",
+        dest="typed",
+        metavar=("SECONDS", "TEXT"),
+        nargs=2,
+        action=values.TimedKeys,
+        default=[],
+        help=r"type that text at that time, for a program that reads from the keyboard, such as 2 wwx or "
+        r"3 '0.5\n'; may be given again (else: what is typed here, or comes through a pipe)",
+    )
+
+
 def check(options: argparse.Namespace, seconds: float) -> None:
     """Refuse what would come when a run of so many seconds is over."""
     moments = [("call", at) for at in options.calls] + [("line", at) for at, _ in options.lines]
+    moments += [("key", at) for at, _ in getattr(options, "typed", ())]
     for what, at in moments:
         if at >= seconds:
             refuse(f"a {what} at {at:g} s comes when the run of {seconds:g} s is over; see --for")

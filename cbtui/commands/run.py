@@ -31,6 +31,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     add_seed(parser)
     changes.add_traceback(parser)
     inputs.add_options(parser)
+    inputs.add_typing(parser)
     parser.add_argument(
         "--call-data", choices=("true", "false"), default="true", help="what the calls send (%(default)s)"
     )
@@ -97,6 +98,7 @@ def run(options: argparse.Namespace) -> int:
         calls=options.calls,
         call_data=options.call_data == "true",
         lines=options.lines,
+        typed=options.typed,
         events_path=options.events,
         recording_path=options.record,
         replace_recording=options.force,
@@ -107,8 +109,8 @@ def _repeat(options: argparse.Namespace) -> int:
     """Run with the inputs of a recording."""
     if options.clock == "real":
         refuse("only runs on the virtual clock can be repeated exactly; leave out --clock real")
-    if options.calls or options.lines:
-        refuse("--inputs gives the run all its inputs; leave out --call and --at")
+    if options.calls or options.lines or options.typed:
+        refuse("--inputs gives the run all its inputs; leave out --call, --at and --type")
     if options.force and options.record is None:
         refuse("--force lets --record replace a file; there is nothing to record to")
     _check_outputs(options, [Path(name) for name in (options.inputs, *options.targets)])

@@ -150,8 +150,20 @@ def _quantity(quantity: Quantity, text: str) -> float:
         raise argparse.ArgumentTypeError(str(error)) from None
 
 
+def _keys(word: str) -> str:
+    """Read what is typed, with ``\\n`` for enter and ``\\x03`` for ctrl+c, as Python writes them."""
+    try:
+        return _text(word).encode("latin-1", "backslashreplace").decode("unicode_escape")
+    except UnicodeDecodeError:
+        raise argparse.ArgumentTypeError(
+            rf"{word!r} ends in the middle of a sign; write a backslash as \\"
+        ) from None
+
+
 class TimedLine(argparse.Action):
     """Takes a moment in seconds and a ``ros2`` line."""
+
+    read = staticmethod(_text)
 
     def __call__(
         self,
@@ -163,7 +175,13 @@ class TimedLine(argparse.Action):
         """Add the pair to those given before."""
         text, line = values
         try:
-            pair = (moment(text), _text(line))
+            pair = (moment(text), self.read(line))
         except argparse.ArgumentTypeError as error:
             raise argparse.ArgumentError(self, str(error)) from None
         setattr(namespace, self.dest, [*getattr(namespace, self.dest), pair])
+
+
+class TimedKeys(TimedLine):
+    """Takes a moment in seconds and text to be typed."""
+
+    read = staticmethod(_keys)

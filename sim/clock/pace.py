@@ -20,6 +20,8 @@ class Pace:
     def __init__(self, speed: float | None) -> None:
         self.stands = False
         """Whether time stands."""
+        self.awaits = 0
+        """How many wait for somebody outside, for whom a run that goes as fast as it can waits too."""
         self.on_halt: Callable[[], None] = _nothing
         self._speed = speed
         self._is_real = False
@@ -87,7 +89,7 @@ class Pace:
             return None
         rate = self._rate()
         if rate is None:
-            return 0
+            return None if self.awaits and not self._hurries else 0
         delay = self._anchor_real + (target - self._anchor_virtual) / rate - _monotonic_ns()
         if delay < -_LAG_FORGIVEN and not self._is_real:
             self._anchor_at(target)

@@ -74,6 +74,13 @@ class CompleteLine(msgspec.Struct, frozen=True, tag="complete"):
     cursor: int
 
 
+class Type(msgspec.Struct, frozen=True, tag="type"):
+    """Type text at the terminal of the run's programs; with ``ends``, no more will come."""
+
+    text: str
+    ends: bool = False
+
+
 class ResetWorld(msgspec.Struct, frozen=True, tag="reset_world"):
     """Put the robot back to its start, as a call of ``/reset_world`` would."""
 
@@ -90,12 +97,17 @@ class Stop(msgspec.Struct, frozen=True, tag="stop"):
 
 PaceCommand: TypeAlias = Pause | Resume | SetSpeed | Step | RunUntil | RunUntilCallback
 
-InputCommand: TypeAlias = CallService | RunLine | InterruptLine | ResetWorld | KeepContents | Stop
+InputCommand: TypeAlias = CallService | RunLine | InterruptLine | Type | ResetWorld | KeepContents | Stop
 """What changes a run: given again at the same moments, it brings about the same events."""
 
 WorldCommand: TypeAlias = InputCommand | CompleteLine
 
 Command: TypeAlias = PaceCommand | WorldCommand
+
+INTERRUPT = "\x03"
+"""What ctrl+c types."""
+END_OF_INPUT = "\x04"
+"""What ctrl+d types: it hands on a line that was begun, and is the end of the input where none was."""
 
 _encoder = msgspec.msgpack.Encoder()
 _decoder: msgspec.msgpack.Decoder[Command] = msgspec.msgpack.Decoder(Command)

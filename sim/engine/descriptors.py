@@ -30,10 +30,7 @@ class Descriptors:
         self._readers: list[threading.Thread] = []
 
     def detach(self) -> None:
-        """Read what is written to the descriptors 1 and 2; 0 holds nothing."""
-        nothing = os.open(os.devnull, os.O_RDONLY)
-        os.dup2(nothing, 0)
-        os.close(nothing)
+        """Read what is written to the descriptors 1 and 2."""
         for number in (1, 2):
             reading, writing = os.pipe()
             os.dup2(writing, number)

@@ -104,6 +104,7 @@ class Launching:
             ended,
             environment=spec.environment,
             shows_stdout=spec.output != "log",
+            has_keyboard=False,
         )
 
     def run_line(self, label: str, words: Sequence[str], on_exit: OnExit) -> RunningProcess:

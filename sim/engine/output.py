@@ -72,9 +72,13 @@ class LineSink(_TextStream):
 
     def finish(self) -> None:
         """Hand on a last line that was not ended."""
-        if self._rest:
-            rest, self._rest = self._rest, ""
+        if rest := self.cut():
             self._take(rest)
+
+    def cut(self) -> str:
+        """Return the beginning of a line that has been written so far, and forget it."""
+        rest, self._rest = self._rest, ""
+        return rest
 
 
 def _pieces(line: str) -> list[str]:
@@ -84,12 +88,12 @@ def _pieces(line: str) -> list[str]:
 class ProcessStream(_TextStream):
     """Standard output or error of whichever process writes; their lines do not mix.
 
-    ``take`` gets the process that wrote a line, and the line; ``after_line`` is called on the writing thread
-    once a line is whole.
+    ``take`` gets the process that wrote a line, the line, and whether it ends there; ``after_line`` is called
+    on the writing thread once a line is whole.
     """
 
     def __init__(
-        self, take: Callable[[Process, str], None], after_line: Callable[[], None] = lambda: None
+        self, take: Callable[[Process, str, bool], None], after_line: Callable[[], None] = lambda: None
     ) -> None:
         self._take = take
         self._after_line = after_line
@@ -105,9 +109,15 @@ class ProcessStream(_TextStream):
         """Hand on the last line of the calling thread's process."""
         current_process().keep(self._sink).finish()
 
+    def show_rest(self) -> None:
+        """Hand on what the calling thread's process wrote of a line so far."""
+        process = current_process()
+        if rest := process.keep(self._sink).cut():
+            self._take(process, rest, False)
+
     def _sink(self) -> LineSink:
         process = current_process()
-        return LineSink(lambda line: self._take(process, line))
+        return LineSink(lambda line: self._take(process, line, True))
 
 
 def finish_lines() -> None:

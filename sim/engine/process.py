@@ -49,6 +49,7 @@ from sim.engine.setup import RunSetup
 from sim.engine.sourced import use_workspace
 from sim.engine.standstill import Standstill
 from sim.engine.starting import Starter, StartError, is_launch_file
+from sim.engine.terminal import Terminal
 from sim.engine.time_control import RealControl, VirtualControl
 from sim.engine.tracebacks import leave_out_own_frames
 from sim.engine.tuned import tuning_of
@@ -119,6 +120,7 @@ class Engine:
         self._starter = Starter(self._programs, self._setup)
         self._lines = Lines(self._host, self._outbox.record, self._starter, self._programs.look)
         self._descriptors = Descriptors(self._take_line)
+        self._terminal = Terminal(self._clock, self._outbox.record, setup.keyboard, len(setup.typed))
         self._passed = 0
         self._ending: tuple[str, bool] | None = None
         self._modules = set(sys.modules)
@@ -154,6 +156,7 @@ class Engine:
         elif isinstance(self._clock, PacedClock):
             follow(self._clock)
             HeldUp(self._clock, self._outbox.record).start()
+        self._terminal.put_in_place()
         self._schedule()
         if self._seal is not None:
             parts = {"outbox": self._outbox, "probe": self._probe, "host": self._host, "clock": self._clock}
@@ -194,6 +197,8 @@ class Engine:
         for call in self._setup.calls:
             self._clock.call_at(call.at, lambda data=call.data: self._call_service(data))  # type: ignore[misc]
         self._lines.schedule(self._setup.lines)
+        for typed in self._setup.typed:
+            self._clock.call_at(typed.at, partial(self._type, typed.text, scheduled=True))
         if self._setup.until is not None:
             self._clock.call_at(self._setup.until, self._time_is_up)
         if self._virtual is not None:
@@ -204,6 +209,13 @@ class Engine:
     def _call_service(self, data: bool) -> None:
         service = self._setup.service
         self._requests.set_bool(None if service is None else service.name, data)
+
+    def _type(self, text: str, *, ends: bool = False, scheduled: bool = False) -> None:
+        """Type at the programs' terminal; ctrl+c ends the run, unless the program takes it as a key."""
+        if self._terminal.interrupts(text):
+            self._have_end("it was interrupted from the keyboard", failed=False)
+        else:
+            self._terminal.type(text, ends=ends, scheduled=scheduled)
 
     def _time_is_up(self) -> None:
         failures = self._programs.failures
@@ -313,11 +325,11 @@ class Engine:
 
     def _redirect_output(self) -> None:
         def stream(error: bool) -> ProcessStream:
-            def take(process: Process, text: str) -> None:
+            def take(process: Process, text: str, ends: bool) -> None:
                 if process.take_output is not None:
                     process.take_output(text, error)
                 elif error or process.shows_stdout:
-                    self._outbox.record(Printed(self._clock.now(), text, error, process.number))
+                    self._outbox.record(Printed(self._clock.now(), text, error, process.number, ends))
                 else:
                     process.keep(self._tell_of_hidden_output)
 
@@ -422,6 +434,8 @@ class Engine:
                 self._lines.interrupt(line)
             case commands.CompleteLine(line=line, text=text, cursor=cursor):
                 self._lines.complete(line, text, cursor)
+            case commands.Type(text=text, ends=ends):
+                self._type(text, ends=ends)
             case commands.ResetWorld():
                 self._requests.reset_world()
             case commands.KeepContents(wanted=wanted):

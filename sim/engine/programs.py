@@ -85,6 +85,7 @@ class Programs:
         on_exit: Ended,
         environment: Mapping[str, str] | None = None,
         shows_stdout: bool = True,
+        has_keyboard: bool = True,
     ) -> RunningProgram:
         """Start a program as one of several; ``on_exit`` is called on its thread when it has ended."""
         process = Process(
@@ -94,6 +95,7 @@ class Programs:
             arguments=[program.path, *program.arguments],
             environment=dict(environment or {}),
             shows_stdout=shows_stdout,
+            has_keyboard=has_keyboard,
         )
         running = RunningProgram(self, process, program, on_exit)
         with self.host.lock:

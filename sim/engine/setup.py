@@ -35,6 +35,24 @@ class TimedLine(msgspec.Struct, frozen=True):
     text: str
 
 
+class TimedText(msgspec.Struct, frozen=True):
+    """Text to be typed at the terminal of the run's programs at ``at`` nanoseconds."""
+
+    at: int
+    text: str
+
+
+class Keyboard(StrEnum):
+    """Who types at the terminal of a run's programs, besides what is ``typed`` by the set-up."""
+
+    NOBODY = "nobody"
+    """The input ends behind what is ``typed``."""
+    LIVE = "live"
+    """Somebody may at any time; a run that goes as fast as it can waits for him."""
+    REPEATED = "repeated"
+    """Somebody did, in the run that this one repeats: it is among the ``inputs``."""
+
+
 class TimedInput(msgspec.Struct, frozen=True):
     """An input of a run of before, to be carried out at the end of moment ``at`` (nanoseconds).
 
@@ -100,6 +118,8 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     threads: int | None = None
     calls: tuple[TimedCall, ...] = ()
     lines: tuple[TimedLine, ...] = ()
+    typed: tuple[TimedText, ...] = ()
+    keyboard: Keyboard = Keyboard.NOBODY
     inputs: tuple[TimedInput, ...] = ()
     packages: tuple[str, ...] = ()
     robot: RobotUse = RobotUse.ALWAYS

@@ -31,6 +31,7 @@ class Process:
     stands for the host's; ``shows_stdout`` tells whether what it prints is for the person to see.
     ``take_output`` gets every line that it prints or logs, and whether it belongs on stderr, in place of the
     run; None: the run has them.
+    ``has_keyboard`` tells whether it gets what is typed at the run's terminal.
     ``pool_numbers`` numbers its thread pools in the order of their making; ``callbacks`` and ``spins`` count
     the callbacks made and the spins begun so far; ``shut_down_at`` is where one of its own callbacks shut
     rclpy down, empty as long as none did.
@@ -44,6 +45,7 @@ class Process:
     probe: Probe | None = None
     shows_stdout: bool = True
     take_output: Callable[[str, bool], None] | None = None
+    has_keyboard: bool = True
     pool_numbers: Iterator[int] = field(default_factory=count)
     callbacks: int = 0
     spins: int = 0

@@ -62,6 +62,26 @@ class Severity(StrEnum):
     FATAL = "FATAL"
 
 
+class Reading(StrEnum):
+    """How a program takes what is typed at its terminal."""
+
+    NOTHING = "nothing"
+    """It does not wait for the keyboard any more."""
+    LINES = "lines"
+    """Line by line; each key is shown as it is typed, and ctrl+c ends the run."""
+    SECRET = "secret"
+    """Line by line, and nothing is shown: a password."""
+    KEYS = "keys"
+    """Key by key, without enter; ctrl+c ends the run."""
+    RAW = "raw"
+    """Key by key, and ctrl+c is a key like any other."""
+
+    @property
+    def takes_keys(self) -> bool:
+        """Whether it takes each key as it is typed."""
+        return self in (Reading.KEYS, Reading.RAW)
+
+
 class Event(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """Something that happened in a run, at ``t`` nanoseconds after its beginning."""
 
@@ -367,11 +387,15 @@ class Logged(Event, frozen=True, tag="log"):
 
 
 class Printed(Event, frozen=True, tag="print"):
-    """Text that a program wrote to standard output or error, one line at a time."""
+    """Text that a program wrote to standard output or error, one line at a time.
+
+    ``ends`` is False for the beginning of a line behind which the program waits for the keyboard.
+    """
 
     text: str
     error: bool
     process: ProcessId = 0
+    ends: bool = True
 
 
 class ArenaShown(Event, frozen=True, tag="arena"):
@@ -445,6 +469,23 @@ class TimeHalted(Event, frozen=True, tag="halt"):
 
 class TimePassed(Event, frozen=True, tag="time"):
     """The run on the real clock has come to ``t``: told while nothing else is, so that time goes on."""
+
+
+class KeyboardAsked(Event, frozen=True, tag="keyboard"):
+    """A program waits for the keyboard; recorded where it begins to, does so in another way, or stops.
+
+    A program that looks for keys again and again, each time for a moment, is recorded the first time only.
+    ``program`` is what people call it.
+    """
+
+    reads: Reading
+    program: str
+
+
+class Typed(Event, frozen=True, tag="typed"):
+    """Text was typed at the terminal of the run's programs; a password is spelt in dots."""
+
+    text: str
 
 
 class LineGiven(Event, frozen=True, tag="line"):
@@ -542,6 +583,8 @@ AnyEvent: TypeAlias = (
     | InputGiven
     | TimeHalted
     | TimePassed
+    | KeyboardAsked
+    | Typed
     | LineGiven
     | LineSaid
     | LineEnded

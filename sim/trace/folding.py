@@ -21,7 +21,10 @@ from sim.trace.spill import Spill
 from sim.trace.table import Table
 from sim.trace.waiting import Waiting
 
-ShellEvent: TypeAlias = ev.LineGiven | ev.LineSaid | ev.LineEnded
+_BEFORE_ASKED = 60
+"""Lines of the log among which the first question to the keyboard is looked for."""
+
+ShellEvent: TypeAlias = ev.LineGiven | ev.LineSaid | ev.LineEnded | ev.KeyboardAsked | ev.Typed | ev.Printed
 
 
 class Folded:
@@ -51,6 +54,7 @@ class Folded:
         self.calls = Calls(spill)
         self.marks: History[Mark] = History(attrgetter("at"), Mark, spill)
         self.logs: History[ev.Logged | ev.Printed] = History(attrgetter("t"), ev.Logged | ev.Printed, spill)
+        self.asked: History[ev.KeyboardAsked] = History(attrgetter("t"), ev.KeyboardAsked, spill)
         self.shell: History[ShellEvent] = History(attrgetter("t"), ShellEvent, spill)
         self.notices: History[ev.Notice] = History(attrgetter("t"), ev.Notice, spill)
         self.mismatches: History[ev.QosMismatched] = History(attrgetter("t"), ev.QosMismatched, spill)
@@ -117,7 +121,7 @@ class Folded:
             ev.CallBlocked: self.blocking.start,
             ev.CallUnblocked: self.blocking.finish,
             ev.Logged: self.logs.add,
-            ev.Printed: self.logs.add,
+            ev.Printed: self._printed,
             ev.ArenaShown: self._arena_shown,
             ev.RobotMoved: self.robot.add,
             ev.Scanned: self._scanned,
@@ -126,6 +130,8 @@ class Folded:
             ev.InputGiven: _pass_over,
             ev.TimeHalted: _pass_over,
             ev.TimePassed: _pass_over,
+            ev.KeyboardAsked: self._keyboard_asked,
+            ev.Typed: self.shell.add,
             ev.LineGiven: self._line_given,
             ev.LineSaid: self.shell.add,
             ev.LineEnded: self.shell.add,
@@ -207,6 +213,21 @@ class Folded:
 
     def _command_given(self, event: ev.CommandGiven) -> None:
         self.marks.add(Mark(event.t, "command", event.text))
+
+    def _printed(self, event: ev.Printed) -> None:
+        self.logs.add(event)
+        if self.asked:
+            self.shell.add(event)
+
+    def _keyboard_asked(self, event: ev.KeyboardAsked) -> None:
+        """From the first time on, the shell is the program's terminal, and shows what it prints."""
+        if not self.asked:
+            since = self.shell[-1].t if self.shell else 0
+            for each in self.logs[-_BEFORE_ASKED:]:
+                if isinstance(each, ev.Printed) and each.t >= since:
+                    self.shell.add(each)
+        self.asked.add(event)
+        self.shell.add(event)
 
     def _line_given(self, event: ev.LineGiven) -> None:
         self.shell.add(event)

@@ -81,6 +81,8 @@ class JsonLines:
             ev.CommandGiven: _command_given,
             ev.InputGiven: _input_given,
             ev.TimeHalted: _time_halted,
+            ev.KeyboardAsked: _keyboard_asked,
+            ev.Typed: _typed,
             ev.LineGiven: _line_given,
             ev.LineSaid: _line_said,
             ev.LineEnded: _line_ended,
@@ -330,6 +332,14 @@ def _input_given(event: ev.InputGiven) -> Line:
 
 
 def _time_halted(event: ev.TimeHalted) -> Line:
+    return {"message": event.text}
+
+
+def _keyboard_asked(event: ev.KeyboardAsked) -> Line:
+    return {"program": event.program, "reads": event.reads.value}
+
+
+def _typed(event: ev.Typed) -> Line:
     return {"message": event.text}
 
 

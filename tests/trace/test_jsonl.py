@@ -94,6 +94,8 @@ def test_golden_lines() -> None:
         '{"t":2.5,"event":"input","message":"{\\"type\\":\\"call\\",\\"name\\":\\"/motor_power\\",'
         '\\"data\\":true}"}',
         '{"t":2.5,"event":"halt","message":"step"}',
+        '{"t":2.5,"event":"keyboard","program":"teleop.py","reads":"raw"}',
+        '{"t":2.5,"event":"typed","message":"w"}',
         '{"t":2.5,"event":"line","line":1,"message":"ros2 topic list"}',
         '{"t":2.5,"event":"line_text","line":1,"message":"/odom","error":false}',
         '{"t":2.5,"event":"line_end","line":1,"status":0}',

@@ -71,7 +71,10 @@ def test_every_kind_of_event_is_understood() -> None:
     assert timeline.ended == FULL[-1]
     assert timeline.lost == 12
     assert [line.text for line in timeline.logs] == ["Odom CallBack", "hello"]
-    assert [type(each) for each in timeline.shell] == [ev.LineGiven, ev.LineSaid, ev.LineEnded]
+    assert [type(each) for each in timeline.shell] == [
+        *(ev.Printed, ev.KeyboardAsked, ev.Typed),
+        *(ev.LineGiven, ev.LineSaid, ev.LineEnded),
+    ]
     assert timeline.completed == ev.LineCompleted(ns(2.5), 2, 5, ("list", "pub"))
     assert [notice.text for notice in timeline.notices] == ["The robot touches the wall."]
     robot = timeline.robot(ns(2.35))

@@ -98,6 +98,8 @@ class Narrator:
             ev.InputGiven: _leave_out,
             ev.TimeHalted: self._command_given,
             ev.TimePassed: _leave_out,
+            ev.KeyboardAsked: _leave_out,
+            ev.Typed: self._typed,
             ev.LineGiven: self._command_given,
             ev.LineSaid: self._line_said,
             ev.LineEnded: _leave_out,
@@ -345,6 +347,9 @@ class Narrator:
 
     def _command_given(self, event: ev.CommandGiven | ev.LineGiven | ev.TimeHalted) -> None:
         self._say("commands", event.t, event.text, NO_FACTS)
+
+    def _typed(self, event: ev.Typed) -> None:
+        self._say("commands", event.t, f"typed {event.text!r}", NO_FACTS)
 
     def _line_said(self, event: ev.LineSaid) -> None:
         self._say("commands", event.t, event.text, {"line": event.line})

@@ -230,6 +230,7 @@ _KEYS: dict[type, tuple[str, str]] = {
     ev.ServiceCalled: ("call", "call"),
     ev.RequestLost: ("lost request", "call"),
     ev.CallBlocked: ("block", "call"),
+    ev.KeyboardAsked: ("keyboard", ""),
     ev.LineGiven: ("line", "line"),
     ev.ArenaShown: ("arena", ""),
     ev.RobotMoved: ("robot", ""),

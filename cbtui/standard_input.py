@@ -1,0 +1,83 @@
+"""Standard input as the terminal of a run's programs: what is typed there, or comes through a pipe."""
+
+import os
+import select
+import signal
+import sys
+import termios
+import threading
+from codecs import getincrementaldecoder
+from collections.abc import Callable, Iterable
+from contextlib import suppress
+from typing import Any
+
+from sim.engine.commands import END_OF_INPUT, INTERRUPT, Type
+from sim.trace.events import AnyEvent, KeyboardAsked, Reading
+
+_AT_ONCE = 4096
+
+
+class StandardInput:
+    """Gives a run what is typed from when a program waits for it on; what is typed before is left alone.
+
+    A terminal meanwhile is in the mode that the program wants: in one that takes each key, a second ctrl+c in
+    a row ends the run. ``give`` is called on a thread of its own.
+    """
+
+    def __init__(self, give: Callable[[Type], None]) -> None:
+        self._give = give
+        self._descriptor = sys.stdin.fileno()
+        self.is_terminal = os.isatty(self._descriptor)
+        self._usual: list[Any] = termios.tcgetattr(self._descriptor) if self.is_terminal else []
+        self._reads = Reading.NOTHING
+        self._over, self._end = os.pipe()
+        self._reader = threading.Thread(target=self._read, name="standard-input", daemon=True)
+
+    def follow(self, events: Iterable[AnyEvent]) -> None:
+        """Do as a program wants that waits for the keyboard."""
+        for event in events:
+            if isinstance(event, KeyboardAsked):
+                self._put_in_mode(event.reads)
+                if self._reader.ident is None:
+                    self._reader.start()
+
+    def close(self) -> None:
+        """Read no more, and leave the terminal as it was."""
+        self._put_in_mode(Reading.NOTHING)
+        os.close(self._end)
+        if self._reader.ident is not None:
+            self._reader.join()
+        os.close(self._over)
+
+    def _put_in_mode(self, reads: Reading) -> None:
+        before, self._reads = self._reads, reads
+        if not self.is_terminal or before is reads:
+            return
+        modes: list[Any] = [*self._usual[:6], [*self._usual[6]]]
+        if reads is Reading.SECRET:
+            modes[3] &= ~termios.ECHO
+        elif reads.takes_keys:
+            modes[0] &= ~(termios.ICRNL | termios.IXON)
+            modes[3] &= ~(termios.ECHO | termios.ICANON | termios.IEXTEN)
+            modes[6][termios.VMIN], modes[6][termios.VTIME] = 1, 0
+            if reads is Reading.RAW:
+                modes[3] &= ~termios.ISIG
+        with suppress(termios.error):  # the terminal is gone
+            termios.tcsetattr(self._descriptor, termios.TCSANOW, modes)
+
+    def _read(self) -> None:
+        decoder = getincrementaldecoder("utf-8")("replace")
+        latest = ""
+        while self._over not in select.select([self._descriptor, self._over], [], [])[0]:
+            try:
+                data = os.read(self._descriptor, _AT_ONCE)
+            except OSError:  # the terminal is gone
+                data = b""
+            text = decoder.decode(data, final=not data)
+            goes_on = bool(data) or (self.is_terminal and not self._reads.takes_keys)
+            if text == latest == INTERRUPT:
+                signal.raise_signal(signal.SIGINT)
+            latest = text
+            self._give(Type(text if data or not goes_on else END_OF_INPUT, ends=not goes_on))
+            if not goes_on:
+                return
