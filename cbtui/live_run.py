@@ -132,9 +132,11 @@ class LiveRun:
         """Add what the session delivered; a sentence on what it could not be kept in, or soon cannot."""
         self.timeline.extend(events)
         self._tape.take(events)
-        self._silent = any(isinstance(event, Notice) and event.text.startswith(SILENT) for event in events)
+        self._silent = False
         for event in events:
-            if isinstance(event, TimeHalted):
+            if isinstance(event, Notice):
+                self._silent = self._silent or event.text.startswith(SILENT)
+            elif isinstance(event, TimeHalted):
                 self.paused = True
             elif isinstance(event, CommandGiven) and self._goes_on and event.text.startswith(_LETS_GO):
                 self.paused = False

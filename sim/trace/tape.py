@@ -54,7 +54,7 @@ class Tape:
         """Keep a batch, unless the tape is full."""
         if not events or self._ended_at is not None:
             return
-        packed = encode([event for event in events if not _is_content(event)])
+        packed = encode([each for each in events if not isinstance(each, MessageSent) or each.data is None])
         with self._lock:
             self._waiting += len(packed).to_bytes(_LENGTH) + packed
             full = len(self._waiting) >= _BLOCK and not self._put_by()
@@ -109,10 +109,6 @@ class Tape:
             self._file = file
             finalize(self, file.close)
         return self._file
-
-
-def _is_content(event: AnyEvent) -> bool:
-    return isinstance(event, MessageSent) and event.data is not None
 
 
 def _unpacked(block: bytes) -> Iterator[list[AnyEvent]]:

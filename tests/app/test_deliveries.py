@@ -1,5 +1,8 @@
 """What an engine tells at once is taken in parts, so that keys have their turn in between."""
 
+import asyncio
+from time import monotonic
+
 import pytest
 
 from cbtui.live_run import LiveRun
@@ -24,3 +27,21 @@ async def test_a_long_batch_is_taken_in_parts_and_in_order(monkeypatch: pytest.M
         await settle(pilot)
     assert [event for part in taken for event in part] == batch
     assert max(map(len, taken)) <= 256
+
+
+async def test_a_long_batch_comes_slowly_while_a_key_is_answered_and_whole(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("cbtui.screens.lesson.running._REST", 0.1)
+    app = RecordedConsole("shared-group", shared_group_run().events, 5.0)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        screen = app.lesson_screen
+        logs = len(screen.live_run.timeline.logs)
+        batch: list[AnyEvent] = [Printed(ns(5) + number, "x", error=False) for number in range(3 * 256)]
+        await pilot.press("1")
+        pressed = monotonic()
+        await asyncio.to_thread(screen._deliver, screen._runs, batch)
+        assert monotonic() - pressed >= 0.1
+        await settle(pilot)
+        assert len(screen.live_run.timeline.logs) == logs + len(batch)

@@ -2,6 +2,7 @@
 
 import asyncio
 import threading
+import time
 from typing import TYPE_CHECKING, ClassVar, cast
 
 from textual import on
@@ -35,6 +36,10 @@ _BACKLOG = 4
 """Parts of batches that may wait for the screen; the engine keeps what comes meanwhile, as far as it can."""
 _PATIENCE = 1.0
 """Seconds for which a session waits for a screen that takes nothing: it may be gone."""
+_ANSWERING = 0.2
+"""Seconds from a key on in which a batch of many parts goes slowly to the screen, which has to answer."""
+_REST = 0.02
+"""Seconds between two parts then."""
 
 
 class RunningScreen(SizedScreen[None]):
@@ -147,11 +152,13 @@ class RunningScreen(SizedScreen[None]):
     def _deliver(self, run: int, events: list[AnyEvent]) -> None:
         """Hand a batch over, in parts; another thread is held up while the screen has enough to do."""
         for first in range(0, len(events), _AT_ONCE):
-            self._deliver_part(run, events[first : first + _AT_ONCE])
+            self._deliver_part(run, events[first : first + _AT_ONCE], rest=first > 0)
 
-    def _deliver_part(self, run: int, events: list[AnyEvent]) -> None:
+    def _deliver_part(self, run: int, events: list[AnyEvent], *, rest: bool) -> None:
         message = self.Delivered(run, events)
         if threading.current_thread() is not threading.main_thread():
+            if rest and time.monotonic() < cast("CbtuiApp", self.app).acted_at + _ANSWERING:
+                time.sleep(_REST)
             message.counts = self._backlog.acquire(timeout=_PATIENCE)
         self._hand_over(message)
 
