@@ -4,13 +4,13 @@ import ast
 import os
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
 from cbtui.ament_package import AmentPackage, LessonProgram, imported_modules
 from lessons.lesson import Lesson
 from sim.packages import Package, PackageError
+from sim.whole_file import write_whole
 
 _NUMBERED = re.compile(r"(?P<number>\d[\w.]*)\s+(?P<title>.*)", re.DOTALL)
 
@@ -94,13 +94,7 @@ def write_files(files: Mapping[Path, bytes]) -> int:
     missing = {path: content for path, content in files.items() if not _holds(path, content)}
     for path, content in missing.items():
         path.parent.mkdir(parents=True, exist_ok=True)
-        part = path.with_name(f".{path.name}.part")
-        try:
-            part.write_bytes(content)
-            part.replace(path)
-        finally:
-            with suppress(OSError):
-                part.unlink(missing_ok=True)
+        write_whole(path, content, follow=False)
     return len(missing)
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from lessons.lesson import Lesson
 from sim.foreign_file import read_bytes
+from sim.whole_file import write_whole
 
 
 class Placed(Enum):
@@ -64,23 +65,12 @@ def place_starter(lesson: Lesson, folder: Path) -> Placed:
     try:
         if not folder.is_dir():
             raise CannotPlaceError(f"there is no folder {folder}")
-        _write_new(path, content)
+        write_whole(path, content, replace=False)
     except FileExistsError:
         return _there(path, content)
     except OSError as error:
         raise CannotPlaceError(f"{path} cannot be written: {error.strerror}") from None
     return Placed.NEW
-
-
-def _write_new(path: Path, content: bytes) -> None:
-    """Write a file that is not there yet: whole, or not at all."""
-    file = path.open("xb")
-    try:
-        with file:
-            file.write(content)
-    except OSError:
-        path.unlink()
-        raise
 
 
 def _there(path: Path, content: bytes) -> Placed:

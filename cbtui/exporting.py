@@ -2,12 +2,15 @@
 
 import os
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager, suppress
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from io import TextIOWrapper
 from itertools import chain
 from pathlib import Path
+from types import TracebackType
 from typing import TYPE_CHECKING, Protocol, Self
+
+from sim.whole_file import whole_file
 
 if TYPE_CHECKING:
     from sim.trace.events import AnyEvent
@@ -41,8 +44,7 @@ class ExportError(Exception):
 class Wish:
     """What is to be written: paths by format, and the part (seconds) and width (pixels) of the picture.
 
-    Files that exist are only overwritten with ``replace``, and not before all can be written. One that was
-    not there before is not left behind half written.
+    Files that exist are only replaced with ``replace``, and each when it is whole.
     """
 
     outputs: dict[str, Path]
@@ -95,28 +97,24 @@ class _Output:
         self._name = name
         self._path = path
         self._writer: Narrator | CallTable | None = None
+        self._whole = whole_file(path, replace=replace)
         with self._trouble():
-            self._is_new = not path.exists()
-            self._file = path.open("ab" if replace else "xb")
-        self._text = TextIOWrapper(self._file, "utf-8", newline="")
+            self._file = self._whole.__enter__()
+        self._text = TextIOWrapper(self._file, "utf-8", newline="", write_through=True)
 
     def __enter__(self) -> Self:
         return self
 
-    def __exit__(self, error: type[BaseException] | None, *_: object) -> None:
-        # What cannot be flushed has been told of before.
-        with suppress(OSError):
-            self._text.close()
-        if error is not None and self._is_new:
-            with suppress(OSError):
-                self._path.unlink()
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        with self._trouble():
+            self._whole.__exit__(kind, error, trace)
 
     def begin(self) -> None:
-        """Empty the file, and write what comes before any event, if the format is written as events go by."""
+        """Write what comes before any event, if the format is written as events go by."""
         from sim.trace.export import CallTable, ChromeFile, Narrator, PerfettoFile
 
-        with suppress(OSError):  # a pipe or a device has nothing to be emptied of
-            self._file.truncate(0)
         with self._trouble():
             if self._name == "perfetto":
                 self._writer = Narrator(PerfettoFile(self._file))
@@ -132,14 +130,13 @@ class _Output:
                 self._writer.take(batch)
 
     def finish(self, timeline: "Timeline | None", wish: Wish) -> None:
-        """Write the rest, or the page that is made of the whole run, and close the file."""
+        """Write the rest, or the page that is made of the whole run."""
         page = _page(self._name, timeline, wish) if timeline is not None else ""
         with self._trouble():
             if self._writer is not None:
                 self._writer.finish()
             else:
                 self._text.write(page)
-            self._text.close()
 
     @contextmanager
     def _trouble(self) -> Iterator[None]:

@@ -45,7 +45,9 @@ def make_lesson(folder: Path) -> list[Path]:
         ):
             path = folder / name
             path.write_text(path.read_text(encoding="utf-8").replace(old, new, 1), encoding="utf-8")
-    except OSError as error:
+    except BaseException as error:
         shutil.rmtree(folder, ignore_errors=True)
-        raise CannotScaffoldError(f"{folder} cannot be made: {error.strerror}") from None
+        if isinstance(error, OSError):
+            raise CannotScaffoldError(f"{folder} cannot be made: {error.strerror}") from None
+        raise
     return sorted(folder.iterdir())

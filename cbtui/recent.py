@@ -1,7 +1,6 @@
 """What was opened lately, kept in a small file from one console to the next."""
 
 import json
-import os
 from collections.abc import Iterable, Sequence
 from enum import StrEnum
 from itertools import count, islice
@@ -11,6 +10,7 @@ import msgspec
 
 from lessons.personal import state_folder
 from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
+from sim.whole_file import write_whole
 
 FILE_NAME = "recent.jsonl"
 FILES_KEPT = 20
@@ -129,7 +129,8 @@ class Recents:
     def _write(self, entries: Sequence[Opened]) -> None:
         text = "".join(f"{json.dumps(msgspec.to_builtins(entry))}\n" for entry in entries)
         try:
-            _replace(self._whole_path(), text)
+            self._whole_path().parent.mkdir(parents=True, exist_ok=True)
+            write_whole(self._whole_path(), text.encode("ascii"), mode=0o600)
         except OSError as error:
             self._tell("written", f"what you open is not remembered: {self._path}: {error.strerror}")
 
@@ -175,23 +176,6 @@ def _bounded(entries: Iterable[Opened]) -> tuple[Opened, ...]:
     lessons = (entry for entry in every if entry.kind is Kind.LESSON)
     kept = [*islice(files, FILES_KEPT), *islice(lessons, LESSONS_KEPT)]
     return tuple(sorted(kept, key=every.index))
-
-
-def _replace(path: Path, text: str) -> None:
-    """Give a file another content, all of it or nothing."""
-    import tempfile  # for nothing else, and the menu has to be there before
-
-    path.parent.mkdir(parents=True, exist_ok=True)
-    descriptor, name = tempfile.mkstemp(dir=path.parent, prefix=f"{path.name}.")
-    try:
-        with os.fdopen(descriptor, "w", encoding="ascii") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(descriptor)
-        Path(name).replace(path)
-    except OSError:
-        Path(name).unlink(missing_ok=True)
-        raise
 
 
 _UNITS = (

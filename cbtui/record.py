@@ -36,6 +36,7 @@ def start_recording(path: Path, setup: RunSetup, *, replace: bool = False) -> Re
         raise CannotRecordError(f"cannot record to {path}: {error.strerror}") from None
     if recorder.failure is not None:
         recorder.close()
+        path.unlink(missing_ok=True)
         raise CannotRecordError(f"cannot record to {path}: {recorder.failure}")
     return recorder
 

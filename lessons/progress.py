@@ -13,6 +13,7 @@ from msgspec import Struct, structs
 
 from lessons.personal import state_folder
 from sim.foreign_file import read_bytes
+from sim.whole_file import write_whole
 
 FILE_NAME = "progress.jsonl"
 _PATIENCE = 1.0
@@ -153,7 +154,8 @@ class Progress:
         entries = (entry for entry in self._known.values() if entry != LessonProgress(lesson=entry.lesson))
         text = b"".join(msgspec.json.encode(entry) + b"\n" for entry in entries)
         try:
-            _replace(self._whole_path(), text)
+            self._whole_path().parent.mkdir(parents=True, exist_ok=True)
+            write_whole(self._whole_path(), text, mode=0o600)
         except OSError as error:
             self._tell("written", f"progress is not kept: {self._path}: {error.strerror}")
 
@@ -217,20 +219,3 @@ def _wait_for(lock: int) -> None:
             return  # a folder of another machine that knows no locks
         else:
             return
-
-
-def _replace(path: Path, text: bytes) -> None:
-    """Give a file another content, all of it or nothing."""
-    import tempfile
-
-    path.parent.mkdir(parents=True, exist_ok=True)
-    descriptor, name = tempfile.mkstemp(dir=path.parent, prefix=f"{path.name}.")
-    try:
-        with os.fdopen(descriptor, "wb") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(descriptor)
-        Path(name).replace(path)
-    except OSError:
-        Path(name).unlink(missing_ok=True)
-        raise

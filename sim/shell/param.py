@@ -22,6 +22,7 @@ from sim.shell.graph import absolute, is_hidden, known_nodes, known_parameters
 from sim.shell.parser import Parser
 from sim.shell.session import Failed, Session
 from sim.shell.verb import Command, Verb, add_graph_options
+from sim.whole_file import write_whole
 
 _SERVICES_PATIENCE = 5.0
 _REPLY_PATIENCE = 1.0
@@ -265,7 +266,7 @@ def _dump(session: Session, arguments: Namespace) -> None:
         return
     path = Path(arguments.output_dir) / f"{full[1:].replace('/', '__')}.yaml"
     try:
-        path.write_text(text, encoding="utf-8")
+        write_whole(path, text.encode())
     except OSError as error:
         raise Failed(f"Error writing {path}: {error.strerror}") from None
     session.say(f"Saving to:  {path}")

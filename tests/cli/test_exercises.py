@@ -1,14 +1,13 @@
 """An exercise on the command line: begun in a file of one's own, checked, and forgotten again."""
 
+import os
 import subprocess
 import sys
-from io import BytesIO
 from pathlib import Path
-from typing import Any
 
 import pytest
 
-from cbtui import cli
+from cbtui import cli, exercise_files
 from cbtui.checking import observe, setup_to_judge
 from lessons.progress import Progress
 from tests.cli.exercise_files import (
@@ -109,14 +108,10 @@ def test_start_writes_through_no_dangling_link(here: Path, capsys: pytest.Captur
 def test_start_says_when_a_folder_takes_no_files(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    real_open = Path.open
+    def refuse(*_: object, **__: object) -> None:
+        raise PermissionError(13, "Permission denied")
 
-    def refuse(path: Path, mode: str = "r", *rest: Any, **named: Any) -> Any:
-        if "x" in mode:
-            raise PermissionError(13, "Permission denied")
-        return real_open(path, mode, *rest, **named)
-
-    monkeypatch.setattr(Path, "open", refuse)
+    monkeypatch.setattr(exercise_files, "write_whole", refuse)
     assert cli.main(["start", "split-groups"]) == 1
     assert capsys.readouterr().err == "cbtui: split_groups.py cannot be written: Permission denied\n"
 
@@ -124,20 +119,10 @@ def test_start_says_when_a_folder_takes_no_files(
 def test_start_leaves_no_half_of_a_file(
     here: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    class Full(BytesIO):
-        def write(self, _: object) -> int:
-            raise OSError(28, "No space left on device")
+    def full(_: int) -> None:
+        raise OSError(28, "No space left on device")
 
-    real_open = Path.open
-
-    def open_full(path: Path, mode: str = "r", *rest: Any, **named: Any) -> Any:
-        file = real_open(path, mode, *rest, **named)
-        if "x" not in mode:
-            return file
-        file.close()
-        return Full()
-
-    monkeypatch.setattr(Path, "open", open_full)
+    monkeypatch.setattr(os, "fsync", full)
     assert cli.main(["start", "split-groups"]) == 1
     assert capsys.readouterr().err == "cbtui: split_groups.py cannot be written: No space left on device\n"
     assert not list(here.iterdir())
