@@ -1,6 +1,7 @@
 """The events of a run in a file, a line of JSON each, for programs that read them."""
 
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from sim.trace.events import AnyEvent
@@ -17,6 +18,7 @@ class EventsFile:
     """
 
     def __init__(self, path: Path) -> None:
+        self._new = None if path.exists() else path
         self._file = GrowingFile(path.open("ab", buffering=0), end=b"\n")
         self._lines = JsonLines()
         self.failure: str | None = None
@@ -31,8 +33,11 @@ class EventsFile:
             self._try(lambda: self._file.write(b"".join(self._lines.lines(events))))
 
     def close(self) -> None:
-        """Write what is left, once."""
+        """Write what is left, once. A new file that got nothing is not left behind."""
         self._try(self._file.close)
+        if self._new is not None and self._file.tell() == 0:
+            with suppress(OSError):
+                self._new.unlink()
 
     def _try(self, write: Callable[[], object]) -> None:
         try:

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from cbtui.events_file import EventsFile
 from cbtui.exporting import FORMATS, ExportError, Wish, export
 from sim.trace.events import AnyEvent
 from sim.whole_file import whole_file, write_whole
@@ -105,3 +106,12 @@ def test_what_is_there_is_not_replaced_unless_it_may_be(tmp_path: Path) -> None:
 def test_a_device_is_written_to_as_it_is(tmp_path: Path) -> None:
     write_whole(Path(os.devnull), b"gone")
     assert stat.S_ISCHR(Path(os.devnull).stat().st_mode)
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_an_events_file_that_got_nothing_is_not_left_behind(tmp_path: Path, there: bool) -> None:
+    target = tmp_path / "run.jsonl"
+    if there:
+        target.write_text("before")
+    EventsFile(target).close()
+    assert [path.read_text() for path in tmp_path.iterdir()] == ["before"] * there

@@ -12,7 +12,7 @@ _MOST = 5_000_000
 
 
 class Sources:
-    """The files that are wanted, each once, until somebody attaches them; as far as there is room."""
+    """The files that are wanted, each once, until they are handed over; as far as there is room."""
 
     def __init__(self) -> None:
         self._seen = {""}

@@ -32,6 +32,9 @@ class Disk(BytesIO):
     def open(self, mode: str, buffering: int = -1) -> Any:
         return BytesIO(self.getvalue()) if mode == "rb" else self
 
+    def exists(self) -> bool:
+        return True
+
     def stat(self) -> SimpleNamespace:
         return SimpleNamespace(st_mode=0o100644)
 
