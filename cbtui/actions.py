@@ -35,6 +35,7 @@ class Scope(StrEnum):
     CODE = "Code"
     CHECKS = "Checks of an exercise"
     PROMPT = "Prompt"
+    KEYBOARD = "Keyboard of the program"
     THREADS = "Choice of threads"
     GROUP = "Choice of a group"
     EXPORT = "Choice of a format"
@@ -73,6 +74,7 @@ _ALONE = (
     Scope.OPENING,
     Scope.FILTER,
     Scope.PROMPT,
+    Scope.KEYBOARD,
     Scope.THREADS,
     Scope.GROUP,
     Scope.EXPORT,
@@ -210,6 +212,7 @@ ACTIONS = (
         Scope.LESSON,
     ),
     Action("prompt", "colon", "ros2", "Type a ros2 line; tab completes, up brings lines back", Scope.LESSON),
+    Action("type", "k", "type", "Type for the program that reads from the keyboard", Scope.LESSON),
     Action("filter_log", "/", "filter", "Go to the log, and filter it", Scope.LESSON),
     Action("open_source", "o", "editor", "Open the code in $EDITOR", Scope.LESSON),
     Action(
@@ -362,6 +365,15 @@ ACTIONS = (
     Action("newer", "down", "lines before", "Go on to the line after", Scope.PROMPT),
     Action("interrupt", "ctrl+c", "interrupt", "End the line that goes on", Scope.PROMPT),
     Action("leave_prompt", "escape", "other keys", "Go back to the other keys", Scope.PROMPT),
+    Action("submit", "enter", "give", "Give the line to the program that reads it", Scope.KEYBOARD),
+    Action("interrupt", "ctrl+c", "interrupt", "Interrupt the program, as in any terminal", Scope.KEYBOARD),
+    Action(
+        "leave_keyboard",
+        "ctrl+right_square_bracket",
+        "other keys",
+        "Go back to the other keys; the program gets every other key where it takes single ones",
+        Scope.KEYBOARD,
+    ),
     *(
         Action(f"choose({number})", str(number), "threads", f"Run with {number} threads", Scope.THREADS)
         for number in range(1, 9)
@@ -457,6 +469,7 @@ _PLACES = {
     Scope.CODE: "focused",
     Scope.CHECKS: "focused",
     Scope.PROMPT: "focused",
+    Scope.KEYBOARD: "focused",
 }
 """What implements the actions of a scope, where it is not the screen."""
 
@@ -534,7 +547,7 @@ def _sign(key: str, charset: Charset) -> str:
         return signs[key]
     if character is not None and (character.isascii() or charset is not Charset.ASCII):
         return character
-    return key.replace("ctrl+", "^")
+    return f"^{_sign(key.removeprefix('ctrl+'), charset)}" if key.startswith("ctrl+") else key
 
 
 def method_of(action: Action) -> tuple[str, tuple[object, ...]]:

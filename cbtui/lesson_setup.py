@@ -5,7 +5,7 @@ from pathlib import Path
 
 from lessons.catalogue import ROOT
 from lessons.lesson import Lesson
-from sim.engine.setup import ProgramSetup, RobotUse, RunSetup, ServiceChoice, TimedLine
+from sim.engine.setup import Keyboard, ProgramSetup, RobotUse, RunSetup, ServiceChoice, TimedLine
 
 _LESSON_PACKAGES = tuple(str(path) for path in sorted(ROOT.glob("unit*")))
 """Folders in which the packages of the lessons lie."""
@@ -63,6 +63,7 @@ def setup_for_line(text: str, folder: Path) -> RunSetup:
         programs=(),
         clock="real",
         lines=(TimedLine(0, text),),
+        keyboard=Keyboard.LIVE,
         packages=(str(folder), *_LESSON_PACKAGES),
         robot=RobotUse.WHEN_USED,
     )

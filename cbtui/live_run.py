@@ -23,9 +23,10 @@ from sim.engine.commands import (
     RunUntilCallback,
     SetSpeed,
     Step,
+    Type,
 )
 from sim.engine.setup import RunSetup
-from sim.trace.events import AnyEvent, CommandGiven, EntityId, Notice, TimeHalted
+from sim.trace.events import AnyEvent, CommandGiven, EntityId, KeyboardAsked, Notice, TimeHalted
 from sim.trace.model import Nanoseconds
 from sim.trace.tape import Tape
 from sim.trace.timeline import Timeline
@@ -107,6 +108,11 @@ class LiveRun:
     def alive(self) -> bool:
         """Whether the engine can still be told something."""
         return self.state in (State.STARTING, State.LIVE, State.PAUSED, State.SILENT)
+
+    @property
+    def asked(self) -> KeyboardAsked | None:
+        """How a program waits for the keyboard now; None if none does."""
+        return self.timeline.asked(self.timeline.end) if self.alive else None
 
     @property
     def virtual(self) -> bool:
@@ -206,6 +212,10 @@ class LiveRun:
         """Have a ``ros2`` line carried out."""
         self._line = next(self._numbers)
         self._session.send(RunLine(self._line, text))
+
+    def type(self, text: str) -> None:
+        """Type at the terminal of the programs."""
+        self._session.send(Type(text))
 
     def interrupt_line(self) -> None:
         """End the line that was given last, as Ctrl-C would."""

@@ -48,7 +48,7 @@ class ProgramLog:
                     )
                 case Printed(text=text, error=error, process=process, ends=ends):
                     write_line(f"{self._prefix(process)}{text}", error=error, ends=ends)
-                    self._line_begun = not ends
+                    self._line_begun = not ends or (error and self._line_begun)
                 case Typed(text=text) if self._line_begun:
                     self._line_begun = False
                     if self._echo:

@@ -11,6 +11,7 @@ from cbtui.control import Done, NoEngine, RemoteLine, Said, connect
 from cbtui.lesson_setup import setup_for_line
 from cbtui.listening import ListeningSession
 from cbtui.program_log import ProgramLog, write_line
+from cbtui.standard_input import StandardInput
 from cbtui.widgets.cells import without_tabs
 from sim.engine.commands import InterruptLine, Stop
 from sim.trace.events import AnyEvent, LineEnded, LineGiven, LineSaid, RunEnded
@@ -63,6 +64,7 @@ class _AloneLine:
         self._news: Queue[list[AnyEvent] | str | None] = Queue(64)
         setup = setup_for_line(text, Path.cwd())
         self._session = ListeningSession(setup, self._news.put, self._news.put)
+        self._input = StandardInput(self._session.send)
         self._log = ProgramLog()
         self._status = _CUT_OFF
 
@@ -81,6 +83,7 @@ class _AloneLine:
         except KeyboardInterrupt:
             self._session.send(Stop())
         finally:
+            self._input.close()
             self._session.stop()
         return self._status
 
@@ -88,6 +91,7 @@ class _AloneLine:
         self._session.send(InterruptLine(_LINE))
 
     def _take(self, events: list[AnyEvent]) -> None:
+        self._input.follow(events)
         for event in events:
             match event:
                 case LineGiven():

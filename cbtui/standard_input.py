@@ -76,7 +76,7 @@ class StandardInput:
             text = decoder.decode(data, final=not data)
             goes_on = bool(data) or (self.is_terminal and not self._reads.takes_keys)
             if text == latest == INTERRUPT:
-                signal.raise_signal(signal.SIGINT)
+                os.kill(os.getpid(), signal.SIGINT)  # the main thread hears it
             latest = text
             self._give(Type(text if data or not goes_on else END_OF_INPUT, ends=not goes_on))
             if not goes_on:

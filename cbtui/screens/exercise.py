@@ -36,6 +36,7 @@ _REFUSED = frozenset(
         "call_service",
         "call_service_off",
         "prompt",
+        "type",
         "reset_world",
         "threads",
         "group",

@@ -22,6 +22,7 @@ _SHOWN = (
     Scope.LOG,
     Scope.FILTER,
     Scope.PROMPT,
+    Scope.KEYBOARD,
     Scope.COMPARE,
     Scope.MENU,
     Scope.SEARCH,

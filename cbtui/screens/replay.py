@@ -17,6 +17,7 @@ _REFUSED = frozenset(
         "call_service",
         "call_service_off",
         "prompt",
+        "type",
         "reset_world",
         "run_again",
         "start_over",

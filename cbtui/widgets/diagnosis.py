@@ -12,7 +12,7 @@ from cbtui.playhead import Playhead
 from cbtui.theme import Charset
 from cbtui.widgets.durations import duration
 from sim.trace.concurrency import Concurrency
-from sim.trace.events import Notice, Reason, Severity
+from sim.trace.events import KeyboardAsked, Notice, Reason, Severity
 from sim.trace.model import Call, Moment, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
 from sim.trace.words import name_of
@@ -65,7 +65,7 @@ def verdict(
             return _of_the_end(timeline, f"press {_key('run_again', keymap)} to run again")
         if run.state is State.REPLAY_STANDS and timeline.ended is not None:
             return _of_the_end(timeline, f"{_key('resume', keymap)} plays it from its beginning")
-    moment = diagnose(timeline, playhead.now(timeline.end), concurrency)
+    moment = diagnose(timeline, playhead.now(timeline.end), concurrency, keymap)
     if playhead.at is None and run.alive and any(sign in moment.text for sign in _HELD_UP):
         return replace(moment, text=f"{moment.text}; {_key('start_over', keymap)} starts over")
     return moment
@@ -115,11 +115,16 @@ def _of_the_end(timeline: Timeline, way_on: str) -> Diagnosis:
     return Diagnosis(f"the run is over: {ended.reason.rstrip('.')}; {way_on}", weight, stays=True)
 
 
-def diagnose(timeline: Timeline, at: Nanoseconds, concurrency: Concurrency) -> Diagnosis:
+def diagnose(
+    timeline: Timeline, at: Nanoseconds, concurrency: Concurrency, keymap: Keymap = STANDARD
+) -> Diagnosis:
     """Return what matters most at a moment."""
     notice = _latest_notice(timeline, at)
     if notice is not None:
         return Diagnosis(notice.text, Weight.TROUBLE, stays=True)
+    asked = timeline.asked(at)
+    if asked is not None and not timeline.entities:
+        return Diagnosis(_of_keyboard(asked, keymap), Weight.FINE)
     if not timeline.entities:
         return Diagnosis("no callback yet: the node is starting", Weight.FINE)
     moment = timeline.moment(at)
@@ -129,8 +134,14 @@ def diagnose(timeline: Timeline, at: Nanoseconds, concurrency: Concurrency) -> D
         return _of_waits(for_others, moment, timeline)
     for_itself = min(waits, key=_since, default=None)
     overdue = "" if for_itself is None else f"; {_overdue(for_itself, at, timeline)}"
+    if asked is not None:
+        return Diagnosis(_of_keyboard(asked, keymap), Weight.FINE)
     threads = _threads_needed(timeline, concurrency.peak(at))
     return Diagnosis(f"nothing waits; {threads}{overdue}", Weight.FINE)
+
+
+def _of_keyboard(asked: KeyboardAsked, keymap: Keymap) -> str:
+    return f"{asked.program} waits for input from the keyboard; press {_key('type', keymap)} and type"
 
 
 def call_note(timeline: Timeline, at: Nanoseconds) -> str:

@@ -1,7 +1,7 @@
-"""The shell pane: ``ros2`` lines, what they wrote, and a prompt with history and completion."""
+"""The shell pane: ``ros2`` lines and what they wrote, a prompt, and the terminal of programs that read."""
 
 from bisect import bisect_right
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from itertools import takewhile
 from typing import ClassVar, NamedTuple
 
@@ -11,15 +11,19 @@ from textual import on
 from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.containers import Vertical
+from textual.events import Key
 from textual.message import Message
+from textual.reactive import reactive
 from textual.strip import Strip
 from textual.widgets import Input, Label
 
-from cbtui.actions import Scope, bindings_of
+from cbtui.actions import ACTIONS, Scope, bindings_of
+from cbtui.keymap import Keymap, keymap_of
 from cbtui.theme import Charset
 from cbtui.widgets.cells import visible, without_tabs
 from cbtui.widgets.following import Following
-from sim.trace.events import LineEnded, LineGiven, LineSaid
+from sim.engine.commands import INTERRUPT
+from sim.trace.events import KeyboardAsked, LineEnded, LineGiven, LineSaid, Printed, Reading, Typed
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import ShellEvent, Timeline
 
@@ -27,6 +31,20 @@ _HISTORY = 200
 """Lines that the prompt remembers."""
 _OFFERED = 60
 """Completions that are listed at most."""
+
+
+_SEQUENCES = {
+    "enter": "\r",
+    "up": "\x1b[A",
+    "down": "\x1b[B",
+    "right": "\x1b[C",
+    "left": "\x1b[D",
+    "home": "\x1b[H",
+    "end": "\x1b[F",
+    "delete": "\x1b[3~",
+    "backspace": "\x7f",
+}
+"""What a terminal sends for keys that stand for no character, or not for the one that Textual names."""
 
 
 class _Row(NamedTuple):
@@ -45,6 +63,7 @@ class ShellOutput(Following):
         self._timeline = Timeline()
         self._rows: list[_Row] = []
         self._read = 0
+        self._line_begun = False
 
     def show(self, timeline: Timeline, now: Nanoseconds) -> None:
         """Show what a timeline holds up to a moment."""
@@ -55,7 +74,15 @@ class ShellOutput(Following):
             self._widest = 0
         new = timeline.shell[self._read :]
         self._read += len(new)
-        rows = [row for event in new for row in _rows_of(event)]
+        rows: list[_Row] = []
+        for event in new:
+            if isinstance(event, Typed) and self._line_begun:
+                begun = (rows or self._rows).pop()
+                rows.append(begun._replace(text=begun.text + _shown(event.text.removesuffix("\n"))))
+            else:
+                rows += _rows_of(event)
+            if isinstance(event, Printed | Typed):
+                self._line_begun = isinstance(event, Printed) and not event.ends
         self._rows += rows
         count = bisect_right(self._rows, now, key=lambda row: row.t)
         if rows or count != self._count:
@@ -81,8 +108,16 @@ def _rows_of(event: ShellEvent) -> Iterator[_Row]:
         case LineSaid(t=t, text=text, error=error):
             for part in without_tabs(text).split("\n"):
                 yield _Row(t, visible(part, Charset.BRAILLE), "shell--error" if error else "shell--said")
+        case Printed(t=t, text=text, error=error):
+            yield _Row(t, _shown(text), "shell--error" if error else "shell--said")
+        case Typed(t=t, text=text):
+            yield _Row(t, _shown(text.removesuffix("\n")), "shell--given")
         case LineEnded(t=t, status=status) if status:
             yield _Row(t, f"(ended with status {status})", "shell--status")
+
+
+def _shown(text: str) -> str:
+    return visible(without_tabs(text), Charset.BRAILLE)
 
 
 class Prompt(Input):
@@ -169,6 +204,57 @@ def _common_beginning(words: Sequence[str]) -> str:
     return "".join(first for first, _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
 
 
+class ProgramKeyboard(Input):
+    """Where the person types for a program that reads: lines, or each key as it is pressed."""
+
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.KEYBOARD)]
+    reads: reactive[Reading] = reactive(Reading.NOTHING)
+
+    class Given(Message):
+        """Text was typed."""
+
+        def __init__(self, text: str) -> None:
+            super().__init__()
+            self.text = text
+
+    def __init__(self) -> None:
+        super().__init__(compact=True, select_on_focus=False)
+
+    def watch_reads(self) -> None:
+        """Take input as the program does."""
+        self.password = self.reads is Reading.SECRET
+        if self.reads.takes_keys:
+            self.value = ""
+
+    async def _on_key(self, event: Key) -> None:
+        text = _SEQUENCES.get(event.key) or event.character
+        if not self.reads.takes_keys or text is None or event.key in self._ways_out:
+            await super()._on_key(event)
+            return
+        event.stop()
+        event.prevent_default()
+        self.post_message(self.Given(text))
+
+    @property
+    def _ways_out(self) -> Collection[str]:
+        actions = keymap_of(self.app).of(action for action in ACTIONS if action.id == "leave_keyboard")
+        return [key for action in actions for key in action.key.split(",")]
+
+    def on_input_submitted(self, event: Input.Submitted) -> None:
+        """Give the line."""
+        event.stop()
+        self.post_message(self.Given(f"{self.value}\n"))
+        self.value = ""
+
+    def action_interrupt(self) -> None:
+        """Press ctrl+c in the program's terminal."""
+        self.post_message(self.Given(INTERRUPT))
+
+    def action_leave_keyboard(self) -> None:
+        """Let the keys mean what they mean elsewhere again."""
+        self.screen.query_one(ShellOutput).focus()
+
+
 class ShellView(Vertical):
     """The pane: output above, the prompt below."""
 
@@ -181,6 +267,8 @@ class ShellView(Vertical):
         """Lay out output, completions and prompt."""
         yield ShellOutput()
         yield Label(id="offered", markup=False)
+        yield Label(id="asked", markup=False)
+        yield ProgramKeyboard()
         yield Prompt()
 
     def show(self, timeline: Timeline, now: Nanoseconds) -> None:
@@ -190,6 +278,22 @@ class ShellView(Vertical):
         if completed is not None and completed.line != self._completed:
             self._completed = completed.line
             self._offer(completed.start, completed.words)
+
+    def ask(self, asked: KeyboardAsked | None, keymap: Keymap, charset: Charset) -> None:
+        """Be the terminal of a program that reads; None: of none."""
+        keyboard = self.query_one(ProgramKeyboard)
+        if asked is not None:
+            keyboard.reads = asked.reads
+            here = keyboard.has_focus
+            way = keymap.sign(
+                *(Scope.KEYBOARD, "leave_keyboard") if here else (Scope.LESSON, "type"), charset
+            )
+            what = "each key" if asked.reads.takes_keys else "a line"
+            sentence = f"{asked.program} reads {what}: " + (
+                f"type here; {way} goes back" if here else f"{way}, and type"
+            )
+            self.query_one("#asked", Label).update(sentence)
+        self.set_class(asked is not None or keyboard.has_focus, "-asked")
 
     def _offer(self, start: int, words: tuple[str, ...]) -> None:
         prompt, offered = self.query_one(Prompt), self.query_one("#offered", Label)
@@ -209,5 +313,9 @@ class ShellView(Vertical):
             self.query_one("#offered", Label).display = False
 
     def focus_prompt(self) -> None:
-        """Let the person type."""
+        """Let the person type a ``ros2`` line."""
         self.query_one(Prompt).focus()
+
+    def focus_keyboard(self) -> None:
+        """Let the person type for the program."""
+        self.query_one(ProgramKeyboard).focus()

@@ -246,8 +246,17 @@ class Timeline:
 
     @property
     def shell(self) -> Sequence[ShellEvent]:
-        """The ``ros2`` lines that were given, what they wrote and how they ended, in order."""
+        """What the shell and the programs' terminal showed, in order.
+
+        These are the ``ros2`` lines that were given, what they wrote and how they ended; what was typed for
+        programs that read, and what was printed meanwhile.
+        """
         return self._run.shell
+
+    def asked(self, at: Nanoseconds) -> ev.KeyboardAsked | None:
+        """How a program waits for the keyboard at ``at``; None if none does."""
+        asked = self._run.asked.latest(at)
+        return None if asked is None or asked.reads is ev.Reading.NOTHING else asked
 
     def logs_until(self, at: Nanoseconds) -> int:
         """How many of ``logs`` had been written by ``at``."""

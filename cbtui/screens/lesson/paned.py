@@ -23,12 +23,13 @@ from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.keys import lane_keys
 from cbtui.widgets.log import LogFilter, LogLines, LogView
 from cbtui.widgets.robot import RobotView
-from cbtui.widgets.shell import Prompt, ShellOutput, ShellView
+from cbtui.widgets.shell import ProgramKeyboard, Prompt, ShellOutput, ShellView
 from cbtui.widgets.status_line import StatusLine
 from cbtui.widgets.tabs import Tabs, title_of
 
 _SCOPES: dict[type[Widget], Scope] = {
     Prompt: Scope.PROMPT,
+    ProgramKeyboard: Scope.KEYBOARD,
     LogLines: Scope.LOG,
     LogFilter: Scope.FILTER,
     CodeView: Scope.CODE,
@@ -125,6 +126,10 @@ class PanedScreen(RunningScreen):
     def _give_line(self, message: Prompt.Given) -> None:
         self._run.give_line(message.text)
 
+    @on(ProgramKeyboard.Given)
+    def _type_for_program(self, message: ProgramKeyboard.Given) -> None:
+        self._run.type(message.text)
+
     @on(Prompt.Interrupted)
     def _interrupt_line(self) -> None:
         self._run.interrupt_line()
@@ -137,6 +142,11 @@ class PanedScreen(RunningScreen):
         """Let the person type a ros2 line."""
         self._show("shell")
         self.query_one(ShellView).focus_prompt()
+
+    def action_type(self) -> None:
+        """Let the person type for the program that reads."""
+        self._show("shell")
+        self.query_one(ShellView).focus_keyboard()
 
     def action_filter_log(self) -> None:
         """Let the person type a filter for the log."""

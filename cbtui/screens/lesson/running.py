@@ -5,6 +5,7 @@ import threading
 import time
 from typing import TYPE_CHECKING, ClassVar, cast
 
+import msgspec
 from textual import on
 from textual.message import Message
 
@@ -23,6 +24,7 @@ from cbtui.screens.sized import SizedScreen
 from cbtui.subject import Subject
 from cbtui.theme import Charset
 from lessons.lesson import Lesson
+from sim.engine.setup import Keyboard
 from sim.trace.concurrency import Concurrency
 from sim.trace.events import AnyEvent
 
@@ -201,6 +203,7 @@ class RunningScreen(SizedScreen[None]):
     def _new_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
         """A run of what is on screen."""
         setup = self._changes.applied(self._subject.set_up(self._changes.threads, speed))
+        setup = msgspec.structs.replace(setup, keyboard=Keyboard.LIVE)
         return LiveRun(setup, self._open_session, deliver, ended)
 
     def _move(self, playhead: Playhead) -> None:

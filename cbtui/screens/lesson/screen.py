@@ -24,7 +24,7 @@ from cbtui.widgets.key_bar import KeyBar, hint
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.log import LogFilter, LogLines, LogView
 from cbtui.widgets.robot import RobotView
-from cbtui.widgets.shell import Prompt, ShellView
+from cbtui.widgets.shell import ProgramKeyboard, Prompt, ShellView
 from cbtui.widgets.status_line import StatusLine, status_of
 
 FRAMES_A_SECOND = 30
@@ -162,8 +162,13 @@ class LessonScreen(ExportingScreen):
         timeline = self._run.timeline
         now = self._playhead.now(timeline.end)
         match self._widget(name):
-            case CodeView() | LogView() | ShellView() as view:
+            case CodeView() | LogView() as view:
                 view.show(timeline, now)
+            case ShellView() as shell:
+                shell.show(timeline, now)
+                shell.ask(self._run.asked, keymap_of(self.app), self._charset)
+                if not self._run.alive and isinstance(self.focused, ProgramKeyboard):
+                    self.focused.action_leave_keyboard()
             case FactoryView() as factory:
                 factory.now, factory.timeline = now, timeline
                 factory.glance = round(_GLANCE * (self._run.speed or 1.0))
@@ -178,6 +183,7 @@ class LessonScreen(ExportingScreen):
             run.state,
             self._playhead,
             run.speed,
+            run.asked,
             run.timeline.end > 0,
             self._before is None,
             lanes.has_focus,
@@ -201,10 +207,11 @@ class LessonScreen(ExportingScreen):
         focused = self.focused
         if isinstance(focused, _WITH_KEYS) and not focused.check_action(action, parameters):
             return False
-        typing = isinstance(focused, Prompt | LogFilter)
+        typing = isinstance(focused, Prompt | ProgramKeyboard | LogFilter)
         end = run.timeline.end
         lanes = self.query_one(Lanes)
         on_lanes = lanes.has_focus
+        each_key = isinstance(focused, ProgramKeyboard) and focused.reads.takes_keys
         callback = None if lanes.selection is None else lanes.selection.entity
         meaningless = {
             "pan_earlier": typing or playhead.window(end).start == 0,
@@ -217,6 +224,9 @@ class LessonScreen(ExportingScreen):
             "copy_details": typing or isinstance(focused, LogLines | CodeView),
             "next_pane": typing,
             "prompt": not run.alive,
+            "type": run.asked is None,
+            "submit": each_key,
+            "interrupt": each_key,
             "filter_log": isinstance(focused, LogLines),
             "open_source": isinstance(focused, CodeView),
             "call_service": not run.alive,
