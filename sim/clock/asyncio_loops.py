@@ -108,4 +108,6 @@ class _VirtualSelector(selectors.PollSelector):
             deadline = None if timeout is None else self._clock.now() + wait_ns(timeout)
             self._signal.wait(deadline)
             self._signal = self._clock.signal()
+        else:
+            self._clock.poll()
         return []

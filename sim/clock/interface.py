@@ -52,6 +52,13 @@ class Clock(Protocol):
         The calling thread must hold nothing that others wait for outside this clock.
         """
 
+    def poll(self) -> None:
+        """Tell that the calling thread asked for something that takes no time, and goes on at once.
+
+        Where computing takes no time, a loop that does nothing else ends so once its deadline is over. The
+        calling thread must hold nothing that others wait for outside this clock.
+        """
+
     def end_thread(self) -> None:
         """Tell that the calling thread comes to its end now, without waiting: others are about to join it."""
 

@@ -143,6 +143,9 @@ class PacedClock:
     def switch_point(self) -> None:
         """Nothing: the machine switches where it likes."""
 
+    def poll(self) -> None:
+        """Nothing: asking takes time."""
+
     def end_thread(self) -> None:
         """Nothing: whoever joins a thread waits while it ends."""
 

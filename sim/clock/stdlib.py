@@ -65,6 +65,7 @@ class VirtualLock:
                 self._note_taking(sys._getframe(1))
             return True
         if not blocking:
+            self._clock.poll()
             return False
         if not self._clock.owns_current_thread():
             return self._real.acquire(timeout=timeout)
@@ -152,6 +153,11 @@ class VirtualLock:
             frame = frame.f_back
             code = frame.f_code
         self.taken_at = code, frame.f_lasti
+
+    def _is_owned(self) -> bool:
+        """Asked by conditions, which try to take a lock to learn whether they have it: no poll."""
+        self._clock.switch_point()
+        return self._real.locked()
 
     def locked(self) -> bool:
         """Whether somebody holds it."""

@@ -59,6 +59,8 @@ class VirtualSignal:
 
     def wait(self, deadline: int | None) -> bool:
         """Wait until set, or until virtual time reaches ``deadline``; True if it was set."""
+        if deadline is not None and deadline <= self._clock.now():
+            self._clock.poll()
         while not self._set and (deadline is None or deadline > self._clock.now()):
             self._waiter = self._clock.current
             try:

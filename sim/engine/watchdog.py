@@ -1,11 +1,13 @@
 """Notices a program that stands still outside virtual time, and names the place."""
 
+import sys
 import threading
 import time
 from collections.abc import Callable
 
 from sim.clock import VirtualClock
 from sim.engine.places import place_of
+from sim.ros.own_code import outwards
 from sim.trace.events import AnyEvent, Notice, Severity
 
 _RealThread = threading.Thread
@@ -15,8 +17,10 @@ _LOOK = 0.5
 """Real seconds between two looks."""
 _PATIENCE = 6
 """Looks without a step after which the person is told."""
-_LAST_PATIENCE = 30
+_LAST_PATIENCE = 8
 """Looks without a step after which ``give_up`` is called."""
+_PATIENCE_WITH_IMPORTS = 30
+"""The same for a thread that imports: large libraries take long, and nobody can mend that."""
 
 
 class Watchdog:
@@ -44,8 +48,12 @@ class Watchdog:
             steps = self._clock.steps
             if still == _PATIENCE:
                 self._record(Notice(self._clock.now(), Severity.WARN, self._sentence()))
-            elif still == _LAST_PATIENCE:
+            elif still == (_PATIENCE_WITH_IMPORTS if self._imports() else _LAST_PATIENCE):
                 self._give_up(self._sentence())
+
+    def _imports(self) -> bool:
+        stack = outwards(sys._current_frames().get(self._clock.current.ident))
+        return any(frame.f_globals.get("__name__") == "_frozen_importlib" for frame in stack)
 
     def _sentence(self) -> str:
         thread = self._clock.current

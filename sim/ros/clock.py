@@ -127,6 +127,8 @@ class Clock:
         with self.create_jump_callback(threshold, post_callback=on_jump):
             if self.now() < until and chosen.ok():
                 event.wait_until(self, until)
+            else:
+                self._host.clock.poll()
         return chosen.ok() and not changes
 
     def sleep_for(self, rel_time: Duration, context: Context | None = None) -> bool:

@@ -245,6 +245,8 @@ class Executor(RunsWork):
         """
         nanoseconds = -1 if timeout_sec is None else timeout_sec_to_nsec(seconds_of(timeout_sec))
         deadline = None if nanoseconds < 0 else self._clock.now() + nanoseconds
+        if nanoseconds == 0:
+            self._clock.poll()
         while True:
             asked = self._asks_waitables and self._about_to_look() and self._ask_waitables()
             with self._lock:

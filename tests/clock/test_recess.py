@@ -4,7 +4,7 @@ import threading
 from collections.abc import Callable
 
 from sim.clock import VirtualClock
-from sim.clock.virtual import WAITS_TO_RECESS
+from sim.clock.virtual import RECESS, WAITS_TO_RECESS
 from tests.support.simulation import no_thread_left, wind_up
 
 PATIENCE = 10.0
@@ -35,7 +35,7 @@ def test_an_input_reaches_a_loop_that_sleeps_no_time() -> None:
     def program(clock: VirtualClock) -> None:
         clock.give(lambda: done.append(clock.recess))
         assert dawdle(clock, lambda: done) == WAITS_TO_RECESS
-        assert clock.now() == 0
+        assert clock.now() == RECESS
 
     on_virtual_time(program)
     assert done == [1]
@@ -55,14 +55,15 @@ def test_every_recess_takes_one_input_so_that_its_effects_come_first() -> None:
 
 def test_an_input_is_repeated_in_its_recess_and_one_of_the_end_comes_at_the_end() -> None:
     done: list[tuple[str, int, int]] = []
+    end = 5 + 4 * RECESS
 
     def program(clock: VirtualClock) -> None:
         def note(name: str) -> Callable[[], None]:
             return lambda: done.append((name, clock.now(), clock.recess))
 
-        clock.give_at(5, note("third"), 3)
-        clock.give_at(5, note("end"))
-        clock.give_at(7, note("first"), 1)
+        clock.give_at(5 + 2 * RECESS, note("third"), 3)
+        clock.give_at(end, note("end"))
+        clock.give_at(end + 2, note("first"), 1)
         clock.sleep(5)
         for _ in range(WAITS_TO_RECESS * 4):
             clock.sleep(0)
@@ -70,7 +71,7 @@ def test_an_input_is_repeated_in_its_recess_and_one_of_the_end_comes_at_the_end(
         dawdle(clock, lambda: len(done) == 3)
 
     on_virtual_time(program)
-    assert done == [("third", 5, 3), ("end", 5, 0), ("first", 7, 1)]
+    assert done == [("third", 5 + 2 * RECESS, 3), ("end", end, 0), ("first", end + 2, 1)]
 
 
 def test_threads_that_wake_each_other_for_ever_have_recesses_too() -> None:
@@ -92,6 +93,34 @@ def test_threads_that_wake_each_other_for_ever_have_recesses_too() -> None:
 
     on_virtual_time(program)
     assert done == [1]
+
+
+def test_a_recess_of_waits_for_no_time_lasts_until_the_next_deadline_at_most() -> None:
+    def program(clock: VirtualClock) -> None:
+        woken: list[int] = []
+        clock.call_at(RECESS // 4, lambda: woken.append(clock.now()))
+        dawdle(clock, lambda: woken)
+        assert woken == [RECESS // 4]
+
+    on_virtual_time(program)
+
+
+def test_time_stands_for_threads_that_hand_something_on() -> None:
+    def program(clock: VirtualClock) -> None:
+        signals = clock.signal(), clock.signal()
+
+        def answer() -> None:
+            for _ in range(2 * WAITS_TO_RECESS):
+                signals[0].wait(None)
+                signals[1].set()
+
+        clock.start_thread(answer, "answer")
+        for _ in range(2 * WAITS_TO_RECESS):
+            signals[0].set()
+            signals[1].wait(None)
+        assert clock.now() == 0
+
+    on_virtual_time(program)
 
 
 def test_time_that_passes_begins_the_count_anew() -> None:
