@@ -18,8 +18,8 @@ def whole_file(
     """A file to write to, which gets its place when all is written, or is gone if anything is raised.
 
     An existing file is replaced only with ``replace``, and keeps its permissions; a new one gets ``mode``,
-    less what the process masks. A link is followed, or replaced itself without ``follow``. Pipes and devices are written
-    to as they are.
+    less what the process masks. A link is followed, or replaced itself without ``follow``. Pipes and devices
+    are written to as they are.
 
     Raises:
         FileExistsError: there is such a file, and it is not to be replaced.
