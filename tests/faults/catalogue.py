@@ -79,8 +79,6 @@ FORKS = "while True:\n    if os.fork() == 0:\n        os.setsid()\n        time.
 FAULTS: Mapping[str, Fault] = {
     "nothing": Fault("pass"),
     **{name: Fault(each.fault, each.clock, again=True) for name, each in test_nodes_raging.FAULTS.items()},
-    "logs as fast as it can": Fault("while True: self.get_logger().info('x')"),
-    "prints as fast as it can": Fault("while True: print('x')"),
     "allocates bit by bit": Fault("kept = []\nwhile True: kept.append(bytearray(b'x') * 2_000_000)"),
     "allocates at once": Fault("self.kept = b'x' * 3_000_000_000"),
     "forks": Fault("os.fork()"),
