@@ -28,6 +28,7 @@ def start_recording(path: Path, setup: RunSetup, *, replace: bool = False) -> Re
     try:
         if path.is_dir():
             raise CannotRecordError(f"cannot record to {path}: it is a folder; name a file in it")
+        is_new = not path.exists()
         recorder = Recorder(path, about(setup), replace=replace)
     except FileExistsError:
         sentence = f"there is a file {path} already; give another name, or --force to replace it"
@@ -36,7 +37,8 @@ def start_recording(path: Path, setup: RunSetup, *, replace: bool = False) -> Re
         raise CannotRecordError(f"cannot record to {path}: {error.strerror}") from None
     if recorder.failure is not None:
         recorder.close()
-        path.unlink(missing_ok=True)
+        if is_new:
+            path.unlink(missing_ok=True)
         raise CannotRecordError(f"cannot record to {path}: {recorder.failure}")
     return recorder
 

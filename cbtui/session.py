@@ -67,7 +67,8 @@ class Session:
         self._ended = ended
         self._stopping = False
         self._started = False
-        self._runs = False
+        self._begun = False
+        self._finished = False
         self._setup = setup
         self._context = context or multiprocessing.get_context("spawn")
         self._pipe, self._far_end = self._context.Pipe()
@@ -125,7 +126,8 @@ class Session:
 
     def _stop(self) -> None:
         self.send(Stop())
-        self._family.wait_for_end(LONGEST_END if self._runs and not self._family.is_stopped() else _GRACE)
+        runs = self._begun and not self._finished
+        self._family.wait_for_end(LONGEST_END if runs and not self._family.is_stopped() else _GRACE)
         self._warden.stop()
         self._process.kill()
         self._process.join()
@@ -138,12 +140,12 @@ class Session:
         self._last_words.close()
 
     def _read(self) -> None:
-        finished = False
         silence = Silence()
         while True:
             try:
                 if self._pipe.poll(LOOK):
                     events = silence.came(self._unpack(self._pipe.recv_bytes(_LONGEST_BATCH)))
+                    self._begun = True
                 else:
                     events = silence.nothing_came(self._why_silent)
             except (EOFError, OSError):
@@ -152,15 +154,16 @@ class Session:
                 self._warden.stop()
                 self._ended(f"the engine sent something unreadable: {error}")
                 return
-            finished = finished or any(isinstance(event, RunEnded) for event in events)
-            self._runs = not finished
+            self._finished = self._finished or any(isinstance(event, RunEnded) for event in events)
             if events:
                 self._deliver(events)
-        self._ended(None if finished or self._stopping else self._epitaph())
+        self._ended(None if self._finished or self._stopping else self._epitaph())
 
     def _why_silent(self) -> str:
         if self._family.is_stopped():
             return "its process was stopped"
+        if not self._begun:  # to one that does not listen yet, the question would be the end
+            return "it has not begun yet"
         return why_silent(self._place_in_program(), self._place_in_program())
 
     def _place_in_program(self) -> str:

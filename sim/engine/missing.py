@@ -60,7 +60,7 @@ _ROS_1 = {
     "rospy": "rclpy takes its place",
     "rosservice": "node.get_service_names_and_types() lists services",
     "rostopic": "node.get_topic_names_and_types() lists topics",
-    "smach": "yasmin or py_trees take its place",
+    "smach": "py_trees takes its place",
     "tf": "tf2_ros takes its place, on a ROS 2 machine",
 }
 """Packages of ROS 1, with what ROS 2 has in their place."""
