@@ -1,16 +1,21 @@
 """A program that lets no time pass: it is told, takes inputs, and is repeated from them."""
 
+import time
 from pathlib import Path
 from queue import Queue
 
 import msgspec
+import pytest
 
 from cbtui.session import Session
 from sim.clock.virtual import RECESS
 from sim.engine.commands import CallService, InputCommand, Stop
 from sim.engine.inputs import inputs_of
 from sim.trace.events import AnyEvent, CommandGiven, InputGiven, Logged, Notice, RunEnded, TimeHalted
-from tests.support.engine_runs import program_setup, run_to_end
+from tests.support.engine_runs import SECOND, program_setup, run_to_end
+
+PATIENCE = 10.0
+"""Real seconds: twice what it takes on a quiet machine."""
 
 DAWDLES = """
 import time
@@ -88,6 +93,46 @@ def test_that_time_stands_is_told_once_with_the_place(tmp_path: Path) -> None:
     assert isinstance(ended, RunEnded)
     assert ended.failed
     assert ended.reason.startswith("time stands still: MainThread (node.py:5, in dawdle)")
+
+
+@pytest.mark.parametrize(
+    ("body", "why"), [("time.sleep(0)", "time stands still"), ("pass", "MainThread does not come to a wait")]
+)
+def test_a_run_that_is_stuck_is_ended_within_seconds(tmp_path: Path, body: str, why: str) -> None:
+    path = tmp_path / "node.py"
+    path.write_text(f"import time\nwhile True: {body}\n")
+    news: Queue[list[AnyEvent] | str | None] = Queue()
+    session = Session(program_setup(path, 60.0), news.put, news.put)
+    session.start()
+    try:
+        news.get(timeout=60)
+        began = time.monotonic()
+        while isinstance(batch := news.get(timeout=60), list):
+            ended = batch[-1]
+    finally:
+        session.stop()
+    assert time.monotonic() - began < PATIENCE
+    assert isinstance(ended, RunEnded)
+    assert ended.reason.startswith(why)
+
+
+def test_a_loop_that_waits_until_its_deadline_is_behind_it_is_not_blamed(tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    path.write_text(
+        "import concurrent.futures, time\n"
+        "def loop(end):\n"
+        "    while time.time() <= end: time.sleep(max(0, end - time.time()))\n"
+        "with concurrent.futures.ThreadPoolExecutor(12) as pool:\n"
+        "    jobs = [pool.submit(loop, time.time() + 1) for _ in range(12)]\n"
+        "    try:\n"
+        "        list(concurrent.futures.as_completed(jobs, timeout=0.1))\n"
+        "    except TimeoutError:\n"
+        "        pass\n"
+    )
+    run = run_to_end(program_setup(path, 60.0))
+    assert not any(isinstance(event, Notice) for event in run.events)
+    assert not run.ending.failed
+    assert 1.0 <= run.ending.t / SECOND < 1.00001
 
 
 def test_a_program_that_lets_no_time_pass_can_be_stopped(tmp_path: Path) -> None:
