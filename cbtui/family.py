@@ -1,16 +1,21 @@
 """The processes of one engine: what they take of the machine, and how they are ended.
 
-A process that a program starts, and what that one starts, are the engine's children's children, or in its
-session; those that leave both still have the mark that the engine got in its environment. All that is looked
-for in ``/proc``; where there is none, only the engine's own group is known.
+The engine is a subreaper: whatever a program starts stays below it in the process tree as long as it lives,
+daemons included, and is ended as it leaves. If it is killed, they are known by its session, by the mark that
+it got in its environment, and by the last look at the tree; what started since then, in a session and an
+environment of its own, is not found any more. All that is looked for in ``/proc``; where there is none, only
+the engine's own group is known.
 """
 
+import ctypes
 import os
 import signal
+import sys
 import time
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
 from pathlib import Path
+from typing import Any, NoReturn, cast
 
 MARK = "CBTUI_RUN"
 """The environment variable that holds the mark."""
@@ -18,6 +23,8 @@ MARK = "CBTUI_RUN"
 _PROC = Path("/proc")
 _SWEEPS = 20
 """How often processes are looked for that were started while others were being ended."""
+_PR_SET_CHILD_SUBREAPER = 36
+"""Of Linux's ``prctl``: orphans below the caller become its children."""
 _PAGE = os.sysconf("SC_PAGESIZE")
 
 
@@ -27,6 +34,7 @@ class Family:
     def __init__(self, pid: int, mark: str) -> None:
         self.pid = pid
         self._entry = f"{MARK}={mark}\0".encode()
+        self._seen: dict[int, str] = {}
 
     def lives(self) -> bool:
         """Whether the engine itself has not ended."""
@@ -53,20 +61,38 @@ class Family:
         return sum(map(_proportional, processes))
 
     def descendants(self) -> list[int]:
-        """The engine and those that are its children, their children and so on."""
+        """The engine and those that are its children, their children and so on, but for zombies."""
         found = [self.pid]
         for pid in found:
             with suppress(OSError):
                 for children in (_PROC / str(pid) / "task").glob("*/children"):
                     with suppress(OSError):
                         found += map(int, children.read_text().split())
-        return found
+        seen = {pid: began for pid in found if (began := _began(pid))}
+        if self.pid in seen:  # else nobody is below it any more
+            self._seen = seen
+        return [self.pid, *(pid for pid in found[1:] if pid in seen)]
+
+    def leave_nothing(self) -> None:
+        """Have the calling process be the engine: it keeps orphans, and ends all below it as it leaves."""
+        if sys.platform != "linux":
+            return
+        ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
+        leave, system = os._exit, cast("Any", os)
+
+        def leave_nothing(status: int) -> NoReturn:
+            if os.getpid() == self.pid and len(self.descendants()) > 1:
+                self.end()
+            leave(status)
+
+        system._exit = leave_nothing
 
     def end(self) -> None:
         """Kill them all but the caller; those that start others are stopped first, so that none gets away."""
         stopped: set[int] = set()
+        seen = {pid for pid, began in self._seen.items() if _began(pid) == began}
         for _ in range(_SWEEPS):
-            found = {*self._marked(), *self.descendants()} - stopped - {os.getpid()}
+            found = {*seen, *self._marked(), *self.descendants()} - stopped - {os.getpid()}
             if not found:
                 break
             for pid in found:
@@ -104,6 +130,15 @@ class Family:
 def _status(place: Path) -> list[str]:
     """State, parent, group, session and so on of a process."""
     return (place / "stat").read_text(errors="replace").rpartition(")")[2].split()
+
+
+def _began(pid: int) -> str:
+    """When a process began, which tells it from a later one of that number; "" if it is no more."""
+    try:
+        state, *rest = _status(_PROC / str(pid))
+    except OSError:
+        return ""
+    return "" if state in {"Z", "X"} else rest[18]
 
 
 def _resident(pid: int) -> int:

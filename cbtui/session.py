@@ -214,6 +214,7 @@ class Session:
 def _engine(packed_setup: bytes, pipe: Connection, last_words: Connection, console: Connection) -> None:
     """Be the engine; imported only over there, so that the console stays light."""
     watch_over(os.getpid(), console)
+    Family(os.getpid(), os.environ.get(MARK, "")).leave_nothing()
     from sim.engine.process import run
 
     run(packed_setup, pipe, last_words)

@@ -12,8 +12,8 @@ from textual_serve.download_manager import DownloadManager
 
 from cbtui.terminal import BROWSER_DRIVER
 
-_GRACE = 4.0
-"""Seconds that a console has to end by itself."""
+_GRACE = 6.0
+"""Seconds that a console has to end by itself, and its program in it."""
 _FRAMES_A_SECOND = "30"
 _MOST_COLUMNS, _MOST_ROWS = 500, 200
 

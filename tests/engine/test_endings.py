@@ -11,11 +11,12 @@ from time import monotonic
 import msgspec
 import pytest
 
+from cbtui.lesson_setup import setup_for_files
 from cbtui.session import Session
 from sim.engine.commands import Stop
 from sim.engine.ending import GRACE
 from sim.trace.events import AnyEvent, Notice, Printed, RunEnded
-from tests.support.engine_runs import Run, program_setup, run_program
+from tests.support.engine_runs import Run, program_setup, run_program, run_to_end
 
 LEAVES = """
 import atexit, gzip, tempfile, threading, time, weakref
@@ -220,3 +221,19 @@ finally:
     run = run_program(tmp_path, source, seconds=3.0, clock=clock)
     assert printed(run) == ["answered True", "last line"]
     assert not [event for event in run.events if isinstance(event, Notice)]
+
+
+@pytest.mark.parametrize("typed", ["link.py", "folder/real.py"])
+def test_a_program_behind_a_link_keeps_the_name_that_was_typed(tmp_path: Path, typed: str) -> None:
+    real = tmp_path / "real"
+    real.mkdir()
+    (real / "beside.py").write_text("")
+    (real / "real.py").write_text("import sys, beside\nprint(sys.argv[0], __file__, sys.path[0])\n1 / 0")
+    (tmp_path / "link.py").symlink_to(real / "real.py")
+    (tmp_path / "folder").symlink_to(real)
+    path = tmp_path / typed
+    setup = setup_for_files([path])
+    assert setup.title == path.name
+    run = run_to_end(setup)
+    assert printed(run) == [f"{path} {path} {real}"]
+    assert run.ending.reason.startswith(f"{path.name}:3: the program raised ZeroDivisionError")

@@ -7,6 +7,7 @@ import pytest
 from cbtui import cli, warden
 from cbtui.live_run import State
 from tests.faults.support import FIRST, node_with, provoked, still_here
+from tests.support.processes import alive
 
 LITTLE = "0.3"
 """GB that a node may use here: twice what an engine takes."""
@@ -99,6 +100,24 @@ subprocess.Popen(['sh', '-c', 'setsid sleep 300 & exit'])
 """
     with provoked(node_with(folder, fault)) as run:
         run.until(still_here)
+
+
+@pytest.mark.parametrize(
+    "ends", ["time.sleep(0.2)", "os._exit(3)", "time.sleep(1.5); os.kill(os.getpid(), 9)"]
+)
+def test_a_daemon_with_a_session_and_an_environment_of_its_own_ends_with_the_run(
+    folder: Path, ends: str
+) -> None:
+    told = folder / "pid"
+    fault = f"""
+subprocess.run(['setsid', '-f', 'env', '-i', 'sh', '-c', 'echo $$ > {told}; exec sleep 300'])
+while not os.path.exists({str(told)!r}) or not open({str(told)!r}).read(): time.sleep(0.01)
+{ends}
+rclpy.shutdown()
+"""
+    with provoked(node_with(folder, fault)) as run:
+        run.to_its_end()
+    assert not alive(int(told.read_text()))
 
 
 def test_nothing_that_a_node_started_outlives_its_crash(folder: Path) -> None:

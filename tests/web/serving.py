@@ -5,6 +5,9 @@ import subprocess
 import sys
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import aiohttp
@@ -14,9 +17,11 @@ from tests.support.processes import descendants
 
 class Serving:
     """``cbtui serve`` at a free port; ``address`` is where, ``way_in`` the same with the token."""
+    """``cbtui serve`` at a free port; ``address`` is where, ``home`` where it keeps things."""
 
-    def __init__(self, process: "subprocess.Popen[str]") -> None:
+    def __init__(self, process: "subprocess.Popen[str]", home: Path) -> None:
         self.process = process
+        self.home = home
         assert process.stdout is not None
         self.first_line = process.stdout.readline()
         self.way_in = self.first_line.split()[4]
@@ -47,7 +52,7 @@ def serving(*words: str, **environment: str) -> Iterator[Serving]:
         ) as process,
     ):
         try:
-            yield Serving(process)
+            yield Serving(process, Path(home))
         finally:
             process.terminate()
 

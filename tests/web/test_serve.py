@@ -97,6 +97,7 @@ async def test_nothing_is_left_when_the_server_ends(by: signal.Signals) -> None:
             ended = await asyncio.to_thread(server.process.wait, 20)
         assert ended == (-by if by is signal.SIGKILL else 0)
         await until_gone(theirs)
+        assert not [*server.home.rglob("fault.txt")]
 
 
 async def test_a_console_that_hangs_is_killed_with_its_engine() -> None:
