@@ -17,7 +17,7 @@ from typing import Self
 from lessons.catalogue import ROOT as LESSONS
 
 PACKAGES = LESSONS.parent
-"""The folder that cbtui, sim and lessons are in: a checkout, or one with many packages."""
+"""The folder that cbtui and the engine are in: a checkout, or one with many packages."""
 _SYSTEM = (
     *("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/nix", "/etc/ld.so.cache", "/etc/alternatives"),
     *("/etc/localtime", "/etc/passwd", "/etc/group", "/etc/nsswitch.conf", "/etc/hosts"),
@@ -66,11 +66,11 @@ class Confinement:
             return cls(None, missing="bwrap (of the package bubblewrap) is not installed")
         everywhere = dict.fromkeys(form for path in hidden for form in (path.absolute(), path.resolve()))
         confinement = cls(bwrap, tuple(everywhere))
-        probe = f"import sys; sys.path[:] = {confinement.import_path!r}; {_PROBE}"
-        words = [*confinement._words(None), sys.executable, "-P", "-c", probe]
+        words = [*confinement._words(None), sys.executable, "-P", "-c", _PROBE]
+        found = {"PYTHONPATH": os.pathsep.join(confinement.import_path)}
         try:
             tried = subprocess.run(
-                words, capture_output=True, text=True, timeout=_PROBE_SECONDS, check=False, cwd="/"
+                words, capture_output=True, text=True, timeout=_PROBE_SECONDS, check=False, cwd="/", env=found
             )
         except (OSError, subprocess.TimeoutExpired) as error:
             return cls(None, missing=f"bwrap does not work here ({error})")
@@ -80,7 +80,7 @@ class Confinement:
         return confinement
 
     def launcher(self, folder: Path, script: Path) -> Path | None:
-        """Write a script that starts Python confined to a folder; None where ``sys.executable`` does."""
+        """Write a script that starts Python confined to a folder; None where Python itself does."""
         if self.bwrap is None:
             return None
         text = _SCRIPT.format(bwrap=shlex.join(self._words(folder)), python=shlex.quote(sys.executable))
