@@ -61,6 +61,8 @@ def troubles_of(seed: int, number: int) -> Iterator[str]:
         if confined and random.random() < 0.5:
             classroom.hand_in("forger 0", ENDING[random.choice([*ENDING])])
         graded = classroom.grade(limit=_LIMIT)
+        if confined and graded.err:
+            yield f"it was not confined, or fell over: {graded.err}"
         yield from _wrong(graded, handed_in)
 
 
