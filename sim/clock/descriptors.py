@@ -74,7 +74,7 @@ def _replace_polls(replacements: Replacements, outside: OutsideWork) -> None:
 
 
 class _Wrapped:
-    """One of the system's pollers, whose own type allows no subclass."""
+    """One of the system's objects that poll, whose own type allows no subclass."""
 
     make: Callable[..., Any]
 

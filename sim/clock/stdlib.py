@@ -247,6 +247,9 @@ def _replace_locks() -> None:
     module.RLock = module._PyRLock
     queues: Any = queue
     queues.SimpleQueue = queues._PySimpleQueue
+    pools: Any = sys.modules.get("concurrent.futures.thread")
+    if pools is not None:  # its lock was made when it was imported
+        pools._global_shutdown_lock = VirtualLock()
 
 
 def _replace_threads(clock: VirtualClock) -> None:

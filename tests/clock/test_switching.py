@@ -9,6 +9,7 @@ import pytest
 
 _PRELUDE = """
 import queue, sys, threading, time
+import concurrent.futures.thread as futures
 from sim.clock import VirtualClock
 from sim.clock.circles import circle_of
 from sim.clock.schedule import schedule_of
@@ -24,6 +25,12 @@ def at_once(*targets):
 """
 
 PROGRAMS = {
+    "pools_that_were_imported_before_the_run_do_not_hold_each_other_up": """
+        def work():
+            with futures.ThreadPoolExecutor(2) as pool:
+                assert list(pool.map(abs, [-1, -2])) == [1, 2]
+        at_once(work, work, work)
+    """,
     "threads_that_import_the_same_module_do_not_hold_each_other_up": """
         import pathlib, tempfile
         folder = tempfile.mkdtemp()
