@@ -5,8 +5,6 @@ import subprocess
 import sys
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, contextmanager
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -16,8 +14,10 @@ from tests.support.processes import descendants
 
 
 class Serving:
-    """``cbtui serve`` at a free port; ``address`` is where, ``way_in`` the same with the token."""
-    """``cbtui serve`` at a free port; ``address`` is where, ``home`` where it keeps things."""
+    """``cbtui serve`` at a free port.
+
+    ``address`` is where, ``way_in`` the same with the token, ``home`` where it keeps things.
+    """
 
     def __init__(self, process: "subprocess.Popen[str]", home: Path) -> None:
         self.process = process
