@@ -9,6 +9,7 @@ import signal
 import sys
 import threading
 import time
+from collections.abc import Callable
 from functools import partial
 from itertools import count
 from multiprocessing.connection import Connection
@@ -124,6 +125,7 @@ class Engine:
         self._passed = 0
         self._ending: tuple[str, bool] | None = None
         self._modules = set(sys.modules)
+        self._interrupts: list[Callable[[], None]] = []
         self._leaves = _allocate_lock()
         self._grace_begins = threading.Semaphore(0)
 
@@ -174,7 +176,8 @@ class Engine:
             self._programs.wait_until(lambda: not (self._programs.any_run or self._lines.any_left))
         except KeyboardInterrupt:
             self._lines.interrupt_all()
-            self._programs.interrupt_all()
+            for interrupt in self._interrupts:
+                interrupt()
             self._programs.wait_until(lambda: not self._programs.any_run)
             return Outcome(_STOPPED, failed=False)
         except StartError as error:
@@ -185,10 +188,12 @@ class Engine:
     def _start_programs(self) -> None:
         for place, program in enumerate(self._setup.programs, start=1):
             if is_launch_file(program.path):
-                self._starter.launch(None, program.path, program.arguments, _nobody_waits)
+                launch = self._starter.launch(None, program.path, program.arguments, _nobody_waits)
+                self._interrupts.append(launch.interrupt)
             else:
                 label = f"{Path(program.path).stem}-{place}"
-                self._programs.start(script(program.path, program.arguments), label, _nobody_waits)
+                started = self._programs.start(script(program.path, program.arguments), label, _nobody_waits)
+                self._interrupts.append(started.raise_interrupt)
 
     def _fail(self, sentence: str) -> None:
         self._have_end(sentence, failed=True)
