@@ -253,8 +253,8 @@ class Engine:
         return True
 
     def _interrupt(self) -> None:
+        _signal_main()  # first: a program can have broken what starts threads
         self._clock.call_at(self._clock.now() + _CONTEXTS_END_AFTER, self._programs.end_contexts)
-        _signal_main()
 
     def _interrupt_on(self, clock: VirtualClock) -> None:
         clock.resume()
@@ -286,8 +286,10 @@ class Engine:
             f"{self._setup.title} had not ended {seconds:g} s after it was told to{self._where_it_stands()}"
         )
         self._outbox.record(Notice(self._clock.now(), Severity.WARN, f"{text}: it was ended by force"))
-        flush_files_soon()
-        self._leave()
+        try:
+            flush_files_soon()
+        finally:
+            self._leave()
 
     def _where_it_stands(self) -> str:
         """What keeps the program from ending, as " (worker: node.py:12, in work)"."""
