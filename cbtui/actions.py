@@ -212,7 +212,7 @@ ACTIONS = (
         Scope.LESSON,
     ),
     Action("prompt", "colon", "ros2", "Type a ros2 line; tab completes, up brings lines back", Scope.LESSON),
-    Action("type", "k", "type", "Type for the program that reads from the keyboard", Scope.LESSON),
+    Action("type", "i", "type", "Type for the program that reads from the keyboard", Scope.LESSON),
     Action("filter_log", "/", "filter", "Go to the log, and filter it", Scope.LESSON),
     Action("open_source", "o", "editor", "Open the code in $EDITOR", Scope.LESSON),
     Action(

@@ -39,7 +39,7 @@ def add_typing(parser: argparse.ArgumentParser) -> None:
         nargs=2,
         action=values.TimedKeys,
         default=[],
-        help=r"type that text at that time, for a program that reads from the keyboard, such as 2 wwx or "
+        help=r"type that text at that time, for a program that reads from the keyboard, such as 2 w or "
         r"3 '0.5\n'; may be given again (else: what is typed here, or comes through a pipe)",
     )
 

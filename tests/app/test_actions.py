@@ -24,7 +24,7 @@ from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.log import LogFilter, LogLines
 from cbtui.widgets.menu_search import MenuSearch
-from cbtui.widgets.shell import Prompt
+from cbtui.widgets.shell import ProgramKeyboard, Prompt
 
 HOMES: dict[Scope, type[DOMNode]] = {
     Scope.EVERYWHERE: CbtuiApp,
@@ -38,6 +38,7 @@ HOMES: dict[Scope, type[DOMNode]] = {
     Scope.CODE: CodeView,
     Scope.CHECKS: ChecksView,
     Scope.PROMPT: Prompt,
+    Scope.KEYBOARD: ProgramKeyboard,
     Scope.THREADS: ThreadsScreen,
     Scope.GROUP: GroupScreen,
     Scope.EXPORT: ExportScreen,

@@ -47,14 +47,14 @@ def typed(app: RecordedConsole) -> list[str]:
 @pytest.mark.parametrize("size", [NARROW, WIDE])
 async def test_it_is_said_who_reads_and_where_to_type(size: tuple[int, int]) -> None:
     async with console(Reading.LINES, size) as (app, pilot):
-        assert "teleop.py waits for input from the keyboard; press k and type" in text_of(app)
-        await press(pilot, "k")
+        assert "teleop.py waits for input from the keyboard; press i and type" in text_of(app)
+        await press(pilot, "i")
         assert "teleop.py reads a line: type here; ^] goes back" in text_of(app)
 
 
 async def test_a_line_goes_to_the_program_and_is_seen_behind_what_it_asked() -> None:
     async with console(Reading.LINES) as (app, pilot):
-        await press(pilot, "k", "0", "full_stop", "5", "s", "enter")
+        await press(pilot, "i", "0", "full_stop", "5", "s", "enter")
         assert typed(app) == ["0.5s\n"]
         await tell(app, pilot, Typed(ns(1.1), "0.5s\n"), Printed(ns(1.1), "so be it", False))
         text = text_of(app)
@@ -66,23 +66,23 @@ async def test_a_line_goes_to_the_program_and_is_seen_behind_what_it_asked() -> 
 
 async def test_each_key_goes_to_a_program_that_takes_keys_but_the_one_that_leads_out() -> None:
     async with console(Reading.RAW) as (app, pilot):
-        await press(pilot, "k", "w", "space", "q", "enter", "escape", "up", "ctrl+c", "tab", "question_mark")
+        await press(pilot, "i", "w", "space", "q", "enter", "escape", "up", "ctrl+c", "tab", "question_mark")
         assert typed(app) == ["w", " ", "q", "\r", "\x1b", "\x1b[A", "\x03", "\t", "?"]
         await press(pilot, "ctrl+right_square_bracket")
         assert isinstance(app.screen.focused, ShellOutput)
-        await press(pilot, "k", "d")
+        await press(pilot, "i", "d")
         assert typed(app)[-1] == "d"
 
 
 async def test_a_password_is_not_shown() -> None:
     async with console(Reading.SECRET) as (app, pilot):
-        await press(pilot, "k", "x", "y", "z")
+        await press(pilot, "i", "x", "y", "z")
         assert "xyz" not in text_of(app)
         assert app.screen.query_one(ProgramKeyboard).value == "xyz"
 
 
 async def test_the_keys_mean_what_they_did_once_the_run_is_over() -> None:
     async with console(Reading.RAW) as (app, pilot):
-        await press(pilot, "k")
+        await press(pilot, "i")
         await tell(app, pilot, RunEnded(ns(1.2), "the program returned", False))
         assert isinstance(app.screen.focused, ShellOutput)

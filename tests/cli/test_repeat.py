@@ -51,7 +51,7 @@ def test_a_recording_compared_with_its_lesson_shows_the_same_twice(folder: Path)
         (["run"], "run needs a LESSON or a FILE.py"),
         (["run", "--inputs", "/no.mcap"], "/no.mcap cannot be read: No such file or directory"),
         (["run", "--inputs", "x.mcap", "--clock", "real"], "only runs on the virtual clock can be repeated"),
-        (["run", "--inputs", "x.mcap", "--call", "1"], "leave out --call and --at"),
+        (["run", "--inputs", "x.mcap", "--call", "1"], "leave out --call, --at and --type"),
         (["compare", "/no.mcap", "single-thread"], "/no.mcap cannot be read: No such file or directory"),
         (["compare", "/no.py", "single-thread"], "there is no file /no.py"),
         (["compare", "no-lesson", "single-thread"], "No lesson is called 'no-lesson'"),
