@@ -23,6 +23,8 @@ def advice_on(error: BaseException, frame: FrameType | None) -> str:
             advice = _misplaced_in(frame, name) or _nearest(name, _names_of(frame))
         case AttributeError(name=str(name), obj=obj):
             advice = _on_unready_node(name, obj) or _nearest(name, dir(obj))
+        case _ if type(error).__module__ == "_curses":
+            advice = "curses draws on a whole terminal, which no run has; print, and read keys with termios"
         case _:
             advice = ""
     return f"; {advice}" if advice else ""
