@@ -180,7 +180,7 @@ class Terminal:
     def _drop_echo(self) -> None:
         """Keep the far end from filling up: what it echoes, the trace tells as ``Typed``."""
         try:
-            while os.read(self._far, _LONGEST):
+            while _read(self._far, _LONGEST):
                 pass
         except BlockingIOError:
             return
