@@ -263,9 +263,13 @@ class Terminal:
                 return select(reads, writes, errors, timeout)
             others = [each for each in reads if each not in ours]
             deadline = None if timeout is None else self._clock.now() + math.ceil(timeout * 1e9)
-            ready = select(others, writes, errors, 0)
+
+            def look() -> _Ready:
+                return select(others, writes, errors, 0) if others or writes or errors else ([], [], [])
+
+            ready = look()
             typed = self.wait(self._clock.now() if any(ready) else deadline)
-            found, writable, failed = ready if any(ready) else select(others, writes, errors, 0)
+            found, writable, failed = ready if any(ready) else look()
             readable = [each for each in reads if each in found or (typed and each in ours)]
             return readable, writable, failed
 
