@@ -25,7 +25,7 @@ from cbtui.warden import Warden, ceiling
 from sim.clean_start import without_current_folder
 from sim.engine.commands import Command, Stop, encode
 from sim.engine.ending import GRACE, TO_LEAVE
-from sim.engine.last_words import ASKED, overflowed, place_in
+from sim.engine.last_words import ASKED, overflowed, place_in, was_kept
 from sim.engine.outbox import TRACE_CLOSED
 from sim.engine.setup import RunSetup
 from sim.trace.events import AnyEvent, RunEnded, decode
@@ -202,7 +202,8 @@ class Session:
         if code == TRACE_CLOSED:
             return "the program closed files of the engine's, as os.closerange does; close only your own"
         if code is None or code >= 0:
-            return f"the engine ended with exit code {code}"
+            held_up = "code in C held up virtual time for seconds, as only --clock real allows"
+            return held_up if was_kept(last_words) else f"the engine ended with exit code {code}"
         name = signal.Signals(-code).name if -code in set(signal.Signals) else str(-code)
         if -code == signal.SIGKILL:
             return f"the engine was killed by signal {-code}"

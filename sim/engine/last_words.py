@@ -18,6 +18,8 @@ ASKED = getattr(signal, "SIGRTMAX", signal.SIGUSR2)
 
 _FRAME = re.compile(r'  File "(.*)", line (\d+) in (.*)')
 _THREAD = re.compile(r"^(Current thread|Thread) 0x[^\n]*\n(.*?)(?=^$|\Z)", re.MULTILINE | re.DOTALL)
+_KEPT = "Timeout ("
+"""Begins what ``faulthandler`` writes when its time is up."""
 _CUT = "\n  ..."
 """Ends a list of frames of which there are too many to write them all down."""
 
@@ -49,6 +51,16 @@ def keep_last_words(file: Connection, flush: Callable[[], None]) -> None:
 
     module: Any = os
     module._exit = leave_with_last_words
+
+
+def leave_if_kept(file: Connection, seconds: float) -> None:
+    """End the process with last words unless this is called again in time, which code in C may prevent."""
+    faulthandler.dump_traceback_later(seconds, exit=True, file=file.fileno())
+
+
+def was_kept(last_words: str) -> bool:
+    """Whether that is how the process ended."""
+    return _KEPT in last_words
 
 
 def place_in(last_words: str, programs: Iterable[str]) -> str:

@@ -36,7 +36,7 @@ from sim.engine.ending import (
 from sim.engine.endless_waits import EndlessWaits
 from sim.engine.failure import breakdown, is_learners
 from sim.engine.held_up import HeldUp
-from sim.engine.last_words import keep_last_words
+from sim.engine.last_words import keep_last_words, leave_if_kept
 from sim.engine.lines import Lines
 from sim.engine.outbox import Outbox
 from sim.engine.output import ProcessStream, finish_lines
@@ -151,7 +151,7 @@ class Engine:
         if self._virtual is not None:
             self._endless = endless = EndlessWaits(self._virtual, self._host, self._outbox.record)
             self._virtual.before_jump = self._look_at_waits
-            Watchdog(self._virtual, self._outbox.record, self._give_up).start()
+            Watchdog(self._virtual, self._outbox.record, self._give_up, self._leave_if_kept).start()
             self._virtual.on_recess = Standstill(self._virtual, self._outbox.record, self._give_up).look
             self._virtual.on_lock_wait = endless.begins
             live_on(self._virtual, Repeatability(self._clock, self._outbox.record).lose)
@@ -304,6 +304,10 @@ class Engine:
     def _give_up(self, sentence: str) -> None:
         if self._setup.speed is None:
             self._have_end(sentence, failed=True)
+
+    def _leave_if_kept(self, seconds: float) -> None:
+        if self._setup.speed is None:
+            leave_if_kept(self._last_words, seconds)
 
     def _end(self, outcome: Outcome) -> None:
         """End as CPython does once a script has, and leave."""

@@ -31,10 +31,13 @@ class Watchdog:
         clock: VirtualClock,
         record: Callable[[AnyEvent], None],
         give_up: Callable[[str], None],
+        be_back_in: Callable[[float], None],
     ) -> None:
+        """``be_back_in`` is told before how many real seconds this has to go on: code in C may prevent it."""
         self._clock = clock
         self._record = record
         self._give_up = give_up
+        self._be_back_in = be_back_in
 
     def start(self) -> None:
         """Begin to look."""
@@ -43,6 +46,7 @@ class Watchdog:
     def _watch(self) -> None:
         steps, still = self._clock.steps, 0
         while True:
+            self._be_back_in(_LOOK * (_LAST_PATIENCE + 1))
             _real_sleep(_LOOK)
             still = still + 1 if self._clock.steps == steps and not self._clock.rests else 0
             steps = self._clock.steps

@@ -116,6 +116,17 @@ def test_a_run_that_is_stuck_is_ended_within_seconds(tmp_path: Path, body: str, 
     assert ended.reason.startswith(why)
 
 
+def test_code_in_c_that_comes_to_no_end_is_ended_within_seconds_and_named(tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    path.write_text("def count():\n    return sum(range(10**12))\ncount()\n")
+    began = time.monotonic()
+    run = run_to_end(program_setup(path, 60.0))
+    assert time.monotonic() - began < 2 * PATIENCE
+    assert run.loss is not None
+    assert run.loss.startswith("code in C held up virtual time")
+    assert run.loss.endswith("(node.py:2, in count)")
+
+
 def test_a_loop_that_waits_until_its_deadline_is_behind_it_is_not_blamed(tmp_path: Path) -> None:
     path = tmp_path / "node.py"
     path.write_text(
