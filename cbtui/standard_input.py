@@ -26,7 +26,7 @@ class StandardInput:
 
     def __init__(self, give: Callable[[Type], None]) -> None:
         self._give = give
-        self._descriptor = sys.stdin.fileno()
+        self._descriptor = _descriptor()
         self.is_terminal = os.isatty(self._descriptor)
         self._usual: list[Any] = termios.tcgetattr(self._descriptor) if self.is_terminal else []
         self._reads = Reading.NOTHING
@@ -81,3 +81,11 @@ class StandardInput:
             self._give(Type(text if data or not goes_on else END_OF_INPUT, ends=not goes_on))
             if not goes_on:
                 return
+
+
+def _descriptor() -> int:
+    """Standard input's; where it was closed, or another object stands in for it, nobody types."""
+    try:
+        return sys.stdin.fileno()
+    except (AttributeError, OSError, ValueError):
+        return os.open(os.devnull, os.O_RDONLY)

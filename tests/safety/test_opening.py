@@ -377,5 +377,5 @@ def test_a_run_is_not_readable_by_way_of_a_link_in_the_runtime_folder(
     assert stat.S_IMODE(folder.stat().st_mode) == 0o700
     folder.rmdir()
     folder.symlink_to(tmp_path)
-    with pytest.raises(OSError, match=r"is open to others|exists"):
+    with pytest.raises(OSError, match="is not a folder"):
         runtime_folder()
