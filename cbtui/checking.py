@@ -123,7 +123,7 @@ def observe(
 
 
 def _followed(news: "Queue[_News]", name: str, limit: float, given_up: Event) -> Observed:
-    timeline = Timeline()
+    timeline = Timeline(until_ending=True)
     give_up = time.monotonic() + limit
     text = 0
     while (left := give_up - time.monotonic()) > 0:

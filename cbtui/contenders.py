@@ -190,7 +190,7 @@ def _check(terms: Terms, until: Nanoseconds) -> None:
 
 
 def _recorded(name: str, path: Path, tell: Tell, given_up: Event) -> Side:
-    timeline = Timeline()
+    timeline = Timeline(until_ending=True)
     try:
         recording = read(path)
         for events in recording.batches():
@@ -235,7 +235,7 @@ def _run(contender: Contender, terms: Terms, until: Nanoseconds, tell: Tell, giv
     setup = _prepared(contender, terms, until, damage.append)
     news: Queue[list[AnyEvent] | str | None] = Queue(_BATCHES)
     session = Session(setup, news.put, news.put)
-    timeline = Timeline()
+    timeline = Timeline(until_ending=True)
     try:
         session.start()
         while isinstance(batch := _next(news, given_up), list):

@@ -72,7 +72,7 @@ def export(source: Source, wish: Wish, reached: "Callable[[Nanoseconds], None]" 
     first = next(batches, None)
     if first is None:
         raise ExportError("there are no events to export")
-    timeline = Timeline() if {"svg", "markdown"} & wish.outputs.keys() else None
+    timeline = Timeline(until_ending=True) if {"svg", "markdown"} & wish.outputs.keys() else None
     with ExitStack() as open_files:
         outputs = [
             open_files.enter_context(_Output(name, path, wish.replace)) for name, path in wish.outputs.items()

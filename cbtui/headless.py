@@ -114,7 +114,7 @@ class _Headless:
         self._setup = setup
         self._news: Queue[News] = Queue(_BATCHES)
         self._session = ListeningSession(setup, self._news.put, self._news.put)
-        self._timeline = Timeline()
+        self._timeline = Timeline(until_ending=True)
         self._file = file
         self._recorder = recorder
         self._room = RoomWatch(self._timeline)

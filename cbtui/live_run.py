@@ -76,7 +76,7 @@ class LiveRun:
 
     def __init__(self, setup: RunSetup, open_session: OpenSession, deliver: Deliver, ended: Ended) -> None:
         self.setup = setup
-        self.timeline = Timeline()
+        self.timeline = Timeline(until_ending=setup.until is not None)
         self._room = RoomWatch(self.timeline)
         self._recording = LiveRecording(setup)
         self._tape = Tape()

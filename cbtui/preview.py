@@ -80,7 +80,7 @@ class PreviewRun:
             raise CannotPreviewError(reason)
         from sim.trace.timeline import Timeline  # numpy and all: on this thread, not on the screen's
 
-        timeline = Timeline()
+        timeline = Timeline(until_ending=True)
         session = self._open_session(preview_setup(self._lesson), self._news.put, self._news.put)
         if self._given_up:
             raise GivenUpError

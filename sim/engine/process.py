@@ -62,7 +62,17 @@ from sim.ros.contents import Contents
 from sim.ros.host import Host, install
 from sim.ros.probe import Probe
 from sim.ros.process import Process, current_process, share_machine
-from sim.trace.events import AnyEvent, InputGiven, Notice, Printed, RunEnded, RunStarted, Severity, TimePassed
+from sim.trace.events import (
+    AnyEvent,
+    InputGiven,
+    Notice,
+    Printed,
+    RunEnded,
+    RunEnding,
+    RunStarted,
+    Severity,
+    TimePassed,
+)
 from sim.trace.sealing import Seal
 
 _SIGNAL_AFTER = 0.5
@@ -231,6 +241,7 @@ class Engine:
         """Have the program end as by Ctrl-C, and the run with it; by force if that takes too long."""
         self._grace_begins.release()
         if self._conclude(reason, failed):
+            self._outbox.record(RunEnding(self._clock.now(), reason))
             self._control.let_go()
             if self._virtual is None:
                 self._interrupt()

@@ -103,6 +103,12 @@ class RunEnded(Event, frozen=True, tag="run_end"):
     failed: bool
 
 
+class RunEnding(Event, frozen=True, tag="run_ending"):
+    """The program was told to end, as by Ctrl-C: what follows is its own ending, and checks leave it out."""
+
+    reason: str
+
+
 class ProcessAppeared(Event, frozen=True, tag="process"):
     """One of several programs of the run was started; ``label`` tells it from the others."""
 
@@ -546,6 +552,7 @@ class ContentsLost(Event, frozen=True, tag="contents_lost"):
 AnyEvent: TypeAlias = (
     RunStarted
     | RunEnded
+    | RunEnding
     | ProcessAppeared
     | ProcessEnded
     | ThreadAppeared

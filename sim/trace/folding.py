@@ -93,6 +93,7 @@ class Folded:
         return {
             ev.RunStarted: self._run_started,
             ev.RunEnded: self._run_ended,
+            ev.RunEnding: _pass_over,
             ev.ProcessAppeared: self.cast.add_process,
             ev.ProcessEnded: self.cast.end_process,
             ev.ThreadAppeared: self.cast.add_thread,

@@ -45,6 +45,7 @@ class JsonLines:
         return {
             ev.RunStarted: _run_started,
             ev.RunEnded: _run_ended,
+            ev.RunEnding: _run_ending,
             ev.ProcessAppeared: self._process_appeared,
             ev.ProcessEnded: self._process_ended,
             ev.ThreadAppeared: self._thread_appeared,
@@ -279,6 +280,10 @@ def _run_started(event: ev.RunStarted) -> Line:
 
 def _run_ended(event: ev.RunEnded) -> Line:
     return {"reason": event.reason, "failed": event.failed}
+
+
+def _run_ending(event: ev.RunEnding) -> Line:
+    return {"reason": event.reason}
 
 
 def _executor_appeared(event: ev.ExecutorAppeared) -> Line:

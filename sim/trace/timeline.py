@@ -1,8 +1,9 @@
 """The timeline: everything that is known of a run, grown event by event and asked by time."""
 
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 
 from sim.trace import events as ev
+from sim.trace.ending import UntilEnding
 from sim.trace.events import (
     AnyEvent,
     EntityId,
@@ -49,14 +50,18 @@ class Timeline:
     thread, or the command line's main thread) extends and asks.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, *, until_ending: bool = False) -> None:
+        """``until_ending`` leaves out what a program does after it was told to end."""
         self._run = Folded()
+        self._counted: Callable[[Iterable[AnyEvent]], Iterable[AnyEvent]] = (
+            UntilEnding().cut if until_ending else iter
+        )
         self._moment: Moment | None = None
 
     def extend(self, events: Iterable[AnyEvent]) -> None:
         """Take in a batch; state after batches is the state after one batch of them all."""
         self._moment = None
-        self._run.extend(events)
+        self._run.extend(self._counted(events))
 
     @property
     def spill_failure(self) -> str:

@@ -94,6 +94,7 @@ def test_golden_lines() -> None:
         '{"t":2.5,"event":"input","message":"{\\"type\\":\\"call\\",\\"name\\":\\"/motor_power\\",'
         '\\"data\\":true}"}',
         '{"t":2.5,"event":"halt","message":"step"}',
+        '{"t":2.5,"event":"run_ending","reason":"its time was up"}',
         '{"t":2.5,"event":"keyboard","program":"teleop.py","reads":"raw"}',
         '{"t":2.5,"event":"typed","message":"w"}',
         '{"t":2.5,"event":"line","line":1,"message":"ros2 topic list"}',

@@ -61,6 +61,7 @@ class Narrator:
         return {
             ev.RunStarted: self._run_started,
             ev.RunEnded: self._run_ended,
+            ev.RunEnding: _leave_out,
             ev.ProcessAppeared: cast.add_process,
             ev.ProcessEnded: self._process_ended,
             ev.ThreadAppeared: self._stage.add_thread,
