@@ -9,7 +9,7 @@ from cbtui.changes import changes_in
 from cbtui.commands.output import complain, say, shown
 from cbtui.reading import Watched
 from cbtui.record import setup_of
-from sim.trace.events import AnyEvent, ContentsLost, EventsLost, RunEnded, RunStarted
+from sim.trace.events import AnyEvent, ContentsLost, EventsLost, RunEnded, RunEnding, RunStarted
 from sim.trace.recording import Recording, RecordingError, Topic, read
 
 _SECOND = 1_000_000_000
@@ -45,7 +45,13 @@ class _Tally:
     lost: int = 0
     contents_lost: int = 0
     started: RunStarted | None = None
+    told_to_end: RunEnding | None = None
     ended: RunEnded | None = None
+
+    @property
+    def length(self) -> int:
+        """Nanoseconds that the run lasted, less what the program did after it was told to end."""
+        return self.last if self.told_to_end is None else self.told_to_end.t
 
     def take(self, events: list[AnyEvent]) -> None:
         """Count a batch."""
@@ -55,6 +61,8 @@ class _Tally:
             match event:
                 case RunStarted():
                     self.started = event
+                case RunEnding():
+                    self.told_to_end = event
                 case RunEnded():
                     self.ended = event
                 case EventsLost(count=count):
@@ -86,7 +94,7 @@ def _lines(recording: Recording, tally: _Tally, topics: list[Topic], size: int) 
     if changed:
         yield _line("changed", changed)
     ending = "it was going on" if tally.ended is None else tally.ended.reason
-    yield _line("lasts", f"{tally.last / _SECOND:.3f} s; {ending}")
+    yield _line("lasts", f"{tally.length / _SECOND:.3f} s; {ending}")
     yield _line("events", f"{tally.events:,}; the file has {size:,} bytes")
     if tally.lost:
         yield _line("lost", f"{tally.lost:,} events came too fast to be kept")

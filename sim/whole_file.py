@@ -26,7 +26,7 @@ def whole_file(
         OSError: the file cannot be written.
     """
     target = Path(os.path.realpath(path)) if follow else path
-    if path.is_relative_to(_DEVICES) or (target.exists() and not target.is_file()):
+    if path.is_relative_to(_DEVICES) or (target.exists() and not (target.is_file() or target.is_dir())):
         with path.open("wb") as file:
             yield file
         return

@@ -10,6 +10,7 @@ from typing import Any
 
 from sim.clock.outside_work import OutsideWork
 from sim.clock.replacing import Replacements
+from sim.clock.units import wait_ns
 
 _SECOND = 1_000_000_000
 _signal = signal.signal
@@ -68,10 +69,10 @@ class Signals:
         if seconds < 0 or interval < 0:
             raise signal.ItimerError(22, "Invalid argument")
         self._setting += 1
-        self._interval = math.ceil(interval * _SECOND)
+        self._interval = wait_ns(interval)
         self._rings_at = 0
         if seconds:
-            self._set(self._clock.now() + math.ceil(seconds * _SECOND))
+            self._set(self._clock.now() + wait_ns(seconds))
         return before
 
     def getitimer(self, which: int) -> tuple[float, float]:

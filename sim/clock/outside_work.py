@@ -12,6 +12,7 @@ from contextlib import contextmanager
 from typing import Any, TypeVar
 
 from sim.clock.outside import start_outside
+from sim.clock.units import wait_ns
 from sim.clock.virtual import VirtualClock
 
 # Kept from before sim.clock.stdlib puts the virtual ones in their place.
@@ -63,7 +64,7 @@ class OutsideWork:
             self.glance()
             return found
         self.tell(f"{what} waits for something outside virtual time, which takes as long as it takes")
-        left: float = math.inf if timeout is None else math.ceil(timeout * 1e9)
+        left: float = math.inf if timeout is None else wait_ns(timeout)
         step = _FIRST_STEP
         with self._waiting():
             self.begin()

@@ -8,6 +8,7 @@ from pathlib import Path
 from types import FrameType
 
 from sim.clock import Clock
+from sim.engine.terminal import KEYBOARD_WAITS
 from sim.ros.own_code import is_own, outwards, place_of
 from sim.trace.events import AnyEvent, Notice, Severity
 
@@ -23,7 +24,6 @@ _PATIENCE = 6
 _MODEL = Path(__file__).parent.parent
 _ROS = f"{_MODEL / 'ros'}/"
 _CLOCK = f"{_MODEL / 'clock'}/"
-_TERMINAL = f"{_MODEL / 'engine' / 'terminal.py'}"
 _CALLS = f"{_MODEL / 'ros' / 'running.py'}"
 _FOR_TIME = {"sleep", "_wait_until", "_within"}
 """Functions of the clock in which a thread waits for time to pass."""
@@ -68,8 +68,8 @@ def _call_held_up(top: FrameType) -> FrameType | None:
             return inner
         if inner is None and file.startswith(_ROS):
             return None  # the model waits, which the trace tells of
-        if file == _TERMINAL:
-            return None  # it tells of that itself
+        if frame.f_code in KEYBOARD_WAITS:
+            return None  # the terminal tells of that itself
         if file.startswith(_CLOCK) and frame.f_code.co_name in _FOR_TIME:
             return None
         if is_own(frame):

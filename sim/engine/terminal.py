@@ -7,7 +7,6 @@ a program has asked for that. What waits for keys, waits on the run's clock.
 import errno
 import fcntl
 import io
-import math
 import os
 import re
 import select
@@ -21,6 +20,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from sim.clock import Clock, Signal, VirtualClock
+from sim.clock.units import wait_ns
 from sim.engine.commands import END_OF_INPUT, INTERRUPT
 from sim.engine.output import ProcessStream
 from sim.engine.setup import Keyboard
@@ -262,7 +262,7 @@ class Terminal:
             if not ours or (timeout is not None and timeout < 0):
                 return select(reads, writes, errors, timeout)
             others = [each for each in reads if each not in ours]
-            deadline = None if timeout is None else self._clock.now() + math.ceil(timeout * 1e9)
+            deadline = None if timeout is None else self._clock.now() + wait_ns(timeout)
 
             def look() -> _Ready:
                 return select(others, writes, errors, 0) if others or writes or errors else ([], [], [])
@@ -283,6 +283,10 @@ class Terminal:
             return os.fstat(file if isinstance(file, int) else file.fileno()).st_rdev == self._device
         except (AttributeError, OSError, ValueError):
             return False  # Python's own function says what is wrong with it
+
+
+KEYBOARD_WAITS = {Terminal.wait.__code__, Terminal.read.__code__}
+"""The functions in which a thread waits for the keyboard."""
 
 
 class _Keys(io.RawIOBase):

@@ -42,12 +42,14 @@ def _if_it_can(code: str) -> str:
 
 _PIPES = """
 import gc, itertools, os, struct
+gc.unfreeze()
 from multiprocessing.connection import Connection
 pipes = [each for each in gc.get_objects() if isinstance(each, Connection) and not each.closed]
 send = Connection.send_bytes
 """
 _OUTBOX = """
 import gc, sys
+gc.unfreeze()
 outbox = next(each for each in gc.get_objects() if type(each).__name__ == "Outbox")
 events = sys.modules["sim.trace.events"]
 """

@@ -28,8 +28,8 @@ class Run:
 
     @property
     def timeline(self) -> Timeline:
-        """The timeline of all events."""
-        timeline = Timeline()
+        """The timeline that checks look at."""
+        timeline = Timeline(until_ending=True)
         timeline.extend(self.events)
         return timeline
 
