@@ -161,7 +161,8 @@ class Engine:
         if self._virtual is not None:
             self._endless = endless = EndlessWaits(self._virtual, self._host, self._outbox.record)
             self._virtual.before_jump = self._look_at_waits
-            Watchdog(self._virtual, self._outbox.record, self._give_up, self._leave_if_kept).start()
+            give_up = partial(self._give_up_computing, self._virtual)
+            Watchdog(self._virtual, self._outbox.record, give_up, self._leave_if_kept).start()
             self._virtual.on_recess = Standstill(self._virtual, self._outbox.record, self._give_up).look
             self._virtual.on_lock_wait = endless.begins
             live_on(self._virtual, Repeatability(self._clock, self._outbox.record).lose)
@@ -268,11 +269,14 @@ class Engine:
         self._clock.call_at(self._clock.now() + _CONTEXTS_END_AFTER, self._programs.end_contexts)
 
     def _interrupt_on(self, clock: VirtualClock) -> None:
+        self._limit_ending(clock)
+        clock.interrupt(threading.main_thread().ident or 0)
+
+    def _limit_ending(self, clock: VirtualClock) -> None:
         clock.resume()
         clock.set_speed(None)
         clock.call_at(clock.now() + _CONTEXTS_END_AFTER, self._programs.end_contexts)
         clock.call_at(clock.now() + VIRTUAL_GRACE, partial(self._end_by_force, VIRTUAL_GRACE / 1e9))
-        clock.interrupt(threading.main_thread().ident or 0)
 
     def _end_in_time(self) -> None:
         """Wait on a thread outside the clock for the run to be over, and see that the process ends then."""
@@ -319,6 +323,18 @@ class Engine:
     def _leave_if_kept(self, seconds: float) -> None:
         if self._setup.speed is None:
             leave_if_kept(self._last_words, seconds)
+
+    def _give_up_computing(self, clock: VirtualClock, sentence: str) -> None:
+        """End a program of which a thread comes to no wait: the main thread by a signal, another by force."""
+        if self._setup.speed is not None or not self._conclude(sentence, failed=True):
+            return
+        self._outbox.record(RunEnding(clock.now(), sentence))
+        if not clock.current.is_main:
+            flush_files_soon()
+            self._leave()
+        clock.inject(partial(self._limit_ending, clock))
+        self._grace_begins.release()
+        _signal_main()
 
     def _end(self, outcome: Outcome) -> None:
         """End as CPython does once a script has, and leave."""

@@ -17,7 +17,7 @@ _LOOK = 0.5
 """Real seconds between two looks."""
 _PATIENCE = 6
 """Looks without a step after which the person is told."""
-_LAST_PATIENCE = 8
+_LAST_PATIENCE = 7
 """Looks without a step after which ``give_up`` is called."""
 _PATIENCE_WITH_IMPORTS = 30
 """The same for a thread that imports: large libraries take long, and nobody can mend that."""
