@@ -12,13 +12,13 @@ from typing import TypeAlias
 import msgspec
 
 from cbtui.commands.output import CannotSayError, complain, say
+from cbtui.disk_space import DiskSpaceWatch
 from cbtui.events_file import EventsFile
 from cbtui.interrupts import heard, whole
 from cbtui.listening import ListeningSession
 from cbtui.program_log import ProgramLog
 from cbtui.record import CannotRecordError, start_recording
 from cbtui.repeat import why_unrepeatable
-from cbtui.room import RoomWatch
 from cbtui.session import LONGEST_END
 from cbtui.standard_input import StandardInput
 from sim.diagnosis import diagnose, findings_text
@@ -117,7 +117,7 @@ class _Headless:
         self._timeline = Timeline(until_ending=True)
         self._file = file
         self._recorder = recorder
-        self._room = RoomWatch(self._timeline)
+        self._room = DiskSpaceWatch(self._timeline)
         self._input = StandardInput(self._session.send) if setup.keyboard is Keyboard.LIVE else None
         self._log = ProgramLog(echo=self._input is None)
         self._told: Signals | None = None

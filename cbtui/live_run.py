@@ -5,9 +5,9 @@ from enum import Enum, auto
 from itertools import count
 from typing import Protocol, TypeAlias
 
+from cbtui.disk_space import DiskSpaceWatch
 from cbtui.live_export import Material
 from cbtui.live_recording import Finish, LiveRecording
-from cbtui.room import RoomWatch
 from cbtui.silence import SILENT
 from sim.engine.commands import (
     CallService,
@@ -77,7 +77,7 @@ class LiveRun:
     def __init__(self, setup: RunSetup, open_session: OpenSession, deliver: Deliver, ended: Ended) -> None:
         self.setup = setup
         self.timeline = Timeline(until_ending=setup.until is not None)
-        self._room = RoomWatch(self.timeline)
+        self._room = DiskSpaceWatch(self.timeline)
         self._recording = LiveRecording(setup)
         self._tape = Tape()
         self.speed = setup.speed if self.virtual else setup.speed or 1.0

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from cbtui.changes import changes_in
 from cbtui.commands.output import complain, say, shown
-from cbtui.reading import Watched
+from cbtui.reading_progress import ReadingProgress
 from cbtui.record import setup_of
 from sim.trace.events import AnyEvent, ContentsLost, EventsLost, RunEnded, RunEnding, RunStarted
 from sim.trace.recording import Recording, RecordingError, Topic, read
@@ -73,7 +73,7 @@ class _Tally:
 
 def _tally_of(recording: Recording) -> _Tally:
     tally = _Tally()
-    for events in Watched(recording).batches():
+    for events in ReadingProgress(recording).batches():
         tally.take(events)
     return tally
 

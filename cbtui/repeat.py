@@ -7,7 +7,7 @@ from pathlib import Path
 
 import msgspec
 
-from cbtui.reading import Watched
+from cbtui.reading_progress import ReadingProgress
 from cbtui.record import setup_of
 from sim.engine.inputs import UnknownInputError, inputs_of, stops
 from sim.engine.setup import Keyboard, RunSetup
@@ -48,7 +48,7 @@ def repeated(
     try:
         recording = read(path)
         known = _Known()
-        inputs = inputs_of(map(known.seen, chain.from_iterable(Watched(recording).batches())))
+        inputs = inputs_of(map(known.seen, chain.from_iterable(ReadingProgress(recording).batches())))
     except (RecordingError, UnknownInputError) as error:
         raise CannotRepeatError(str(error)) from None
     except OSError as error:

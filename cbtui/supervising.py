@@ -27,7 +27,7 @@ from cbtui.confinement import Confinement
 from cbtui.forking import forking_context
 from cbtui.session import Session
 from cbtui.submission import Submission
-from cbtui.witness import Witness
+from cbtui.trace_audit import TraceAudit
 from lessons.judge import Judge
 from lessons.lesson import read_lesson
 
@@ -129,9 +129,9 @@ def _marks(assignment: Assignment) -> Marks:
     key = secrets.token_bytes(32)
     setup = msgspec.structs.replace(setup_to_judge(lesson, program), packages=(), seal=key)
     libraries = assignment.confinement.libraries
-    witness = Witness(key, submission, assignment.folder, libraries, virtual=setup.clock == "virtual")
-    run = observe(setup, program.name, assignment.limit, open_session=partial(Session, unpack=witness.unpack))
-    doubts = witness.doubts(whole=run.trouble is None)
+    audit = TraceAudit(key, submission, assignment.folder, libraries, virtual=setup.clock == "virtual")
+    run = observe(setup, program.name, assignment.limit, open_session=partial(Session, unpack=audit.unpack))
+    doubts = audit.doubts(whole=run.trouble is None)
     if doubts or run.trouble is not None:
         return Marks(trouble=run.trouble or "", doubts=doubts)
     judged = judge.verdicts(run.timeline)

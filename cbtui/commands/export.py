@@ -21,14 +21,14 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def export_command(options: argparse.Namespace) -> int:
     """Carry the command out; returns the exit code: 0 well, 2 it was wrong or a file is in the way."""
-    from cbtui.reading import Watched
+    from cbtui.reading_progress import ReadingProgress
     from sim.trace.recording import RecordingError, read
 
     source = Path(options.file)
     try:
         wish = _wish(options, source)
         recording = read(source)
-        export(Watched(recording), wish)
+        export(ReadingProgress(recording), wish)
     except (ExportError, RecordingError) as error:
         complain(str(error))
         return 2

@@ -5,8 +5,8 @@ from collections.abc import Iterator, Sequence
 from itertools import groupby
 from operator import attrgetter
 
+from sim.diagnosis.cures import cure_for_waits
 from sim.diagnosis.look import LongWait, Look
-from sim.diagnosis.room import room_for
 from sim.diagnosis.rule import Explanation, Finding, Place, Rule, Weight, entity_of, place_of
 from sim.diagnosis.words import often, who
 from sim.trace.events import EntityId, EntityKind
@@ -45,7 +45,7 @@ class DroppedMessages(Rule):
         subject = who(found.subject, timeline)
         waits = timeline.waits_of(entity.id, Window(found.at, found.at + 1))
         because = f" while it waited ({why_waiting(waits[-1], timeline)})" if waits else ""
-        room = room_for([entity.id], entity.id, Window(found.at, found.until + 1), timeline)
+        room = cure_for_waits([entity.id], entity.id, Window(found.at, found.until + 1), timeline)
         messages = "1 message" if found.count == 1 else f"{found.count} messages"
         holds = f": its queue holds {entity.depth}" if entity.depth else ""
         return Explanation(
@@ -103,7 +103,7 @@ class StaleData(Rule):
             f"{subject} decided on data at least {duration(found.size)} old: "
             f"newer messages waited for {sensor}{often(found.count)}",
             f"the node only knows what {sensor} has taken, and that did not run",
-            room_for([found.culprit], found.culprit, Window(found.at - found.size, found.at), timeline)
+            cure_for_waits([found.culprit], found.culprit, Window(found.at - found.size, found.at), timeline)
             or f"let {sensor} return sooner",
             place_of(found.subject, timeline),
         )

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
+from sim.diagnosis.cures import cure_for_waits
 from sim.diagnosis.look import Look
-from sim.diagnosis.room import room_for
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, entity_of, place_of
 from sim.diagnosis.words import group_of, listed, often, threads_for, who, with_threads
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
@@ -150,7 +150,9 @@ class LongCallbackAmongSensors(Rule):
             for each in timeline.group_members(entity.group)
             if each.kind is EntityKind.SUBSCRIPTION and each.id != entity.id
         ]
-        room = room_for([each.id for each in sensors], found.subject, Window(found.at, found.until), timeline)
+        room = cure_for_waits(
+            [each.id for each in sensors], found.subject, Window(found.at, found.until), timeline
+        )
         return Explanation(
             f"{subject} slept or worked for {duration(found.lasted)} in {group_of(found.subject, timeline)}, "
             f"which it shares with {listed(each.spoken_name for each in sensors)}{often(found.count)}",

@@ -3,8 +3,8 @@
 from collections import defaultdict
 from collections.abc import Iterator
 
+from sim.diagnosis.cures import cure_for_waits
 from sim.diagnosis.look import LongWait, Look
-from sim.diagnosis.room import room_for
 from sim.diagnosis.rule import Explanation, Finding, Rule, place_of
 from sim.diagnosis.words import group_of, often, threads_for, who
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
@@ -37,7 +37,7 @@ class GroupStarvation(Rule):
         return Explanation(
             f"{subject} waited {duration(found.lasted)}: {group} was held by {culprit}{often(found.count)}",
             f"{_admits(found.subject, timeline)}, however many threads are free",
-            room_for([found.subject], found.subject, Window(found.at, found.until), timeline),
+            cure_for_waits([found.subject], found.subject, Window(found.at, found.until), timeline),
             place_of(found.culprit, timeline) or place_of(found.subject, timeline),
         )
 
@@ -57,7 +57,7 @@ class NoFreeWorker(Rule):
         """Name who kept the threads."""
         subject, culprit = who(found.subject, timeline), who(found.culprit, timeline)
         beside_itself = len(timeline.spans_of(found.culprit, Window(found.at, found.at + 1)))
-        room = room_for([found.subject], found.subject, Window(found.at, found.until), timeline)
+        room = cure_for_waits([found.subject], found.subject, Window(found.at, found.until), timeline)
         cure = f"{room}, or keep {culprit} short"
         if threads_for([found.culprit, found.subject], found.until, timeline) == 1:
             busy = f"the only thread ran {culprit}"

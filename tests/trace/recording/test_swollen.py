@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from mcap.writer import CompressionType, Writer
 
-from cbtui.reading import Watched
+from cbtui.reading_progress import ReadingProgress
 from sim.trace.events import AnyEvent, Notice, RunStarted, Severity
 from sim.trace.recording import batch, chunk, read
 from sim.trace.recording.about import NAME, About, to_metadata
@@ -81,11 +81,11 @@ def test_reading_for_more_than_a_second_shows_how_far_it_is(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], terminal: bool
 ) -> None:
     monkeypatch.setattr("sys.stderr.isatty", lambda: terminal)
-    monkeypatch.setattr("cbtui.reading._SOON", -1.0)
-    monkeypatch.setattr("cbtui.reading._PERIOD", -1.0)
+    monkeypatch.setattr("cbtui.reading_progress._SOON", -1.0)
+    monkeypatch.setattr("cbtui.reading_progress._PERIOD", -1.0)
     path = tmp_path / "run.mcap"
     write(path, [[batch.pack_batch(NOTICES)]] * 4)
-    list(Watched(read(path)).batches())
+    list(ReadingProgress(read(path)).batches())
     shown = capsys.readouterr().err
     assert ("reading run.mcap: 4" in shown) is terminal
     assert shown == "" or shown.endswith("\r\x1b[K")

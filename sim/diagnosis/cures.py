@@ -13,7 +13,7 @@ _LOOKED_AT = 100
 """How many calls of a callback are looked at to tell whether it is a long one."""
 
 
-def room_for(waited: Sequence[EntityId], mover: EntityId, window: Window, timeline: Timeline) -> str:
+def cure_for_waits(waited: Sequence[EntityId], mover: EntityId, window: Window, timeline: Timeline) -> str:
     """What to do for callbacks that waited in a window, as half a sentence; "" where neither would help.
 
     A group of its own helps, for ``mover``, where another callback held the group; more threads where none

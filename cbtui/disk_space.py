@@ -15,7 +15,7 @@ _BETWEEN = 10_000_000
 """Bytes by which a recording grows between two looks at its disk."""
 
 
-class RoomWatch:
+class DiskSpaceWatch:
     """Looks after the temporary file of a timeline, and after one recording at a time."""
 
     def __init__(self, timeline: Timeline) -> None:

@@ -12,7 +12,7 @@ _SOON = 1.0
 _PERIOD = 0.2
 
 
-class Watched:
+class ReadingProgress:
     """The batches of a recording; going through them is told of on standard error, if that is a terminal."""
 
     def __init__(self, recording: Recording) -> None:

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
+from cbtui.disk_space import DiskSpaceWatch
 from cbtui.live_run import LiveRun
-from cbtui.room import RoomWatch
 from sim.engine.setup import RunSetup
 from sim.trace import folding, spill
 from sim.trace.timeline import Timeline
@@ -51,14 +51,14 @@ def test_a_full_temporary_folder_is_said_at_once_in_a_live_run_which_goes_on() -
 
 def test_a_large_recording_is_told_of_again_when_it_has_doubled(monkeypatch: pytest.MonkeyPatch) -> None:
     disk_with(monkeypatch, 50 * GB)
-    watch = RoomWatch(Timeline())
+    watch = DiskSpaceWatch(Timeline())
     said = [watch.news(RECORDING, size * GB // 2) for size in range(1, 10)]
     assert [number for number, sentence in enumerate(said, start=1) if sentence] == [2, 4, 8]
     assert said[1] == "The recording run.mcap has 1,000 MB by now, and goes on"
 
 
 def test_a_disk_is_said_to_fill_up_before_it_is_full(monkeypatch: pytest.MonkeyPatch) -> None:
-    watch = RoomWatch(Timeline())
+    watch = DiskSpaceWatch(Timeline())
     disk_with(monkeypatch, 50 * GB)
     assert watch.news(RECORDING, 0) is None
     disk_with(monkeypatch, GB // 10)
@@ -71,5 +71,5 @@ def test_a_disk_is_said_to_fill_up_before_it_is_full(monkeypatch: pytest.MonkeyP
 
 def test_a_small_disk_with_room_is_nothing_to_speak_of(monkeypatch: pytest.MonkeyPatch) -> None:
     disk_with(monkeypatch, GB // 10, GB // 5)
-    assert RoomWatch(Timeline()).news(RECORDING, 0) is None
-    assert RoomWatch(Timeline()).news(None, 0) is None
+    assert DiskSpaceWatch(Timeline()).news(RECORDING, 0) is None
+    assert DiskSpaceWatch(Timeline()).news(None, 0) is None

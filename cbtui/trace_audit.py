@@ -16,7 +16,7 @@ _OURS = ("cbtui", "lessons", "sim")
 _WORD = re.compile(r"\w+")
 
 
-class Witness:
+class TraceAudit:
     """Takes the batches of one run.
 
     ``folder`` is where its program's files are, ``libraries`` are folders of other code. ``virtual`` tells

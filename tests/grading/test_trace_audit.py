@@ -8,7 +8,7 @@ import msgspec
 import pytest
 
 from cbtui.submission import Submission
-from cbtui.witness import Witness
+from cbtui.trace_audit import TraceAudit
 from sim.trace import events as ev
 from sim.trace.events import AnyEvent, encode
 from sim.trace.plausibility import Plausibility
@@ -89,16 +89,16 @@ def test_batches_are_opened_in_their_order_and_with_their_key_only() -> None:
 
 @pytest.fixture
 def doubts(tmp_path: Path) -> Callable[..., tuple[str, ...]]:
-    """What a witness has to say of a run with some events; ``tamper`` changes the sealed batch."""
+    """What an audit has to say of a run with some events; ``tamper`` changes the sealed batch."""
 
     def look(
         *events: AnyEvent, tamper: Callable[[bytes], bytes] = bytes, source: bytes = SOURCE
     ) -> tuple[str, ...]:
         submission = Submission("node.py", {"node.py": source})
         submission.write_to(tmp_path)
-        witness = Witness(KEY, submission, tmp_path, [Path(os.__file__).parent], virtual=True)
-        witness.unpack(tamper(Seal(KEY).close(encode([*BEGIN, *events, END]))))
-        return witness.doubts(whole=True)
+        audit = TraceAudit(KEY, submission, tmp_path, [Path(os.__file__).parent], virtual=True)
+        audit.unpack(tamper(Seal(KEY).close(encode([*BEGIN, *events, END]))))
+        return audit.doubts(whole=True)
 
     return look
 
@@ -132,10 +132,10 @@ def test_a_callback_from_elsewhere_gives_a_run_away(
     submission = Submission("node.py", {"node.py": SOURCE})
     copy.mkdir()
     submission.write_to(copy)
-    witness = Witness(KEY, submission, copy, [], virtual=True)
+    audit = TraceAudit(KEY, submission, copy, [], virtual=True)
     moved = msgspec.structs.replace(event, file=event.file.format(tmp_path))
-    witness.unpack(Seal(KEY).close(encode([*BEGIN, moved, END])))
-    (found,) = witness.doubts(whole=True)
+    audit.unpack(Seal(KEY).close(encode([*BEGIN, moved, END])))
+    (found,) = audit.doubts(whole=True)
     assert found.startswith(doubt.format(tmp_path))
 
 
