@@ -26,6 +26,7 @@ from cbtui.widgets.lanes.selection import Selection
 from cbtui.widgets.log.lines import LogLines
 from sim.trace.events import EntityId, EntityKind
 from tests.support.console import WIDE, RecordedConsole, settle
+from tests.support.exercises import until
 from tests.support.runs import split_groups_run
 
 _SPLIT_GROUPS = "3"
@@ -117,8 +118,8 @@ async def test_keys_right_behind_the_one_that_opens_a_lesson_are_the_lessons() -
         await pilot.press("q")
         for key in (_SPLIT_GROUPS, _LOG):
             app.post_message(Key(key, None))
-        await pilot.pause()
-        assert app.screen.query_one(LogLines).has_focus
+        await until(pilot, lambda: bool(app.screen.query(LogLines)))
+        await until(pilot, lambda: app.screen.query_one(LogLines).has_focus)
 
 
 async def search_themes(app: RecordedConsole, pilot: Pilot[None]) -> None:

@@ -115,7 +115,7 @@ def whole(timeline: Timeline) -> tuple[object, ...]:
 def test_a_replayed_lesson_is_what_it_was_at_a_thousand_times(
     lesson: Run, recorded: Path, replayed: Callable[[Path], Timeline]
 ) -> None:
-    live, again = lesson.timeline, replayed(recorded)
+    live, again = timeline_of([lesson.events]), replayed(recorded)
     chance = random.Random(len(lesson.events))
     for _ in range(TIMES):
         at = chance.randint(-1, live.end + 1)
@@ -128,11 +128,11 @@ def test_a_replayed_lesson_is_what_it_was_at_a_thousand_times(
 def test_a_replayed_lesson_is_what_it_was_as_a_whole(
     lesson: Run, recorded: Path, replayed: Callable[[Path], Timeline]
 ) -> None:
-    assert whole(replayed(recorded)) == whole(lesson.timeline)
+    assert whole(replayed(recorded)) == whole(timeline_of([lesson.events]))
 
 
 def test_the_lesson_has_of_everything_that_could_be_lost(lesson: Run) -> None:
-    live = lesson.timeline
+    live = timeline_of([lesson.events])
     always = Window(0, live.end + 1)
     middle = live.end * 3 // 4
     assert live.dropped(live.end) > 0
