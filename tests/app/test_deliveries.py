@@ -33,6 +33,7 @@ async def test_a_long_batch_comes_slowly_while_a_key_is_answered_and_whole(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr("cbtui.screens.lesson.running._REST", 0.1)
+    monkeypatch.setattr("cbtui.screens.lesson.running._ANSWERING", 60.0)
     app = RecordedConsole("shared-group", shared_group_run().events, 5.0)
     async with app.run_test(size=WIDE) as pilot:
         await settle(pilot)

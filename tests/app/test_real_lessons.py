@@ -82,6 +82,7 @@ async def in_every_look(lesson: str, monkeypatch: pytest.MonkeyPatch) -> dict[st
     return {f"{lesson}/{name}.ansi": picture for name, picture in pictures.items()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("lesson", MOMENTS)
 async def test_a_lesson_looks_as_it_did(
     lesson: str, monkeypatch: pytest.MonkeyPatch, pytestconfig: pytest.Config

@@ -14,6 +14,8 @@ from tests.faults.support import ANSWERED, FIRST, console_on, node_with, provoke
 from tests.support.engine_runs import SECOND
 from tests.trace.recording.files import timeline_of
 
+pytestmark = pytest.mark.slow
+
 CROWD = 2500
 """Entities of which each would cost a little of every frame."""
 HUNDRED_MB = "for _ in range(2000): print('x' * 50_000)"

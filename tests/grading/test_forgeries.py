@@ -1,7 +1,11 @@
 """Whatever a submission does, it earns nothing by it, and the others keep their marks."""
 
+import pytest
+
 from tests.grading.classroom import NEIGHBOURS, Classroom, Graded
 from tests.grading.forgeries import ENDING, ON_THE_TRACE, REACHING_OUT, SOLUTION, STARTER
+
+pytestmark = pytest.mark.slow
 
 _REACHING_OUT = ("overwrites a neighbour", "writes to the table", "kills its parent", "executes the solution")
 _ON_THE_TRACE = ("writes to the pipe", "changes the code of a function")

@@ -14,7 +14,10 @@ from cbtui import cli
 from tests.support.processes import alive
 from tests.web.serving import Serving, serving
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc")
+pytestmark = [
+    pytest.mark.slow,
+    pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc"),
+]
 
 Socket = aiohttp.ClientWebSocketResponse
 _NOT_OURS = "that is not what the page sends"

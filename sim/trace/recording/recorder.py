@@ -118,6 +118,7 @@ class Recorder:
         self._flusher.join()
         self._casts_left = 1
         self.flush()
+        self._guarded(lambda: self._sources.attach(self._attach))
         self._guarded(self._tell_cast)
         self._guarded(self._tell_end)
         self._guarded(self._writer.finish)
@@ -166,10 +167,10 @@ class Recorder:
             self._add(EVENTS_CHANNEL, self._epoch + events[0].t, packed, self._batches)
 
     def _add(self, channel: int, time: int, data: bytes, number: int) -> None:
+        if self._waiting + len(data) > self._chunk_size:
+            self._flush()
         self._writer.add_message(channel, time, data, time, number)
         self._waiting += len(data)
-        if self._waiting > self._chunk_size:
-            self._flush()
 
     @property
     def _chunk_size(self) -> int:
@@ -177,11 +178,12 @@ class Recorder:
         return min(_CHUNK, max(_FIRST_CHUNK, int(_AT_STAKE * self._chunked)))
 
     def _flush(self) -> None:
-        """Write what waits as a chunk; the programs' files come after the first events."""
+        """Write what waits as a chunk; the programs' files, which may be large, follow the first events."""
         self._writer.flush()
         self._chunked += self._waiting
         self._waiting = 0
-        self._sources.attach(self._attach)
+        if self._chunked:
+            self._sources.attach(self._attach)
 
     # What is looked at; whether it goes among the events too.
 

@@ -102,6 +102,18 @@ def test_a_recording_gives_back_its_events_at_whichever_byte_its_disk_was_full()
     assert seen[size // 2] > 0
 
 
+def test_a_long_program_takes_no_room_from_the_first_events_however_late_they_come(tmp_path: Path) -> None:
+    program = tmp_path / "node.py"
+    program.write_text("# a long program\n" * 1000)
+    disk = Disk(2000)
+    recording = Recorder(disk.path, About(programs=(str(program),)))
+    recording.flush()
+    recording.take(BATCHES[0])
+    recording.close()
+    assert recording.failure == FULL
+    assert events_on(disk) == without_contents(BATCHES[0])
+
+
 def test_a_recording_that_breaks_off_at_any_byte_gives_back_what_came_before() -> None:
     whole = recorded(MANY, BATCHES)[0].getvalue()
     seen = []
