@@ -79,6 +79,7 @@ class RunningScreen(SizedScreen[None]):
         self._left = False
         self._offered: tuple[object, ...] = ()
         self._backlog = threading.BoundedSemaphore(_BACKLOG)
+        self._cbtui: CbtuiApp | None = None
         self._begin(self.FIRST_SPEED)
 
     class Delivered(Message):
@@ -159,7 +160,8 @@ class RunningScreen(SizedScreen[None]):
     def _deliver_part(self, run: int, events: list[AnyEvent], *, rest: bool) -> None:
         message = self.Delivered(run, events)
         if threading.current_thread() is not threading.main_thread():
-            if rest and time.monotonic() < cast("CbtuiApp", self.app).acted_at + _ANSWERING:
+            console = self._cbtui  # a screen that is gone has no app
+            if rest and console is not None and time.monotonic() < console.acted_at + _ANSWERING:
                 time.sleep(_REST)
             message.counts = self._backlog.acquire(timeout=_PATIENCE)
         self._hand_over(message)
@@ -184,6 +186,7 @@ class RunningScreen(SizedScreen[None]):
 
     def _start(self) -> None:
         """Start the first run, when the screen is there."""
+        self._cbtui = cast("CbtuiApp", self.app)
         self._tell(self._run.start())
 
     def _begin(self, speed: float | None) -> None:
