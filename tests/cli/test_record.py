@@ -8,8 +8,8 @@ import pytest
 from rosbags.highlevel import AnyReader
 
 from cbtui import cli
-from cbtui.record import setup_of
-from sim.engine.setup import TimedCall
+from cbtui.record import CannotRecordError, setup_of, start_recording
+from sim.engine.setup import RunSetup, TimedCall
 from sim.trace.recording import About, read
 from tests.trace.recording.files import write
 from tests.trace.samples import FULL
@@ -105,3 +105,11 @@ def test_what_cannot_be_recorded_is_refused_before_the_run(
     assert sentence.format(there=there) in done.stderr
     assert len(done.stderr.splitlines()) == 1
     assert there.read_text() == "precious"
+
+
+def test_a_recording_that_cannot_be_begun_removes_nothing_that_was_there(tmp_path: Path) -> None:
+    device = tmp_path / "full.mcap"
+    device.symlink_to("/dev/full")
+    with pytest.raises(CannotRecordError, match="No space left on device"):
+        start_recording(device, RunSetup(title="a run", programs=()), replace=True)
+    assert device.is_symlink()
