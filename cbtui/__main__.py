@@ -8,7 +8,7 @@ _INTERRUPTED = 130
 def command() -> int:
     """Carry out the command line of this process; returns the exit code."""
     try:
-        from cbtui import interrupts
+        from cbtui.terminal import interrupts
 
         interrupts.install()
         from cbtui.cli import main

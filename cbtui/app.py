@@ -12,16 +12,16 @@ from textual.screen import Screen
 from textual.theme import ThemeProvider
 from textual.types import CSSPathType
 
-from cbtui.actions import Scope, bindings_of
-from cbtui.ascii_filter import AsciiFilter
-from cbtui.colour_themes import STANDARD, THEMES
-from cbtui.ending import EndingApp
-from cbtui.harmless_filter import HarmlessFilter
-from cbtui.keymap import Keymap
-from cbtui.outcome import observe_engine
-from cbtui.recent import Kind, Opened, Recents
+from cbtui.keys.actions import Scope, bindings_of
+from cbtui.keys.keymap import Keymap
+from cbtui.learning.outcome import observe_engine
+from cbtui.looks.colour_themes import STANDARD, THEMES
+from cbtui.looks.theme import Charset
+from cbtui.runs.setup.recent import Kind, Opened, Recents
 from cbtui.screens.menu import MenuScreen
-from cbtui.theme import Charset
+from cbtui.terminal.ending import EndingApp
+from cbtui.text.ascii_filter import AsciiFilter
+from cbtui.text.harmless_filter import HarmlessFilter
 from lessons.catalogue import find, lessons
 from lessons.lesson import Lesson
 from lessons.progress import Progress
@@ -30,29 +30,30 @@ if TYPE_CHECKING:
     from textual.command import Provider
     from textual.driver import Driver
 
-    from cbtui.changes import Changes
-    from cbtui.contenders import Contender, Terms
-    from cbtui.live_run import Deliver, Ended, OpenSession, Session
-    from cbtui.outcome import Observe
-    from cbtui.subject import Subject
+    from cbtui.engines.session import Deliver, Ended
+    from cbtui.learning.outcome import Observe
+    from cbtui.runs.compared_runs import Contender, Terms
+    from cbtui.runs.live.live_run import OpenSession, Session
+    from cbtui.runs.setup.changes import Changes
+    from cbtui.runs.setup.subject import Subject
     from sim.engine.setup import RunSetup
-    from sim.trace.recording import Recording
+    from sim.recording import Recording
 
 
 def _actions_provider() -> "type[Provider]":
-    from cbtui.palette import ActionsProvider  # imported when the palette opens
+    from cbtui.keys.command_palette import ActionsProvider  # imported when the palette opens
 
     return ActionsProvider
 
 
 def _unheard_session(setup: "RunSetup", deliver: "Deliver", ended: "Ended") -> "Session":
-    from cbtui.session import Session  # imported when the menu draws a lesson
+    from cbtui.engines.session import Session  # imported when the menu draws a lesson
 
     return Session(setup, deliver, ended)
 
 
 def _engine_session(setup: "RunSetup", deliver: "Deliver", ended: "Ended") -> "Session":
-    from cbtui.listening import ListeningSession  # imported when a lesson opens
+    from cbtui.engines.listening import ListeningSession  # imported when a lesson opens
 
     return ListeningSession(setup, deliver, ended)
 
@@ -119,7 +120,7 @@ class CbtuiApp(EndingApp):
 
     def search_themes(self) -> None:
         """Open a palette of the themes."""
-        from cbtui.palette import Palette
+        from cbtui.keys.command_palette import Palette
 
         self.push_screen(Palette(providers=[ThemeProvider], placeholder="Search for themes…"))
 
@@ -127,14 +128,14 @@ class CbtuiApp(EndingApp):
         """Return what keys are read from and all is drawn to."""
         driver = super().get_driver_class()
         if driver.__name__ == "LinuxDriver":
-            from cbtui.terminal_driver import TerminalDriver
+            from cbtui.terminal.driver import TerminalDriver
 
             return TerminalDriver
         return driver
 
     def action_command_palette(self) -> None:
         """Open the command palette, unless it is open."""
-        from cbtui.palette import Palette
+        from cbtui.keys.command_palette import Palette
 
         if not isinstance(self.screen, Palette):
             self.push_screen(Palette(id="--command-palette"))
@@ -168,14 +169,14 @@ class CbtuiApp(EndingApp):
 
     def open_lesson(self, lesson: Lesson, changes: "Changes | None" = None) -> None:
         """Run a lesson on screen, in place of another that may be open, as it is or with changes."""
-        from cbtui.subject import of_lesson
+        from cbtui.runs.setup.subject import of_lesson
 
         self._show(of_lesson(lesson, lessons()), changes)
         self._note(Kind.LESSON, lesson.id)
 
     def open_exercise(self, lesson: Lesson) -> None:
         """Run and check the file for a lesson's exercise in the current folder; put it there if need be."""
-        from cbtui.exercise_files import CannotPlaceError, own_file
+        from cbtui.learning.exercise_files import CannotPlaceError, own_file
         from cbtui.screens.exercise import ExerciseScreen
         from lessons.lesson import BadLesson
 
@@ -197,7 +198,7 @@ class CbtuiApp(EndingApp):
         Raises:
             CannotOpenError: it is not there, or nothing that can be opened.
         """
-        from cbtui.own_files import check, read_recording
+        from cbtui.runs.setup.own_files import check, read_recording
 
         path = Path(entry.what)
         check(path)
@@ -207,7 +208,7 @@ class CbtuiApp(EndingApp):
             self._run_file(path, entry.arguments, entry.clock, None)
 
     def _run_file(self, path: Path, arguments: Sequence[str], clock: str, changes: "Changes | None") -> None:
-        from cbtui.subject import of_file
+        from cbtui.runs.setup.subject import of_file
 
         self._show(of_file(path, arguments, clock), changes)
         self._note(Kind.PROGRAM, str(path.absolute()), tuple(arguments), clock)

@@ -10,9 +10,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NoReturn
 
-from cbtui import streams
 from cbtui.commands import (
-    appearance,
     check,
     compare,
     console,
@@ -25,18 +23,19 @@ from cbtui.commands import (
     keys,
     lint_lesson,
     listing,
-    more_lessons,
     new_lesson,
     reset,
     run,
     serve,
     start,
 )
-from cbtui.commands.output import CannotSayError, say
-from cbtui.commands.parsing import Parser
+from cbtui.commands.options import appearance, more_lessons
+from cbtui.commands.options.parsing import Parser
+from cbtui.commands.options.targets import refuse
 from cbtui.commands.ros2 import ros2
-from cbtui.commands.targets import is_text, refuse
-from cbtui.warden import BadCeilingError, ceiling
+from cbtui.engines.resource_guard import BadCeilingError, ceiling
+from cbtui.terminal import streams
+from cbtui.text.output import CannotSayError, is_text, say
 
 _READ_ENOUGH = 141
 """The exit code where the pipe behind is closed: a shell's for a program that SIGPIPE ended."""

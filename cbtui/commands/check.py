@@ -4,10 +4,10 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cbtui.commands import more_lessons, values
-from cbtui.commands.output import complain, say
-from cbtui.commands.seeds import add_seed, check_seed
-from cbtui.commands.targets import file_of, lesson_of, refuse
+from cbtui.commands.options import more_lessons, values
+from cbtui.commands.options.seeds import add_seed, check_seed
+from cbtui.commands.options.targets import file_of, lesson_of, refuse
+from cbtui.text.output import complain, say
 
 if TYPE_CHECKING:
     from lessons.lesson import Lesson
@@ -40,8 +40,8 @@ def check(options: argparse.Namespace) -> int:
     lesson = exercise_of(options.lesson)
     check_seed(options.seed, lesson.setup.clock)
     file = _file(lesson, options.file)
-    from cbtui.check_text import checked_text
-    from cbtui.checking import check as run_and_judge
+    from cbtui.runs.judged.check_text import checked_text
+    from cbtui.runs.judged.checking import check as run_and_judge
     from lessons.judge import Judge
 
     checked = run_and_judge(lesson, Judge(lesson), file, options.limit, options.seed)

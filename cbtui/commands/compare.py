@@ -5,14 +5,13 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cbtui.commands import appearance, inputs, values
+from cbtui.commands.options import appearance, inputs, values
+from cbtui.commands.options.targets import file_of, is_file_name, lesson_of, refuse
 from cbtui.commands.run import DEFAULT_SECONDS
-from cbtui.commands.targets import file_of, is_file_name, lesson_of, refuse
 
 if TYPE_CHECKING:
-    from cbtui.contenders import Contender, Terms
+    from cbtui.runs.compared_runs import Contender, Terms
 
-_SECOND = 1_000_000_000
 _RECORDING = ".mcap"
 
 
@@ -64,7 +63,7 @@ def compare(options: argparse.Namespace) -> int:
     )
     terms = _terms(options)
     if options.text or not (sys.stdin.isatty() and sys.stdout.isatty()):
-        from cbtui.contenders import compare_runs
+        from cbtui.runs.compared_runs import compare_runs
 
         return compare_runs(first, second, terms)
     look = appearance.appearance(options)
@@ -99,8 +98,8 @@ def _is_recording(name: str) -> bool:
 def _contender(name: str, threads: int | None, arguments: list[str]) -> "Contender":
     import msgspec
 
-    from cbtui.contenders import Contender
-    from cbtui.lesson_setup import setup_for, setup_for_files
+    from cbtui.runs.compared_runs import Contender
+    from cbtui.runs.setup.lesson_setup import setup_for, setup_for_files
 
     if _is_recording(name):
         return Contender(name, _readable(Path(name)))
@@ -113,7 +112,7 @@ def _contender(name: str, threads: int | None, arguments: list[str]) -> "Contend
 
 def _readable(path: Path) -> Path:
     """A recording's path; one that cannot be opened ends the program with one line and 2."""
-    from sim.trace.recording import RecordingError, read
+    from sim.recording import RecordingError, read
 
     try:
         read(path)
@@ -123,20 +122,17 @@ def _readable(path: Path) -> Path:
 
 
 def _terms(options: argparse.Namespace) -> "Terms":
-    from cbtui.contenders import Terms
+    from cbtui.runs.compared_runs import Terms
+    from sim.units import nearest_ns
 
-    end = None if options.end is None else _nanoseconds(options.end)
-    start = _nanoseconds(options.start)
+    end = None if options.end is None else nearest_ns(options.end)
+    start = nearest_ns(options.start)
     if end is not None and end <= start:
         refuse(f"nothing is left to compare from {options.start:g} s to {options.end:g} s")
     return Terms(
         start=start,
         end=end,
-        calls=[_nanoseconds(at) for at in options.calls],
-        lines=[(_nanoseconds(at), text) for at, text in options.lines],
+        calls=[nearest_ns(at) for at in options.calls],
+        lines=[(nearest_ns(at), text) for at, text in options.lines],
         inputs=None if options.inputs is None else _readable(Path(options.inputs)),
     )
-
-
-def _nanoseconds(seconds: float) -> int:
-    return round(seconds * _SECOND)

@@ -3,11 +3,11 @@
 import argparse
 from pathlib import Path
 
-from cbtui.commands import changes
-from cbtui.commands.appearance import add_options, appearance, console_of
 from cbtui.commands.check import exercise_of
-from cbtui.commands.seeds import add_seed, check_seed
-from cbtui.commands.targets import file_of, is_file_name, lesson_of, need_terminal, refuse
+from cbtui.commands.options import changes
+from cbtui.commands.options.appearance import add_options, appearance, console_of
+from cbtui.commands.options.seeds import add_seed, check_seed
+from cbtui.commands.options.targets import file_of, is_file_name, lesson_of, need_terminal, refuse
 
 
 def add_open_options(parser: argparse.ArgumentParser) -> None:
@@ -76,7 +76,7 @@ def _read_lessons() -> None:
 
 def replay(options: argparse.Namespace) -> int:
     """Open the console on a recording; returns the exit code."""
-    from sim.trace.recording import RecordingError, read
+    from sim.recording import RecordingError, read
 
     try:
         recording = read(Path(options.recording))

@@ -5,11 +5,11 @@ import os
 import sys
 from typing import TYPE_CHECKING
 
-from cbtui.commands import appearance
-from cbtui.commands.output import say
+from cbtui.commands.options import appearance
+from cbtui.text.output import say
 
 if TYPE_CHECKING:
-    from cbtui.health.verdict import Verdict
+    from cbtui.doctor.verdict import Verdict
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -19,9 +19,9 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def examine(options: argparse.Namespace) -> int:
     """Print a line for each thing looked at; returns the exit code: 0 nothing is wrong, 1 something is."""
-    from cbtui.health import examinations
-    from cbtui.health.verdict import Sign
-    from cbtui.terminal import charset_of
+    from cbtui.doctor import examinations
+    from cbtui.doctor.verdict import Sign
+    from cbtui.terminal.capabilities import charset_of
 
     charset = options.charset
     if charset in {None, "auto"}:

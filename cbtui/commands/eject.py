@@ -5,10 +5,10 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cbtui.commands.output import CannotSayError, complain, say
+from cbtui.text.output import CannotSayError, complain, say
 
 if TYPE_CHECKING:
-    from cbtui.ament_package import AmentPackage
+    from cbtui.eject.ament_package import AmentPackage
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -31,7 +31,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def eject(options: argparse.Namespace) -> int:
     """Carry the command out; returns the exit code: 0 well, 2 it was wrong or a file is in the way."""
-    from cbtui.eject import EjectError
+    from cbtui.eject.eject import EjectError
     from lessons.lesson import BadLesson
 
     folder: Path = options.folder
@@ -58,7 +58,7 @@ def eject(options: argparse.Namespace) -> int:
 
 def _packages(folder: Path, names: Sequence[str]) -> "list[AmentPackage]":
     """The packages of the units of these names, all of them for none, if the folder can hold any."""
-    from cbtui.eject import EjectError, chosen, package_of, units_of
+    from cbtui.eject.eject import EjectError, chosen, package_of, units_of
     from lessons.catalogue import lessons
 
     if folder.exists() and not folder.is_dir():
@@ -71,7 +71,7 @@ def _files(folder: Path, package: "AmentPackage") -> dict[Path, bytes]:
 
 
 def _refuse_changed(packages: Iterable[Mapping[Path, bytes]]) -> None:
-    from cbtui.eject import EjectError, changed_files
+    from cbtui.eject.eject import EjectError, changed_files
 
     changed = [path for files in packages for path in changed_files(files)]
     match changed:
@@ -89,7 +89,7 @@ def _refuse_changed(packages: Iterable[Mapping[Path, bytes]]) -> None:
 
 def _write(package: "AmentPackage", folder: Path, files: Mapping[Path, bytes]) -> None:
     """Write a package, and tell what that came to."""
-    from cbtui.eject import write_files
+    from cbtui.eject.eject import write_files
 
     written = write_files(files)
     kept = f", {len(files) - written} were there" if written < len(files) else ""

@@ -7,18 +7,17 @@ from contextlib import closing
 from operator import itemgetter
 from typing import TYPE_CHECKING
 
-from cbtui.commands import changes, inputs, more_lessons, values
 from cbtui.commands.check import add_limit, exercise_of
-from cbtui.commands.output import complain, say
-from cbtui.commands.targets import file_of, is_file_name, lesson_of, refuse
-from cbtui.interrupts import INTERRUPTED
+from cbtui.commands.options import changes, inputs, more_lessons, values
+from cbtui.commands.options.targets import file_of, is_file_name, lesson_of, refuse
+from cbtui.terminal.interrupts import INTERRUPTED
+from cbtui.text.output import complain, say
 
 if TYPE_CHECKING:
-    from cbtui.exploring import Exploration, Result
+    from cbtui.runs.judged.exploring import Exploration, Result
     from lessons.lesson import Lesson
 
 DEFAULT_SECONDS = 10.0
-_SECOND = 1_000_000_000
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -51,7 +50,7 @@ def explore(options: argparse.Namespace) -> int:
     """
     _check(options)
     exploration, replays = _of_file(options) if is_file_name(options.target) else _of_lesson(options)
-    from cbtui.exploration_text import exploration_text
+    from cbtui.runs.judged.exploration_text import exploration_text
 
     seeds = range(options.seed, options.seed + options.schedules)
     found: dict[int, Result] = {}
@@ -105,9 +104,10 @@ def _of_file(options: argparse.Namespace) -> "tuple[Exploration, list[str]]":
 
     import msgspec
 
-    from cbtui.exploring import Exploration
-    from cbtui.lesson_setup import setup_for_files
+    from cbtui.runs.judged.exploring import Exploration
+    from cbtui.runs.setup.lesson_setup import setup_for_files
     from sim.engine.setup import TimedCall, TimedLine
+    from sim.units import nearest_ns
 
     seconds = options.seconds or DEFAULT_SECONDS
     changed = changes.changes_of(options)
@@ -115,9 +115,9 @@ def _of_file(options: argparse.Namespace) -> "tuple[Exploration, list[str]]":
     setup = msgspec.structs.replace(
         changed.applied(setup_for_files([path], options.arguments, speed=None)),
         clock="virtual",
-        until=round(seconds * _SECOND),
-        calls=tuple(TimedCall(round(at * _SECOND), data=True) for at in sorted(options.calls)),
-        lines=tuple(TimedLine(round(at * _SECOND), text) for at, text in lines),
+        until=nearest_ns(seconds),
+        calls=tuple(TimedCall(nearest_ns(at), data=True) for at in sorted(options.calls)),
+        lines=tuple(TimedLine(nearest_ns(at), text) for at, text in lines),
     )
     given = inputs.words(options.calls, lines)
     different = changes.words(changed)
@@ -142,8 +142,8 @@ def _of_lesson(options: argparse.Namespace) -> "tuple[Exploration, list[str]]":
 
 def _judged(lesson: "Lesson", options: argparse.Namespace, file: str | None) -> "Exploration":
     """A lesson's node, or a file in its place, judged by the lesson's checks if it has any."""
-    from cbtui.checking import setup_to_judge
-    from cbtui.exploring import Exploration
+    from cbtui.runs.judged.exploring import Exploration
+    from cbtui.runs.setup.lesson_setup import setup_to_judge
     from lessons.judge import Judge
 
     judge = None if lesson.exercise is None else Judge(lesson)

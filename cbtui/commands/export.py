@@ -3,10 +3,10 @@
 import argparse
 from pathlib import Path
 
-from cbtui.commands.output import complain
-from cbtui.commands.targets import same_file
-from cbtui.commands.values import moment, whole
-from cbtui.exporting import FORMATS, WIDTH, ExportError, Wish, export
+from cbtui.commands.options.targets import same_file
+from cbtui.commands.options.values import moment, whole
+from cbtui.runs.recorded.exporting import FORMATS, WIDTH, ExportError, Wish, export
+from cbtui.text.output import complain
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -21,8 +21,8 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def export_command(options: argparse.Namespace) -> int:
     """Carry the command out; returns the exit code: 0 well, 2 it was wrong or a file is in the way."""
-    from cbtui.reading_progress import ReadingProgress
-    from sim.trace.recording import RecordingError, read
+    from cbtui.runs.recorded.reading_progress import ReadingProgress
+    from sim.recording import RecordingError, read
 
     source = Path(options.file)
     try:
@@ -43,7 +43,7 @@ def _wish(options: argparse.Namespace, source: Path) -> Wish:
     Raises:
         ExportError: they ask for nothing, or contradict each other.
     """
-    from sim.trace.export.svg import NARROWEST, WIDEST
+    from sim.export.svg import NARROWEST, WIDEST
 
     given = {name: getattr(options, name) for name in FORMATS}
     outputs = {name: Path(path) for name, path in given.items() if path is not None}

@@ -5,14 +5,14 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cbtui.commands import more_lessons
 from cbtui.commands.check import add_limit, exercise_of
-from cbtui.commands.output import complain, hand_over, say
-from cbtui.commands.targets import folder_of, refuse, same_file
+from cbtui.commands.options import more_lessons
+from cbtui.commands.options.targets import folder_of, refuse, same_file
+from cbtui.text.output import complain, hand_over, say
 
 if TYPE_CHECKING:
-    from cbtui.grading import HandedIn, Paper
-    from cbtui.mark_sheet import MarkSheet
+    from cbtui.grading.grading import HandedIn, Paper
+    from cbtui.grading.mark_sheet import MarkSheet
 
 _STANDARD_OUTPUT = "-"
 SUSPICIOUS = 3
@@ -59,9 +59,9 @@ def grade(options: argparse.Namespace) -> int:
         _check_table(path, papers)
     elif options.resume:
         refuse("--resume goes on with a table; name it with --csv OUT.csv")
-    from cbtui.confinement import Confinement
-    from cbtui.grading import HandedIn, PackagesChangedError, line
-    from cbtui.mark_sheet import MarkSheet, SheetFile, SheetStream
+    from cbtui.grading.confinement import Confinement
+    from cbtui.grading.grading import HandedIn, PackagesChangedError, line
+    from cbtui.grading.mark_sheet import MarkSheet, SheetFile, SheetStream
 
     handed_in = HandedIn(papers)
     sheet = MarkSheet(handed_in.most_checks)
@@ -101,7 +101,7 @@ def _nothing(_text: str) -> None:
 
 
 def _take_earlier(sheet: "MarkSheet", path: Path, handed_in: "HandedIn") -> None:
-    from cbtui.mark_sheet import BadSheetError
+    from cbtui.grading.mark_sheet import BadSheetError
 
     try:
         text = path.read_text(encoding="utf-8", errors="replace") if path.exists() else ""
@@ -139,7 +139,7 @@ def _check_table(path: Path, papers: "list[Paper]") -> None:
 
 
 def _papers(options: argparse.Namespace) -> "list[Paper]":
-    from cbtui.grading import papers_in
+    from cbtui.grading.grading import papers_in
     from lessons.catalogue import lessons
 
     only = None if options.lesson is None else exercise_of(options.lesson)

@@ -11,6 +11,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def info(options: argparse.Namespace) -> int:
     """Tell what a recording holds; returns the exit code."""
-    from cbtui.recording_summary import tell
+    from cbtui.runs.recorded.recording_summary import tell
 
     return tell(Path(options.recording))

@@ -5,11 +5,11 @@ import json
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from cbtui.commands import appearance
-from cbtui.commands.output import complain, say
+from cbtui.commands.options import appearance
+from cbtui.text.output import complain, say
 
 if TYPE_CHECKING:
-    from cbtui.actions import Action
+    from cbtui.keys.actions import Action
 
 _HEAD = """\
 # The keys of cbtui, and how it looks. Keep what you change in
@@ -25,7 +25,7 @@ _KEYS = """\
 
 def print_keys(options: argparse.Namespace) -> int:
     """Print the keys in force; returns the exit code."""
-    from cbtui.config import standard_path
+    from cbtui.keys.config import standard_path
 
     now = appearance.appearance(options)
     for complaint in now.complaints:
@@ -35,7 +35,7 @@ def print_keys(options: argparse.Namespace) -> int:
 
 
 def _lines(path: str, now: appearance.Appearance) -> Iterator[str]:
-    from cbtui.actions import ACTIONS
+    from cbtui.keys.actions import ACTIONS
 
     yield _HEAD.format(path=path)
     yield f"[display]\ntheme = {json.dumps(now.theme)}\ncharset = {json.dumps(now.configured_charset)}\n"
@@ -52,8 +52,8 @@ def _lines(path: str, now: appearance.Appearance) -> Iterator[str]:
 
 
 def _entry(action: "Action") -> str:
-    from cbtui.actions import key_id
-    from cbtui.keymap import keys_of
+    from cbtui.keys.actions import key_id
+    from cbtui.keys.keymap import keys_of
 
     keys = [json.dumps(key, ensure_ascii=False) for key in keys_of(action)]
     return f"{key_id(action)} = {keys[0] if len(keys) == 1 else '[' + ', '.join(keys) + ']'}"

@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cbtui.commands.check import add_limit
-from cbtui.commands.output import say
-from cbtui.commands.targets import folder_of, refuse
+from cbtui.commands.options.targets import folder_of, refuse
+from cbtui.text.output import say
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -22,7 +22,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def lint_lesson(options: argparse.Namespace) -> int:
     """Prove lessons; returns the exit code: 0 all is as they say, 1 something is not."""
-    from cbtui.lesson_lint import faults_of
+    from cbtui.learning.lesson_lint import faults_of
 
     count = 0
     for each in _lessons_in(folder_of(options.folder)):

@@ -2,7 +2,7 @@
 
 import argparse
 
-from cbtui.commands.output import say
+from cbtui.text.output import say
 
 
 def list_lessons(_options: argparse.Namespace) -> int:

@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-from cbtui.commands.output import complain, say
+from cbtui.text.output import complain, say
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -13,7 +13,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def new_lesson(options: argparse.Namespace) -> int:
     """Make a lesson; returns the exit code: 0 it is there, 1 it could not be made."""
-    from cbtui.lesson_scaffold import CannotScaffoldError, make_lesson
+    from cbtui.learning.lesson_scaffold import CannotScaffoldError, make_lesson
 
     folder = Path(options.folder)
     try:

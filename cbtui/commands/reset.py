@@ -2,9 +2,9 @@
 
 import argparse
 
-from cbtui.commands import more_lessons
-from cbtui.commands.output import complain, say
-from cbtui.commands.targets import lesson_of
+from cbtui.commands.options import more_lessons
+from cbtui.commands.options.targets import lesson_of
+from cbtui.text.output import complain, say
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:

@@ -1,6 +1,7 @@
 """``cbtui ros2``: carries out a ros2 line in the run that is going on."""
 
-from cbtui.commands.targets import is_text, refuse
+from cbtui.commands.options.targets import refuse
+from cbtui.text.output import is_text
 
 
 def ros2(words: list[str]) -> int:
@@ -12,6 +13,6 @@ def ros2(words: list[str]) -> int:
         process, words = int(words[1]), words[2:]
     if not all(map(is_text, words)):
         refuse("a ros2 line has to be text in UTF-8")
-    from cbtui.ros2_line import run_line
+    from cbtui.runs.headless.ros2_line import run_line
 
     return run_line(words, process)

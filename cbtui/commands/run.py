@@ -4,10 +4,17 @@ import argparse
 import math
 from pathlib import Path
 
-from cbtui.commands import changes, inputs, values
-from cbtui.commands.output import complain
-from cbtui.commands.seeds import add_seed, check_seed
-from cbtui.commands.targets import file_of, is_file_name, lesson_of, refuse, same_file, setup_of_targets
+from cbtui.commands.options import changes, inputs, values
+from cbtui.commands.options.seeds import add_seed, check_seed
+from cbtui.commands.options.targets import (
+    file_of,
+    is_file_name,
+    lesson_of,
+    refuse,
+    same_file,
+    setup_of_targets,
+)
+from cbtui.text.output import complain
 
 DEFAULT_SECONDS = 60.0
 
@@ -80,8 +87,8 @@ def run(options: argparse.Namespace) -> int:
 
     import msgspec
 
-    from cbtui.headless import run_headless
-    from cbtui.lesson_setup import setup_for, setup_for_files
+    from cbtui.runs.headless.headless import run_headless
+    from cbtui.runs.setup.lesson_setup import setup_for, setup_for_files
     from sim.engine.setup import RobotUse
 
     speed = None if options.speed == math.inf else options.speed
@@ -116,8 +123,8 @@ def _repeat(options: argparse.Namespace) -> int:
     _check_outputs(options, [Path(name) for name in (options.inputs, *options.targets)])
     import msgspec
 
-    from cbtui.headless import run_set_up
-    from cbtui.repeat import CannotRepeatError, repeated
+    from cbtui.runs.headless.headless import run_set_up
+    from cbtui.runs.recorded.repeat import CannotRepeatError, repeated
     from sim.engine.setup import RobotUse
 
     speed = None if options.speed == math.inf else options.speed

@@ -8,12 +8,13 @@ import sys
 from importlib.util import find_spec
 from urllib.parse import urlsplit
 
-from cbtui.commands import appearance, console
-from cbtui.commands.output import CannotSayError, complain, say
-from cbtui.commands.parsing import Parser
-from cbtui.commands.targets import file_of, is_file_name, is_text, lesson_of, refuse
-from cbtui.installing import install_command
-from cbtui.interrupts import whole
+from cbtui.commands import console
+from cbtui.commands.options import appearance
+from cbtui.commands.options.parsing import Parser
+from cbtui.commands.options.targets import file_of, is_file_name, lesson_of, refuse
+from cbtui.terminal.interrupts import whole
+from cbtui.text.installing import install_command
+from cbtui.text.output import CannotSayError, complain, is_text, say
 
 _VISITORS = 8
 _HIGHEST_PORT = 65535

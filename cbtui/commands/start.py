@@ -4,9 +4,9 @@ import argparse
 from pathlib import Path
 from textwrap import fill
 
-from cbtui.commands import more_lessons
 from cbtui.commands.check import exercise_of
-from cbtui.commands.output import complain, say
+from cbtui.commands.options import more_lessons
+from cbtui.text.output import complain, say
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -19,7 +19,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 def start(options: argparse.Namespace) -> int:
     """Put the starter of an exercise into a folder; returns the exit code: 0 it is there, 1 it is not."""
     lesson = exercise_of(options.lesson)
-    from cbtui.exercise_files import CannotPlaceError, Placed, place_starter
+    from cbtui.learning.exercise_files import CannotPlaceError, Placed, place_starter
 
     folder = Path(options.folder)
     path = folder / lesson.file_name

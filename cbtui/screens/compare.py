@@ -8,25 +8,25 @@ from textual import on
 from textual.app import ComposeResult
 from textual.binding import BindingType
 
-from cbtui.actions import Scope, bindings_of
-from cbtui.contenders import Side
-from cbtui.keymap import keymap_of
-from cbtui.playhead import SPANS, Playhead
+from cbtui.keys.actions import Scope, bindings_of
+from cbtui.keys.keymap import keymap_of
+from cbtui.looks.theme import Charset, Ink, Role, Run
+from cbtui.runs.compared_runs import Side
+from cbtui.runs.live.playhead import SPANS, Playhead
 from cbtui.screens.layout import Layout
 from cbtui.screens.lesson import FRAMES_A_SECOND
 from cbtui.screens.moment import MomentScreen
 from cbtui.screens.sized import SizedScreen
-from cbtui.theme import Charset, Ink, Role, Run
+from cbtui.text.durations import duration
 from cbtui.widgets.comparison import ComparisonHeadings, ComparisonTable, Words
-from cbtui.widgets.diagnosis import executor_label
-from cbtui.widgets.durations import duration
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes, Selection, start_of
 from cbtui.widgets.lanes.keys import lane_keys
-from sim.trace.comparison import compare_in_slices
-from sim.trace.comparison_rows import RUNS, Section, extent, sections, stretch
+from sim.trace.figures.comparison import compare_in_slices
+from sim.trace.figures.comparison_rows import RUNS, Section, extent, sections, stretch
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.slices import Slices
+from sim.trace.words import executor_label
 
 _PLAIN = Ink(Role.TEXT)
 _STRONG = Ink(Role.STRONG)

@@ -11,12 +11,12 @@ from textual.content import Content
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
-from cbtui.actions import Scope, bindings_of
-from cbtui.findings import Told, counted
-from cbtui.keymap import Keymap
+from cbtui.keys.actions import Scope, bindings_of
+from cbtui.keys.keymap import Keymap
+from cbtui.looks.theme import GLYPHS, Charset
+from cbtui.runs.live.findings import Told, counted
 from cbtui.screens.sized import SizedModal
-from cbtui.theme import GLYPHS, Charset
-from cbtui.widgets.cells import visible
+from cbtui.text.cells import visible
 from cbtui.widgets.key_bar import KeyBar
 from sim.diagnosis import sentence, whereabouts
 

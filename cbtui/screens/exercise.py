@@ -11,18 +11,19 @@ from textual import on
 from textual.message import Message
 from textual.widget import Widget
 
-from cbtui.actions import CHECKS, PANES, Scope
-from cbtui.allowance import Allowance
-from cbtui.checking import Checked, Observed, over
-from cbtui.exercise_sheet import ExerciseWords, Keys
-from cbtui.file_watch import CANNOT_WATCH, content_of, contents
-from cbtui.keymap import STANDARD, Keymap, keymap_of
-from cbtui.lesson_page import page_of_exercise
-from cbtui.live_run import Deliver, Ended, LiveRun, OpenSession
+from cbtui.engines.session import Deliver, Ended
+from cbtui.keys.actions import CHECKS, PANES, Scope
+from cbtui.keys.keymap import STANDARD, Keymap, keymap_of
+from cbtui.learning.lesson_page import page_of_exercise
+from cbtui.looks.theme import Charset
+from cbtui.runs.judged.checking import Checked, Observed, over
+from cbtui.runs.judged.run_budget import Allowance
+from cbtui.runs.live.file_watch import CANNOT_WATCH, content_of, contents
+from cbtui.runs.live.live_run import LiveRun, OpenSession
+from cbtui.runs.setup.subject import of_exercise
 from cbtui.screens.lesson import LessonScreen
-from cbtui.subject import of_exercise
-from cbtui.theme import Charset
 from cbtui.widgets.checks import ChecksView, Sheet, Standing
+from cbtui.widgets.checks.exercise_sheet import ExerciseWords, Keys
 from cbtui.widgets.diagnosis import Diagnosis, Weight
 from cbtui.widgets.shell import Prompt
 from cbtui.widgets.tabs import title_of

@@ -10,16 +10,16 @@ from textual.content import Content
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
-from cbtui.actions import Scope, bindings_of
-from cbtui.keymap import keymap_of
+from cbtui.keys.actions import Scope, bindings_of
+from cbtui.keys.keymap import keymap_of
+from cbtui.looks.theme import Charset
 from cbtui.screens.sized import SizedModal
-from cbtui.theme import Charset
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.options import Options
 
 
 class Choice(NamedTuple):
-    """A format of ``cbtui.exporting.FORMATS``, and whether it is to be of the stretch on screen only."""
+    """A format of ``exporting.FORMATS``, and whether it is to be of the stretch on screen only."""
 
     form: str
     on_screen: bool = False

@@ -11,11 +11,11 @@ from textual.containers import Container
 from textual.message import Message
 from textual.widgets import Static
 
-from cbtui.actions import Scope, bindings_of
-from cbtui.contenders import CannotCompareError, Contender, Gathered, GivenUp, Progress, Terms, gather
+from cbtui.keys.actions import Scope, bindings_of
+from cbtui.looks.theme import Charset
+from cbtui.runs.compared_runs import CannotCompareError, Contender, Gathered, GivenUp, Progress, Terms, gather
 from cbtui.screens.compare import CompareScreen
 from cbtui.screens.sized import SizedScreen
-from cbtui.theme import Charset
 from cbtui.widgets.key_bar import KeyBar
 
 _QUIET = 1.0

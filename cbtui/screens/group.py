@@ -10,13 +10,13 @@ from textual.content import Content
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
-from cbtui.actions import Scope, bindings_of
-from cbtui.changeable import Callback
-from cbtui.changes import WISHES
-from cbtui.equivalent_code import code_of_group
-from cbtui.keymap import keymap_of
+from cbtui.keys.actions import Scope, bindings_of
+from cbtui.keys.keymap import keymap_of
+from cbtui.looks.theme import Charset
+from cbtui.runs.setup.changeable import Callback
+from cbtui.runs.setup.changes import WISHES
+from cbtui.runs.setup.equivalent_code import code_of_group
 from cbtui.screens.sized import SizedModal
-from cbtui.theme import Charset
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.options import Options
 

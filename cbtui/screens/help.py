@@ -9,10 +9,10 @@ from textual.containers import Container, VerticalScroll
 from textual.content import Content
 from textual.widgets import Static
 
-from cbtui.actions import ACTIONS, Action, Scope, bindings_of, signs_of, together
-from cbtui.keymap import Keymap, keymap_of
+from cbtui.keys.actions import ACTIONS, Action, Scope, bindings_of, signs_of, together
+from cbtui.keys.keymap import Keymap, keymap_of
+from cbtui.looks.theme import Charset
 from cbtui.screens.sized import SizedModal
-from cbtui.theme import Charset
 from cbtui.widgets.key_bar import KeyBar
 
 _SHOWN = (

@@ -15,15 +15,15 @@ from textual.message import Message
 from textual.timer import Timer
 from textual.widgets import Input, OptionList
 
-from cbtui.actions import Scope, bindings_of
-from cbtui.keymap import keymap_of
-from cbtui.lesson_page import in_short
-from cbtui.preview import CALLS, LENGTH, CannotPreviewError, GivenUpError, PreviewRun, why_not
-from cbtui.recent import Opened, Recents
+from cbtui.keys.actions import Scope, bindings_of
+from cbtui.keys.keymap import keymap_of
+from cbtui.learning.lesson_page import in_short
+from cbtui.learning.preview import CALLS, LENGTH, CannotPreviewError, GivenUpError, PreviewRun, why_not
+from cbtui.learning.stage import Stage, in_words, stage_of
+from cbtui.looks.theme import Charset
+from cbtui.runs.setup.recent import Opened, Recents
 from cbtui.screens.layout import Layout
 from cbtui.screens.sized import SizedScreen
-from cbtui.stage import Stage, in_words, stage_of
-from cbtui.theme import Charset
 from cbtui.widgets.about import About, Description, of_file, of_lesson
 from cbtui.widgets.banner import Banner
 from cbtui.widgets.choices import Choices, Rows, WideRows, with_words
@@ -35,7 +35,7 @@ from lessons.progress import Progress
 
 if TYPE_CHECKING:
     from cbtui.app import CbtuiApp
-    from cbtui.live_run import OpenSession
+    from cbtui.runs.live.live_run import OpenSession
 
 _REST = 0.3
 """Seconds that the highlight has to rest on a lesson before it is run for its picture."""
@@ -347,7 +347,7 @@ class MenuScreen(SizedScreen[None]):
         if isinstance(choice, Lesson):
             app.open_lesson(choice)
             return
-        from cbtui.own_files import CannotOpenError
+        from cbtui.runs.setup.own_files import CannotOpenError
 
         try:
             app.open_file(choice)

@@ -9,11 +9,12 @@ from textual.binding import BindingType
 from textual.containers import Container
 from textual.widgets import Input, Static
 
-from cbtui.actions import Scope, bindings_of
+from cbtui.keys.actions import Scope, bindings_of
+from cbtui.looks.theme import Charset
 from cbtui.screens.sized import SizedModal
-from cbtui.theme import Charset
 from cbtui.widgets.key_bar import KeyBar
 from sim.trace.model import Nanoseconds
+from sim.units import nearest_ns
 
 
 class MomentScreen(SizedModal[Nanoseconds]):
@@ -57,7 +58,7 @@ class MomentScreen(SizedModal[Nanoseconds]):
         if seconds is None:
             self.query_one("#wrong", Static).update("Give the seconds as a number, such as 12.5.")
         else:
-            self.dismiss(round(seconds * 1e9))
+            self.dismiss(nearest_ns(seconds))
 
     def _question(self) -> str:
         come = f"The run has come to {self._end / 1e9:.3f} s."

@@ -10,10 +10,10 @@ from textual.containers import Container
 from textual.content import Content
 from textual.widgets import Input, Static
 
-from cbtui.actions import Scope, bindings_of
-from cbtui.quantities import BadQuantityError, Quantity
+from cbtui.keys.actions import Scope, bindings_of
+from cbtui.looks.theme import Charset
+from cbtui.runs.setup.quantities import BadQuantityError, Quantity
 from cbtui.screens.sized import SizedModal
-from cbtui.theme import Charset
 from cbtui.widgets.key_bar import KeyBar
 
 

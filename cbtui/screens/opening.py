@@ -9,11 +9,11 @@ from textual.binding import BindingType
 from textual.containers import Container
 from textual.widgets import Input, Static
 
-from cbtui.actions import Scope, bindings_of
-from cbtui.own_files import CannotOpenError, completed, entry_for
+from cbtui.keys.actions import Scope, bindings_of
+from cbtui.looks.theme import Charset
+from cbtui.runs.setup.own_files import CannotOpenError, completed, entry_for
 from cbtui.screens.sized import SizedModal
-from cbtui.theme import Charset
-from cbtui.widgets.cells import visible
+from cbtui.text.cells import visible
 from cbtui.widgets.key_bar import KeyBar
 
 if TYPE_CHECKING:

@@ -12,11 +12,11 @@ from textual.content import Content
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
-from cbtui.actions import Scope, bindings_of
-from cbtui.keymap import keymap_of
-from cbtui.named_keys import with_keys_in_force
+from cbtui.keys.actions import Scope, bindings_of
+from cbtui.keys.keymap import keymap_of
+from cbtui.keys.named_keys import with_keys_in_force
+from cbtui.looks.theme import Charset
 from cbtui.screens.sized import SizedModal
-from cbtui.theme import Charset
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.prose import Prose
 from lessons.description import Prediction

@@ -3,14 +3,15 @@
 from time import monotonic_ns
 from typing import NoReturn
 
-from cbtui.changes import Changes, changes_in
-from cbtui.live_run import Deliver, Ended, LiveRun
-from cbtui.record import setup_of
-from cbtui.replay import ReplayRun, of_recording
+from cbtui.engines.session import Deliver, Ended
+from cbtui.looks.theme import Charset
+from cbtui.runs.live.live_run import LiveRun
+from cbtui.runs.live.replay import ReplayRun, of_recording
+from cbtui.runs.recorded.recording_file import setup_of
+from cbtui.runs.setup.changes import Changes, changes_in
 from cbtui.screens.lesson import FRAMES_A_SECOND, LessonScreen
-from cbtui.theme import Charset
 from cbtui.widgets.shell import Prompt
-from sim.trace.recording import Recording
+from sim.recording import Recording
 
 _REFUSED = frozenset(
     {

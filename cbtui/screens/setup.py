@@ -12,14 +12,14 @@ from textual.content import Content
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
-from cbtui.actions import Scope, bindings_of
-from cbtui.changeable import Changeable
-from cbtui.changes import Changes
-from cbtui.equivalent_code import code_of
+from cbtui.keys.actions import Scope, bindings_of
+from cbtui.looks.theme import Charset
+from cbtui.runs.setup.changeable import Changeable
+from cbtui.runs.setup.changes import Changes
+from cbtui.runs.setup.equivalent_code import code_of
 from cbtui.screens.setup_rows import Row, rows_of
 from cbtui.screens.sized import SizedModal
-from cbtui.theme import Charset
-from cbtui.widgets.cells import fit
+from cbtui.text.cells import fit
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.options import Options
 

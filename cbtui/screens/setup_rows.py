@@ -7,14 +7,15 @@ from typing import Any, Protocol
 
 from textual.screen import ModalScreen
 
-from cbtui.changeable import Argument, Callback, Changeable
-from cbtui.changes import Changes
-from cbtui.equivalent_code import code_of_argument, code_of_period, code_of_sensor_rate
-from cbtui.quantities import PERIOD, SENSOR_RATE, Quantity
+from cbtui.looks.theme import Charset
+from cbtui.runs.setup.changeable import Argument, Callback, Changeable
+from cbtui.runs.setup.changes import Changes
+from cbtui.runs.setup.equivalent_code import code_of_argument, code_of_period, code_of_sensor_rate
+from cbtui.runs.setup.quantities import PERIOD, SENSOR_RATE, Quantity
 from cbtui.screens.group import UNCHANGED, GroupScreen
 from cbtui.screens.number import NumberScreen
 from cbtui.screens.threads import ThreadsScreen
-from cbtui.theme import Charset
+from sim.units import nearest_ns
 
 _SECOND = 1_000_000_000
 
@@ -152,7 +153,7 @@ def _period_row(callback: Callback) -> NumberRow:
         return None if period is None else period / _SECOND
 
     def changed(changes: Changes, seconds: float | None) -> Changes:
-        return changes.with_period(place, None if seconds is None else round(seconds * _SECOND))
+        return changes.with_period(place, None if seconds is None else nearest_ns(seconds))
 
     return NumberRow(
         callback.name,
@@ -161,7 +162,7 @@ def _period_row(callback: Callback) -> NumberRow:
         callback.period / _SECOND,
         chosen,
         changed,
-        lambda seconds: code_of_period(callback.name, round(seconds * _SECOND)),
+        lambda seconds: code_of_period(callback.name, nearest_ns(seconds)),
     )
 
 

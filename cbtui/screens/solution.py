@@ -10,10 +10,10 @@ from textual.containers import Container, VerticalScroll
 from textual.content import Content
 from textual.widgets import Static
 
-from cbtui.actions import Scope, bindings_of
+from cbtui.keys.actions import Scope, bindings_of
+from cbtui.looks.theme import Charset
 from cbtui.screens.sized import SizedModal
-from cbtui.theme import Charset
-from cbtui.widgets.cells import visible
+from cbtui.text.cells import visible
 from cbtui.widgets.code.highlight import Kind, highlight
 from cbtui.widgets.key_bar import KeyBar
 

@@ -10,12 +10,12 @@ from textual.content import Content
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
-from cbtui.actions import Scope, bindings_of
-from cbtui.changeable import Changeable
-from cbtui.equivalent_code import code_of_threads
-from cbtui.keymap import keymap_of
+from cbtui.keys.actions import Scope, bindings_of
+from cbtui.keys.keymap import keymap_of
+from cbtui.looks.theme import Charset
+from cbtui.runs.setup.changeable import Changeable
+from cbtui.runs.setup.equivalent_code import code_of_threads
 from cbtui.screens.sized import SizedModal
-from cbtui.theme import Charset
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.options import Options
 

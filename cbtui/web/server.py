@@ -10,7 +10,7 @@ from aiohttp import web
 from textual_serve.app_service import AppService
 from textual_serve.server import Server, to_int
 
-from cbtui.interrupts import Interruption, ending_heard
+from cbtui.terminal.interrupts import Interruption, ending_heard
 from cbtui.web.guard import Guard
 from cbtui.web.token import PARAMETER, Token
 from cbtui.web.visitor import Visitor

@@ -10,7 +10,7 @@ from aiohttp import web
 from textual_serve.app_service import AppService
 from textual_serve.download_manager import DownloadManager
 
-from cbtui.terminal import BROWSER_DRIVER
+from cbtui.terminal.capabilities import BROWSER_DRIVER
 
 _GRACE = 6.0
 """Seconds that a console has to end by itself, and its program in it."""

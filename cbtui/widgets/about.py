@@ -8,11 +8,11 @@ from textwrap import wrap
 from textual.geometry import Size
 from textual.reactive import reactive
 
-from cbtui.keymap import STANDARD, Keymap
-from cbtui.named_keys import key_in_force
-from cbtui.recent import Kind, Opened, ago
-from cbtui.theme import Charset, Ink, Role, Run
-from cbtui.widgets.cells import fit, visible
+from cbtui.keys.keymap import STANDARD, Keymap
+from cbtui.keys.named_keys import key_in_force
+from cbtui.looks.theme import Charset, Ink, Role, Run
+from cbtui.runs.setup.recent import Kind, Opened, ago
+from cbtui.text.cells import fit, visible
 from cbtui.widgets.painted import Painted
 from lessons.lesson import Lesson
 

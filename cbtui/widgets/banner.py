@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 from textual.geometry import Size
 
-from cbtui.theme import Charset, Ink, Role, Run
-from cbtui.widgets.cells import Row
+from cbtui.looks.theme import Charset, Ink, Role, Run
+from cbtui.text.cells import Row
 from cbtui.widgets.painted import Painted
 
 _TITLES = ("cbtui", "Callback groups and executors,", "live. No ROS 2 needed.")

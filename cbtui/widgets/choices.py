@@ -8,10 +8,10 @@ from textual.content import Content
 from textual.widgets import OptionList
 from textual.widgets.option_list import Option
 
-from cbtui.recent import Kind, Opened, ago
-from cbtui.stage import Stage
-from cbtui.theme import Charset
-from cbtui.widgets.cells import fit, visible
+from cbtui.learning.stage import Stage
+from cbtui.looks.theme import Charset
+from cbtui.runs.setup.recent import Kind, Opened, ago
+from cbtui.text.cells import fit, visible
 from lessons.lesson import Lesson
 
 Choice: TypeAlias = Lesson | Opened

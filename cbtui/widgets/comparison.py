@@ -7,12 +7,12 @@ from textual.geometry import Size
 from textual.reactive import reactive
 from textual.strip import Strip
 
-from cbtui.theme import Charset, Ink, Role, Run
-from cbtui.widgets.cells import fit
+from cbtui.looks.theme import Charset, Ink, Role, Run
+from cbtui.text.cells import fit
 from cbtui.widgets.comparison_painter import Line, headings, table
 from cbtui.widgets.inked import Inked
 from cbtui.widgets.painted import Painted
-from sim.trace.comparison_rows import Section
+from sim.trace.figures.comparison_rows import Section
 
 _RULE = Ink(Role.FAINT)
 

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator, Sequence
 
-from cbtui.theme import GLYPHS, Charset, Ink, Role, Run
-from cbtui.widgets.cells import fit
-from sim.trace.comparison_rows import DIFFERENCE, RUNS, Row, Section, Verdict
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, Run
+from cbtui.text.cells import fit
+from sim.trace.figures.comparison_rows import DIFFERENCE, RUNS, Row, Section, Verdict
 
 _PLAIN = Ink(Role.TEXT)
 _FAINT = Ink(Role.FAINT)

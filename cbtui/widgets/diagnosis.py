@@ -4,15 +4,15 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 
-from cbtui.actions import Scope
-from cbtui.findings import Told
-from cbtui.keymap import STANDARD, Keymap
-from cbtui.live_run import LiveRun, State
-from cbtui.playhead import Playhead
-from cbtui.theme import Charset
-from cbtui.widgets.durations import duration
-from sim.trace.concurrency import Concurrency
+from cbtui.keys.actions import Scope
+from cbtui.keys.keymap import STANDARD, Keymap
+from cbtui.looks.theme import Charset
+from cbtui.runs.live.findings import Told
+from cbtui.runs.live.live_run import LiveRun, State
+from cbtui.runs.live.playhead import Playhead
+from cbtui.text.durations import duration
 from sim.trace.events import KeyboardAsked, Notice, Reason, Severity
+from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Call, Moment, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
 from sim.trace.words import name_of
@@ -230,11 +230,3 @@ def _threads_needed(timeline: Timeline, peak: int) -> str:
 def thread_count(timeline: Timeline) -> int:
     """Return how many callbacks the run's executors can run at once."""
     return sum(executor.threads for executor in timeline.executors.values())
-
-
-def executor_label(timeline: Timeline) -> str:
-    """Return the run's executors as code would make them: ``MultiThreadedExecutor(4)``."""
-    return " + ".join(
-        executor.kind if executor.kind == "SingleThreadedExecutor" else f"{executor.kind}({executor.threads})"
-        for executor in timeline.executors.values()
-    )

@@ -8,8 +8,8 @@ from textual.geometry import Size
 from textual.message import Message
 from textual.reactive import reactive
 
-from cbtui.theme import Charset, Ink, Role, Run
-from cbtui.widgets.cells import fit
+from cbtui.looks.theme import Charset, Ink, Role, Run
+from cbtui.text.cells import fit
 from cbtui.widgets.diagnosis import Diagnosis, Weight
 from cbtui.widgets.painted import Painted
 

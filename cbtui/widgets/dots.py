@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from cbtui.theme import Charset, Ink
-from cbtui.widgets.cells import Row
+from cbtui.looks.theme import Charset, Ink
+from cbtui.text.cells import Row
 
 Floats = NDArray[np.float64]
 

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from textual.app import ComposeResult
 from textual.containers import VerticalScroll
 
-from cbtui.keymap import keymap_of
-from cbtui.named_keys import with_keys_in_force
+from cbtui.keys.keymap import keymap_of
+from cbtui.keys.named_keys import with_keys_in_force
 from cbtui.widgets.prose import Prose
 
 

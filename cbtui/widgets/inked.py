@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from rich.style import Style
 from textual.scroll_view import ScrollView
 
-from cbtui.colour_themes import palette_of
-from cbtui.theme import Ink, style_of
+from cbtui.looks.colour_themes import palette_of
+from cbtui.looks.theme import Ink, style_of
 
 
 class Inked(ScrollView):

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from textual.events import Click
 from textual.geometry import Size
 
-from cbtui.actions import Action, Scope, actions_of, method_of, perform, signs_of, together
-from cbtui.keymap import keymap_of
-from cbtui.theme import GLYPHS, Charset, Ink, Role, Run
+from cbtui.keys.actions import Action, Scope, actions_of, method_of, perform, signs_of, together
+from cbtui.keys.keymap import keymap_of
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, Run
 from cbtui.widgets.painted import Painted
 
 _KEY = Ink(Role.STRONG)

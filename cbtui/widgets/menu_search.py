@@ -6,7 +6,7 @@ from textual.binding import BindingType
 from textual.message import Message
 from textual.widgets import Input
 
-from cbtui.actions import Scope, bindings_of
+from cbtui.keys.actions import Scope, bindings_of
 
 
 class MenuSearch(Input):

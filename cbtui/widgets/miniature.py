@@ -10,8 +10,8 @@ from textual.geometry import Size
 from textual.reactive import reactive
 from textual.timer import Timer
 
-from cbtui.theme import Charset, Ink, Role, Run
-from cbtui.widgets.cells import fit, visible
+from cbtui.looks.theme import Charset, Ink, Role, Run
+from cbtui.text.cells import fit, visible
 from cbtui.widgets.painted import Painted
 
 if TYPE_CHECKING:

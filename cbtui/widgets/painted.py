@@ -11,9 +11,9 @@ from textual.geometry import Region, Size
 from textual.strip import Strip
 from textual.widget import Widget
 
-from cbtui.colour_themes import palette_of
-from cbtui.theme import Ink, Run, style_of
-from cbtui.widgets.cells import BLANK
+from cbtui.looks.colour_themes import palette_of
+from cbtui.looks.theme import Ink, Run, style_of
+from cbtui.text.cells import BLANK
 
 
 class Painted(Widget):

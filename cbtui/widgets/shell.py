@@ -17,10 +17,10 @@ from textual.reactive import reactive
 from textual.strip import Strip
 from textual.widgets import Input, Label
 
-from cbtui.actions import ACTIONS, Scope, bindings_of
-from cbtui.keymap import Keymap, keymap_of
-from cbtui.theme import Charset
-from cbtui.widgets.cells import visible, without_tabs
+from cbtui.keys.actions import ACTIONS, Scope, bindings_of
+from cbtui.keys.keymap import Keymap, keymap_of
+from cbtui.looks.theme import Charset
+from cbtui.text.cells import visible, without_tabs
 from cbtui.widgets.following import Following
 from sim.engine.commands import INTERRUPT
 from sim.trace.events import KeyboardAsked, LineEnded, LineGiven, LineSaid, Printed, Reading, Typed

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 from textual.geometry import Size
 from textual.reactive import reactive
 
-from cbtui.live_run import LiveRun, State
-from cbtui.playhead import Playhead
-from cbtui.theme import Charset, Ink, Role, Run
-from cbtui.widgets.cells import fit
-from cbtui.widgets.diagnosis import executor_label
-from cbtui.widgets.durations import duration
+from cbtui.looks.theme import Charset, Ink, Role, Run
+from cbtui.runs.live.live_run import LiveRun, State
+from cbtui.runs.live.playhead import Playhead
+from cbtui.text.cells import fit
+from cbtui.text.durations import duration
 from cbtui.widgets.painted import Painted
 from sim.trace.model import Nanoseconds
+from sim.trace.words import executor_label
 
 _PLAIN = Ink(Role.TEXT)
 _STRONG = Ink(Role.STRONG)

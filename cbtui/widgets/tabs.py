@@ -8,9 +8,9 @@ from textual.geometry import Size
 from textual.message import Message
 from textual.reactive import reactive
 
-from cbtui.actions import CHECKS, PANES
-from cbtui.theme import Charset, Ink, Role, Run
-from cbtui.widgets.cells import fit
+from cbtui.keys.actions import CHECKS, PANES
+from cbtui.looks.theme import Charset, Ink, Role, Run
+from cbtui.text.cells import fit
 from cbtui.widgets.painted import Painted
 
 _LINE = Ink(Role.FAINT)

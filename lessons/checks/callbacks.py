@@ -5,8 +5,8 @@ from heapq import merge
 
 from lessons.checks.check import Check, Verdict
 from lessons.checks.reading import SECOND, Stretch, calls_of, entities_named, seconds, spans_of, whole
-from sim.trace.concurrency import Concurrency
 from sim.trace.events import GroupKind
+from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from sim.clock.outside_work import OutsideWork
 from sim.clock.replacing import Replacements
-from sim.clock.units import wait_ns
+from sim.units import wait_ns
 
 _SECOND = 1_000_000_000
 _signal = signal.signal

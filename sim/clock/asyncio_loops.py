@@ -7,9 +7,9 @@ from typing import Any
 
 from sim.clock.interface import Clock
 from sim.clock.paced import PacedClock
-from sim.clock.units import wait_ns
 from sim.clock.virtual import VirtualClock
 from sim.clock.virtual_threads import VirtualSignal
+from sim.units import wait_ns
 
 _Ready = list[tuple[selectors.SelectorKey, int]]
 _MAIN = "MainThread"

@@ -12,8 +12,8 @@ from contextlib import contextmanager
 from typing import Any, TypeVar
 
 from sim.clock.outside import start_outside
-from sim.clock.units import wait_ns
 from sim.clock.virtual import VirtualClock
+from sim.units import wait_ns
 
 # Kept from before sim.clock.stdlib puts the virtual ones in their place.
 _Thread = threading.Thread

@@ -13,7 +13,7 @@ from types import TracebackType
 from typing import Any
 
 from sim.clock.paced import PacedClock
-from sim.clock.units import wait_ns
+from sim.units import wait_ns
 
 _allocate_lock = threading.Lock
 _RLock: Any = type(threading.RLock())

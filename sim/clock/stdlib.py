@@ -24,9 +24,9 @@ from sim.clock.imports import replace_imports
 from sim.clock.outside import start_outside
 from sim.clock.outside_work import OutsideWork
 from sim.clock.replacing import Replacements
-from sim.clock.units import wait_ns
 from sim.clock.virtual import VirtualClock
 from sim.clock.virtual_threads import VirtualSignal, VirtualThread
+from sim.units import wait_ns
 
 _allocate_lock = threading.Lock
 _thread_start = threading.Thread.start

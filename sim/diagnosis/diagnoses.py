@@ -7,8 +7,8 @@ from typing import TypeAlias
 from sim.diagnosis.look import Look
 from sim.diagnosis.rule import Finding, Rule, Weight
 from sim.diagnosis.rules import RULES
-from sim.trace.concurrency import Concurrency
 from sim.trace.events import EntityId
+from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 

@@ -7,8 +7,8 @@ from functools import cached_property
 from itertools import groupby
 from operator import attrgetter
 
-from sim.trace.concurrency import Concurrency
 from sim.trace.events import EntityId, EntityKind, NodeId, ProcessId, Reason, ThreadId
+from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Blocked, Call, Entity, Moment, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 

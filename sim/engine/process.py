@@ -1,7 +1,7 @@
 """The engine process: sets up host, robot and clock, runs the program, and ends.
 
 ``run`` is what the process does, from its first line to ``os._exit``. A program ends as under CPython, and is
-on the trace until it has; what takes longer than ``sim.engine.ending.GRACE`` does not keep the process alive.
+on the trace until it has; what takes longer than ``ending.GRACE`` does not keep the process alive.
 """
 
 import os
@@ -24,38 +24,38 @@ from sim.clock.paced_stdlib import follow
 from sim.clock.schedule import schedule_of
 from sim.clock.stdlib import live_on
 from sim.engine import commands
-from sim.engine.children import allow_children, refuse_children
-from sim.engine.descriptors import Descriptors, leave_terminal
-from sim.engine.ending import (
+from sim.engine.failures.failure import breakdown, is_learners
+from sim.engine.failures.last_words import keep_last_words, leave_if_kept
+from sim.engine.failures.tracebacks import leave_out_own_frames
+from sim.engine.failures.unheard import tell_of_unheard
+from sim.engine.outbox import Outbox
+from sim.engine.programs.children import allow_children, refuse_children
+from sim.engine.programs.ending import (
     GRACE,
     VIRTUAL_GRACE,
     finalise,
     flush_files_soon,
     set_engine_apart,
 )
-from sim.engine.endless_waits import EndlessWaits
-from sim.engine.failure import breakdown, is_learners
-from sim.engine.held_up import HeldUp
-from sim.engine.last_words import keep_last_words, leave_if_kept
-from sim.engine.lines import Lines
-from sim.engine.outbox import Outbox
-from sim.engine.output import ProcessStream, finish_lines
-from sim.engine.own_functions import OwnFunctions
-from sim.engine.program import Outcome, script, threads_left_by
-from sim.engine.programs import Programs
-from sim.engine.repeatability import Repeatability
+from sim.engine.programs.program import Outcome, script, threads_left_by
+from sim.engine.programs.programs import Programs
+from sim.engine.programs.ros2_lines import Lines
+from sim.engine.programs.sourced import use_workspace
+from sim.engine.programs.starting import Starter, StartError, is_launch_file
 from sim.engine.requests import Requests
 from sim.engine.robot import provide_robot
 from sim.engine.setup import RunSetup
-from sim.engine.sourced import use_workspace
-from sim.engine.standstill import Standstill
-from sim.engine.starting import Starter, StartError, is_launch_file
-from sim.engine.terminal import Terminal
+from sim.engine.stdio.descriptors import Descriptors, leave_terminal
+from sim.engine.stdio.output import ProcessStream, finish_lines
+from sim.engine.stdio.terminal import Terminal
 from sim.engine.time_control import RealControl, VirtualControl
-from sim.engine.tracebacks import leave_out_own_frames
 from sim.engine.tuned import tuning_of
-from sim.engine.unheard import tell_of_unheard
-from sim.engine.watchdog import Watchdog
+from sim.engine.watchdogs.endless_waits import EndlessWaits
+from sim.engine.watchdogs.held_up import HeldUp
+from sim.engine.watchdogs.outside_time import Watchdog
+from sim.engine.watchdogs.own_functions import OwnFunctions
+from sim.engine.watchdogs.repeatability import Repeatability
+from sim.engine.watchdogs.standstill import Standstill
 from sim.robot.bullet import WorldUnavailable
 from sim.ros import importing, own_code
 from sim.ros.contents import Contents
@@ -73,7 +73,7 @@ from sim.trace.events import (
     Severity,
     TimePassed,
 )
-from sim.trace.sealing import Seal
+from sim.trace.integrity.sealing import Seal
 
 _SIGNAL_AFTER = 0.5
 """Real seconds after which a program on virtual time that comes to no wait is interrupted by a signal."""

@@ -106,7 +106,7 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     leaves the usual one. With ``contents`` the trace has what published messages hold. ``seed`` chooses,
     on the virtual clock, among the orders in which a machine could run threads; None and 0 are first come,
     first served. Tracebacks are without the frames of the model, unless they are to be ``whole_tracebacks``.
-    ``seal`` is the key that its trace is sealed with (``sim.trace.sealing``), b"" for none.
+    ``seal`` is the key that its trace is sealed with (``sim.trace.integrity.sealing``), b"" for none.
     """
 
     title: str

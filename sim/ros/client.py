@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import msgspec
 
-from sim.clock.units import wait_ns
 from sim.ros.entity import Entity, Taken
 from sim.ros.entity_handles import ClientHandle
 from sim.ros.interfaces import copy_message
@@ -18,6 +17,7 @@ from sim.ros.qos import QoSProfile
 from sim.ros.service_introspection import ServiceIntrospection, ServiceIntrospectionState, reconfigured
 from sim.ros.task import Future
 from sim.trace.events import EntityKind
+from sim.units import wait_ns
 
 if TYPE_CHECKING:
     from sim.ros.callback_groups import CallbackGroup

@@ -6,11 +6,11 @@ import math
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from sim.clock.units import wait_ns
 from sim.ros import rcl_interfaces
 from sim.ros.parameter import Parameter, parameter_dict_from_yaml_file
 from sim.ros.qos import QoSProfile, qos_profile_services_default
 from sim.ros.task import Future
+from sim.units import wait_ns
 
 if TYPE_CHECKING:
     from sim.ros.callback_groups import CallbackGroup

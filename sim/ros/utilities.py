@@ -4,10 +4,10 @@ import os
 import sys
 from collections.abc import Sequence
 
-from sim.clock.units import wait_ns
 from sim.ros.context import Context
 from sim.ros.process import of_process
 from sim.ros.remapping import is_rule
+from sim.units import wait_ns
 
 
 class _Default:

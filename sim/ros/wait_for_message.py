@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from sim.clock.units import wait_ns
 from sim.ros.delivery import Delivery
 from sim.ros.qos import QoSProfile, as_profile
 from sim.ros.subscription import Subscription
 from sim.ros.type_support import check_is_valid_msg_type
+from sim.units import wait_ns
 
 if TYPE_CHECKING:
     from sim.ros.node import Node

@@ -5,18 +5,18 @@ from __future__ import annotations
 from argparse import Namespace
 from typing import Any
 
-from sim.shell.action import ACTION
-from sim.shell.interface import INTERFACE
-from sim.shell.launch import LAUNCH
-from sim.shell.lifecycle import LIFECYCLE
-from sim.shell.node import NODE
-from sim.shell.param import PARAM
 from sim.shell.parser import HelpAsked, Parser, UsageError
-from sim.shell.pkg import PKG
-from sim.shell.run import RUN
-from sim.shell.service import SERVICE
-from sim.shell.topic import TOPIC
-from sim.shell.verb import Command, Verb, no_arguments
+from sim.shell.verbs.action import ACTION
+from sim.shell.verbs.interface import INTERFACE
+from sim.shell.verbs.launch import LAUNCH
+from sim.shell.verbs.lifecycle import LIFECYCLE
+from sim.shell.verbs.node import NODE
+from sim.shell.verbs.param import PARAM
+from sim.shell.verbs.pkg import PKG
+from sim.shell.verbs.run import RUN
+from sim.shell.verbs.service import SERVICE
+from sim.shell.verbs.topic import TOPIC
+from sim.shell.verbs.verb import Command, Verb, no_arguments
 
 COMMANDS = (ACTION, INTERFACE, LAUNCH, LIFECYCLE, NODE, PARAM, PKG, RUN, SERVICE, TOPIC)
 

@@ -4,9 +4,9 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
 from sim.trace.events import CallBlocked, CallUnblocked, EntityId, ThreadId
-from sim.trace.intervals import Answer, Intervals, Lane, Row, end_or_none
 from sim.trace.model import Blocked, Nanoseconds, Window
-from sim.trace.spill import Spill
+from sim.trace.storage.intervals import Answer, Intervals, Lane, Row, end_or_none
+from sim.trace.storage.spill import Spill
 
 
 class Blocking(Intervals):

@@ -3,11 +3,11 @@
 from collections.abc import Collection, Sequence
 
 from sim.trace.events import CallId, RequestLost, ServiceCalled, ServiceReplied
-from sim.trace.history import History
-from sim.trace.intervals import Answer, Intervals, Lane, Row, end_or_none
 from sim.trace.model import Call, Nanoseconds, Window
-from sim.trace.spill import Spill
-from sim.trace.table import Table
+from sim.trace.storage.history import History
+from sim.trace.storage.intervals import Answer, Intervals, Lane, Row, end_or_none
+from sim.trace.storage.spill import Spill
+from sim.trace.storage.table import Table
 
 NEWEST_KEPT = 1024
 

@@ -14,10 +14,10 @@ from sim.trace.events import (
     MessageId,
     ThreadId,
 )
-from sim.trace.intervals import OPEN, Answer, Intervals, Lane, Layer, Row, end_or_none
 from sim.trace.model import Nanoseconds, Span, Window
-from sim.trace.spill import Spill
-from sim.trace.table import Table
+from sim.trace.storage.intervals import OPEN, Answer, Intervals, Lane, Layer, Row, end_or_none
+from sim.trace.storage.spill import Spill
+from sim.trace.storage.table import Table
 
 ALWAYS = Window(-OPEN, OPEN)
 

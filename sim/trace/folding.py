@@ -12,13 +12,13 @@ from sim.trace.calls import Calls
 from sim.trace.cast import Cast
 from sim.trace.events import AnyEvent, EntityId, EntityKind
 from sim.trace.execution import Execution
-from sim.trace.history import History
 from sim.trace.model import Mark, Nanoseconds, Queue
 from sim.trace.publications import Publications
 from sim.trace.queues import Born, QueueHistory
 from sim.trace.scans import Scans
-from sim.trace.spill import Spill
-from sim.trace.table import Table
+from sim.trace.storage.history import History
+from sim.trace.storage.spill import Spill
+from sim.trace.storage.table import Table
 from sim.trace.waiting import Waiting
 
 _BEFORE_ASKED = 60

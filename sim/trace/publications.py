@@ -2,8 +2,8 @@
 
 from sim.trace.events import MessageId, Published
 from sim.trace.model import Nanoseconds, Publication
-from sim.trace.spill import Spill
-from sim.trace.table import Table
+from sim.trace.storage.spill import Spill
+from sim.trace.storage.table import Table
 
 _TIME, _NODE, _ENTITY = range(1, 4)
 

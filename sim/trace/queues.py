@@ -5,10 +5,10 @@ from collections.abc import Callable, Sequence
 from typing import TypeAlias
 
 from sim.trace.events import MessageId
-from sim.trace.intervals import Answer
 from sim.trace.model import Nanoseconds, Queue, QueuedMessage, Window
-from sim.trace.spill import Spill
-from sim.trace.table import Table
+from sim.trace.storage.intervals import Answer
+from sim.trace.storage.spill import Spill
+from sim.trace.storage.table import Table
 
 Born: TypeAlias = Callable[[MessageId], Nanoseconds | None]
 """When a message was published or a request sent; None if that is not known."""

@@ -4,10 +4,10 @@ from collections import OrderedDict
 from operator import attrgetter
 
 from sim.trace.events import MessageId, Scanned
-from sim.trace.history import History
 from sim.trace.model import Nanoseconds, Window
-from sim.trace.spill import Spill
-from sim.trace.table import Table
+from sim.trace.storage.history import History
+from sim.trace.storage.spill import Spill
+from sim.trace.storage.table import Table
 
 SCANS_IN_BLOCK = 32
 

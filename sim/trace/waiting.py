@@ -4,9 +4,9 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
 from sim.trace.events import EntityId, Reason, WaitStarted
-from sim.trace.intervals import OPEN, Answer, Intervals, Lane, Row, end_or_none
 from sim.trace.model import Nanoseconds, Wait, Window
-from sim.trace.spill import Spill
+from sim.trace.storage.intervals import OPEN, Answer, Intervals, Lane, Row, end_or_none
+from sim.trace.storage.spill import Spill
 
 _REASONS = tuple(Reason)
 

@@ -20,3 +20,11 @@ def name_of(entity: EntityId, timeline: Timeline | Cast) -> str:
     """The spoken name of an entity by its id."""
     known = timeline.entities.get(entity)
     return "another callback" if known is None else known.spoken_name
+
+
+def executor_label(timeline: Timeline) -> str:
+    """Return the run's executors as code would make them: ``MultiThreadedExecutor(4)``."""
+    return " + ".join(
+        executor.kind if executor.kind == "SingleThreadedExecutor" else f"{executor.kind}({executor.threads})"
+        for executor in timeline.executors.values()
+    )

@@ -3,8 +3,9 @@ from collections import Counter
 import pytest
 from textual.dom import DOMNode
 
-from cbtui.actions import ACTIONS, Action, Scope, actions_of, bindings_of, method_of, signs_of, together
 from cbtui.app import CbtuiApp
+from cbtui.keys.actions import ACTIONS, Action, Scope, actions_of, bindings_of, method_of, signs_of, together
+from cbtui.looks.theme import Charset
 from cbtui.screens.compare import CompareScreen
 from cbtui.screens.diagnoses import DiagnosesScreen
 from cbtui.screens.export import ExportScreen
@@ -19,7 +20,6 @@ from cbtui.screens.prediction import PredictionScreen
 from cbtui.screens.setup import SetupScreen
 from cbtui.screens.solution import AskingScreen, SolutionScreen
 from cbtui.screens.threads import ThreadsScreen
-from cbtui.theme import Charset
 from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.log import LogFilter, LogLines

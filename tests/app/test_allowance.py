@@ -1,7 +1,7 @@
 """What a run may take before it is ended."""
 
-from cbtui.allowance import Allowance
-from cbtui.checking import MOST_TEXT
+from cbtui.runs.judged.checking import MOST_TEXT
+from cbtui.runs.judged.run_budget import Allowance
 from sim.trace.events import Printed
 from sim.trace.timeline import Timeline
 

@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.cells import cell_len
 
-from cbtui.ascii_filter import in_ascii
+from cbtui.text.ascii_filter import in_ascii
 from tests.app.pictures import lines_of
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
 from tests.support.runs import shared_group_run

@@ -3,14 +3,14 @@
 import msgspec
 import pytest
 
-from cbtui.changeable import Argument, Callback, Changeable, callbacks_of, changeable
-from cbtui.changes import WISHES, Changes, changes_in
-from cbtui.equivalent_code import code_of, code_of_group
-from cbtui.lesson_setup import setup_for
-from cbtui.quantities import PERIOD, SENSOR_RATE, BadQuantityError, Quantity
-from cbtui.record import about, setup_of
+from cbtui.runs.recorded.recording_file import about, setup_of
+from cbtui.runs.setup.changeable import Argument, Callback, Changeable, callbacks_of, changeable
+from cbtui.runs.setup.changes import WISHES, Changes, changes_in
+from cbtui.runs.setup.equivalent_code import code_of, code_of_group
+from cbtui.runs.setup.lesson_setup import setup_for
+from cbtui.runs.setup.quantities import PERIOD, SENSOR_RATE, BadQuantityError, Quantity
+from cbtui.runs.setup.subject import of_lesson
 from cbtui.screens.setup_rows import rows_of
-from cbtui.subject import of_lesson
 from lessons.catalogue import find, lessons
 from sim.engine.setup import GroupChange, PeriodChange, RobotUse, RunSetup
 from sim.ros.tuning import GroupWish

@@ -8,11 +8,12 @@ from pathlib import Path
 import pytest
 from textual.pilot import Pilot
 
-from cbtui.actions import ACTIONS, Scope
 from cbtui.app import CbtuiApp
-from cbtui.contenders import Contender, Progress, Side, Terms
-from cbtui.keymap import keys_of
-from cbtui.lesson_setup import setup_for
+from cbtui.keys.actions import ACTIONS, Scope
+from cbtui.keys.keymap import keys_of
+from cbtui.looks.theme import Charset
+from cbtui.runs.compared_runs import Contender, Progress, Side, Terms
+from cbtui.runs.setup.lesson_setup import setup_for
 from cbtui.screens import compare
 from cbtui.screens.compare import CompareScreen
 from cbtui.screens.gathering import GatheringScreen, sentence_on
@@ -20,7 +21,6 @@ from cbtui.screens.help import HelpScreen
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
 from cbtui.screens.moment import MomentScreen
-from cbtui.theme import Charset
 from cbtui.widgets.comparison import ComparisonTable
 from cbtui.widgets.lanes import Lanes, start_of
 from lessons.catalogue import find

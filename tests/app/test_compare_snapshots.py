@@ -3,7 +3,7 @@ from collections.abc import Callable
 import pytest
 from textual.pilot import Pilot
 
-from cbtui.theme import Charset
+from cbtui.looks.theme import Charset
 from tests.app.test_compare import ComparingConsole, drawn, sides
 from tests.support.console import NARROW, WIDE
 

@@ -6,7 +6,7 @@ from textual.app import App
 from textual.strip import Strip
 from textual.widget import Widget
 
-from cbtui.compositing import Parts, SparingCompositor
+from cbtui.terminal.compositing import Parts, SparingCompositor
 from cbtui.widgets.guide import Guide
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle

@@ -5,7 +5,7 @@ from time import monotonic
 
 import pytest
 
-from cbtui.live_run import LiveRun
+from cbtui.runs.live.live_run import LiveRun
 from sim.trace.events import AnyEvent, Printed
 from tests.support.builder import ns
 from tests.support.console import WIDE, RecordedConsole, settle

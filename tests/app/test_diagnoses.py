@@ -9,19 +9,19 @@ import pytest
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
-from cbtui.findings import Told, Watch
-from cbtui.keymap import STANDARD, Keymap
+from cbtui.keys.keymap import STANDARD, Keymap
+from cbtui.looks.theme import Charset
+from cbtui.runs.live.findings import Told, Watch
 from cbtui.screens.diagnoses import DiagnosesScreen, details_of, problems_note, row_of, title_of
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.replay import ReplayScreen
-from cbtui.theme import Charset
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.diagnosis_line import DiagnosisLine
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.rows import MemberLane
 from sim.diagnosis import Diagnoses, Finding
+from sim.recording import About, read
 from sim.trace.events import AnyEvent
-from sim.trace.recording import About, read
 from sim.trace.timeline import Timeline
 from tests.app.pictures import lines_of, text_of
 from tests.support.builder import ns

@@ -1,24 +1,17 @@
 import pytest
 
-from cbtui.findings import Told, Watch
-from cbtui.live_run import LiveRun
-from cbtui.playhead import Playhead
-from cbtui.widgets.diagnosis import (
-    Diagnosis,
-    Weight,
-    call_note,
-    diagnose,
-    executor_label,
-    verdict,
-    with_worst,
-)
+from cbtui.runs.live.findings import Told, Watch
+from cbtui.runs.live.live_run import LiveRun
+from cbtui.runs.live.playhead import Playhead
+from cbtui.widgets.diagnosis import Diagnosis, Weight, call_note, diagnose, verdict, with_worst
 from cbtui.widgets.diagnosis_line import diagnosis_row, diagnosis_rows
 from sim.diagnosis import RULES, Explanation, Finding
 from sim.diagnosis import Weight as RuleWeight
 from sim.engine.setup import ProgramSetup, RunSetup
-from sim.trace.concurrency import Concurrency
 from sim.trace.events import Reason, Severity
+from sim.trace.figures.concurrency import Concurrency
 from sim.trace.timeline import Timeline
+from sim.trace.words import executor_label
 from tests.support.builder import Run, ns
 from tests.support.fake_session import FakeEngines
 from tests.support.runs import (

@@ -2,7 +2,7 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.editor import EditorError, command_for
+from cbtui.terminal.editor import EditorError, command_for
 
 
 @pytest.fixture

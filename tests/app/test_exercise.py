@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from textual.pilot import Pilot
 
-from cbtui.allowance import Allowance
+from cbtui.runs.judged.run_budget import Allowance
 from cbtui.screens.compare import CompareScreen
 from cbtui.screens.exercise import ExerciseScreen
 from cbtui.screens.lesson import LessonScreen

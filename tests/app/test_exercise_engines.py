@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.allowance import Allowance
+from cbtui.runs.judged.run_budget import Allowance
 from lessons.progress import Progress
 from tests.app.pictures import text_of
 from tests.cli.exercise_files import A_GIGABYTE, ENDLESS_CALLBACK, LEAVES, SYNTAX_ERROR

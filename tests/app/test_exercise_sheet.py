@@ -1,8 +1,8 @@
 """The words of an exercise's checks, as text."""
 
-from cbtui.checking import Checked, Observed
-from cbtui.exercise_sheet import ExerciseWords, Keys
+from cbtui.runs.judged.checking import Checked, Observed
 from cbtui.widgets.checks import Row, Sheet, Standing
+from cbtui.widgets.checks.exercise_sheet import ExerciseWords, Keys
 from cbtui.widgets.checks.sheet import lines_of
 from lessons.catalogue import find
 from lessons.checks import Check, Verdict

@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 from watchfiles import awatch
 
-from cbtui import file_watch
-from cbtui.file_watch import content_of, contents
+from cbtui.runs.live import file_watch
+from cbtui.runs.live.file_watch import content_of, contents
 
 _LIMIT = 20.0
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from cbtui.findings import Watch, counted
+from cbtui.runs.live.findings import Watch, counted
 from sim.diagnosis import Diagnoses, Explanation, Finding, Look, Rule, Weight
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns

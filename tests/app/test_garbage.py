@@ -6,8 +6,8 @@ from collections.abc import Iterator
 import pytest
 from textual._styles_cache import StylesCache
 
-from cbtui.garbage import collect_now, let_go_of_screen, survivors_set_aside
 from cbtui.screens.menu import MenuScreen
+from cbtui.terminal.garbage_collector import collect_now, let_go_of_screen, survivors_set_aside
 from tests.support.console import WIDE, RecordedConsole, settle
 from tests.support.runs import shared_group_run
 

@@ -6,7 +6,7 @@ from contextlib import asynccontextmanager
 import pytest
 from textual.pilot import Pilot
 
-from cbtui.keymap import Keymap
+from cbtui.keys.keymap import Keymap
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.guide import Guide
 from cbtui.widgets.lanes import Lanes, start_of

@@ -5,7 +5,7 @@ from contextlib import asynccontextmanager
 
 from textual.pilot import Pilot
 
-from cbtui.keymap import Keymap
+from cbtui.keys.keymap import Keymap
 from cbtui.widgets.guide import Guide
 from cbtui.widgets.lanes import Lanes
 from sim.trace.events import AnyEvent

@@ -5,8 +5,8 @@ import pytest
 from textual.pilot import Pilot
 from textual.widget import Widget
 
-from cbtui.actions import ACTIONS, Scope
-from cbtui.live_run import State
+from cbtui.keys.actions import ACTIONS, Scope
+from cbtui.runs.live.live_run import State
 from cbtui.screens.help import HelpScreen
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen

@@ -3,9 +3,9 @@
 import msgspec
 import pytest
 
-from cbtui.lesson_page import Part, Signs, Standing, introduction, page_of, page_of_exercise, tally
-from cbtui.outcome import Outcome, run_in_words
-from cbtui.stage import Stage, stage_of
+from cbtui.learning.lesson_page import Part, Signs, Standing, introduction, page_of, page_of_exercise, tally
+from cbtui.learning.outcome import Outcome, run_in_words
+from cbtui.learning.stage import Stage, stage_of
 from lessons.catalogue import find, lessons
 from lessons.lesson import Lesson
 from lessons.progress import LessonProgress

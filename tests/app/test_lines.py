@@ -2,9 +2,9 @@ from dataclasses import replace
 
 import pytest
 
-from cbtui.actions import Scope, actions_of
-from cbtui.live_run import State
-from cbtui.theme import Charset, Run
+from cbtui.keys.actions import Scope, actions_of
+from cbtui.looks.theme import Charset, Run
+from cbtui.runs.live.live_run import State
 from cbtui.widgets.banner import banner
 from cbtui.widgets.key_bar import choose, entries, key_row
 from cbtui.widgets.status_line import Status, status_row

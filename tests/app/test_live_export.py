@@ -16,16 +16,16 @@ import pytest
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
-from cbtui.keymap import Keymap
-from cbtui.live_export import LiveExport, Material
-from cbtui.live_run import LiveRun
+from cbtui.keys.keymap import Keymap
+from cbtui.runs.live.live_export import LiveExport, Material
+from cbtui.runs.live.live_run import LiveRun
 from cbtui.screens.export import CHOICES, ExportScreen
 from cbtui.screens.lesson import exporting
 from cbtui.screens.replay import ReplayScreen
+from sim.export import CallTable
+from sim.recording import About, read
 from sim.trace.events import AnyEvent
-from sim.trace.export import CallTable
-from sim.trace.recording import About, read
-from sim.trace.tape import Tape
+from sim.trace.storage.tape import Tape
 from tests.app.pictures import lines_of, text_of
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle

@@ -12,12 +12,12 @@ from mcap.writer import Writer
 from textual.app import App
 from textual.pilot import Pilot
 
-from cbtui import live_recording
 from cbtui.app import CbtuiApp
-from cbtui.live_recording import unused_name
-from cbtui.live_run import LiveRun
+from cbtui.runs.live import live_recording
+from cbtui.runs.live.live_recording import unused_name
+from cbtui.runs.live.live_run import LiveRun
 from sim.engine.commands import KeepContents
-from sim.trace.recording import BackgroundRecorder, Recording, read
+from sim.recording import BackgroundRecorder, Recording, read
 from sim.trace.timeline import Timeline
 from tests.app.pictures import lines_of, text_of
 from tests.support.builder import ns

@@ -1,7 +1,8 @@
 import pytest
 from msgspec import structs
 
-from cbtui.live_run import Deliver, Ended, LiveRun, State
+from cbtui.engines.session import Deliver, Ended
+from cbtui.runs.live.live_run import LiveRun, State
 from sim.engine.commands import (
     CallService,
     Pause,

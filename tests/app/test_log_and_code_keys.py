@@ -9,8 +9,8 @@ from pathlib import Path
 import pytest
 from textual.pilot import Pilot
 
-from cbtui.actions import PANES
 from cbtui.app import CbtuiApp
+from cbtui.keys.actions import PANES
 from cbtui.screens.lesson import LessonScreen
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.lanes import Lanes

@@ -7,14 +7,14 @@ import pytest
 from textual.screen import Screen
 
 from cbtui.app import CbtuiApp
-from cbtui.recent import Kind, Opened, Recents
+from cbtui.runs.setup.recent import Kind, Opened, Recents
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
 from cbtui.screens.opening import PathInput
 from cbtui.screens.replay import ReplayScreen
 from cbtui.widgets.about import About
+from sim import recording
 from sim.engine.setup import ProgramSetup
-from sim.trace import recording
 from tests.app.pictures import lines_of, text_of
 from tests.support.console import NARROW, TALL
 from tests.support.fake_session import FakeEngines

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from cbtui.app import CbtuiApp
-from cbtui.recent import Kind, Opened, Recents
+from cbtui.runs.setup.recent import Kind, Opened, Recents
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
 from cbtui.widgets.menu_search import MenuSearch

@@ -3,8 +3,8 @@
 import pytest
 
 from cbtui.app import CbtuiApp
-from cbtui.keymap import STANDARD, Keymap
-from cbtui.named_keys import key_in_force, with_keys_in_force
+from cbtui.keys.keymap import STANDARD, Keymap
+from cbtui.keys.named_keys import key_in_force, with_keys_in_force
 from cbtui.widgets.guide import Guide
 from tests.app.pictures import text_of
 from tests.support.console import WIDE, RecordedConsole, settle

@@ -3,8 +3,8 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.own_files import CannotOpenError, completed, entry_for, read_recording
-from cbtui.recent import Kind
+from cbtui.runs.setup.own_files import CannotOpenError, completed, entry_for, read_recording
+from cbtui.runs.setup.recent import Kind
 
 
 @pytest.fixture

@@ -13,12 +13,12 @@ from textual.geometry import Region
 from textual.pilot import Pilot
 from textual.widget import Widget
 
-from cbtui.actions import Scope, actions_of, perform
-from cbtui.ending import EndingApp
-from cbtui.palette import Palette
-from cbtui.patience import LONGEST
+from cbtui.keys.actions import Scope, actions_of, perform
+from cbtui.keys.command_palette import Palette
 from cbtui.screens.menu import MenuScreen
 from cbtui.screens.setup import SetupScreen
+from cbtui.terminal.ending import EndingApp
+from cbtui.terminal.pending_keys import LONGEST
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.rows import MemberLane
@@ -102,7 +102,7 @@ async def test_an_app_that_is_told_to_end_ends_when_its_widgets_are_mounted() ->
 async def test_a_widget_that_is_never_mounted_keeps_nobody_from_leaving(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("cbtui.ending.LONGEST", LONGEST / 100)
+    monkeypatch.setattr("cbtui.terminal.ending.LONGEST", LONGEST / 100)
     app = Console()
     async with app.run_test():
         app.mount_slowly()

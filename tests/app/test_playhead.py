@@ -1,7 +1,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cbtui.playhead import SPANS, Playhead
+from cbtui.runs.live.playhead import SPANS, Playhead
 from sim.trace.model import Window
 from tests.support.builder import ns
 from tests.support.runs import dummy_server_run

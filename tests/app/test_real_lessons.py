@@ -9,7 +9,7 @@ from functools import partial
 import msgspec
 import pytest
 
-from cbtui.checking import setup_to_judge
+from cbtui.runs.setup.lesson_setup import setup_to_judge
 from lessons.catalogue import find, lessons
 from sim.trace.events import AnyEvent
 from tests.support.ansi import ansi_of

@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.recent import FILES_KEPT, Kind, Opened, Recents, ago
+from cbtui.runs.setup.recent import FILES_KEPT, Kind, Opened, Recents, ago
 
 LESSON = Opened(Kind.LESSON, "shared-group", 100)
 PROGRAM = Opened(Kind.PROGRAM, "/home/me/my_node.py", 200, ("-x", "ü\n"), "virtual")

@@ -9,14 +9,14 @@ import pytest
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
-from cbtui.record import about
-from cbtui.replay import ReplaySession, of_recording
+from cbtui.runs.live.replay import ReplaySession, of_recording
+from cbtui.runs.recorded.recording_file import about
 from cbtui.screens.replay import ReplayScreen
 from cbtui.widgets.shell import Prompt
 from sim.engine.commands import Pause
 from sim.engine.setup import ProgramSetup, RunSetup
+from sim.recording import About, Recording, read
 from sim.trace.events import AnyEvent, RunEnded
-from sim.trace.recording import About, Recording, read
 from tests.app.pictures import lines_of, text_of
 from tests.support.builder import ns
 from tests.support.console import WIDE, settle

@@ -9,7 +9,7 @@ import pytest
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
-from cbtui.changes import Changes
+from cbtui.runs.setup.changes import Changes
 from cbtui.screens.group import GroupScreen
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.number import NumberScreen

@@ -10,8 +10,9 @@ import pytest
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
-from cbtui.checking import Observed, observe, setup_to_judge
-from cbtui.outcome import Observe
+from cbtui.learning.outcome import Observe
+from cbtui.runs.judged.checking import Observed, observe
+from cbtui.runs.setup.lesson_setup import setup_to_judge
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
 from cbtui.screens.prediction import PredictionScreen
@@ -151,7 +152,7 @@ async def test_a_run_without_predicting_can_be_predicted_later() -> None:
 
 
 async def test_changes_from_the_command_line_begin_to_run_at_once() -> None:
-    from cbtui.changes import Changes
+    from cbtui.runs.setup.changes import Changes
 
     engines = FakeEngines(EVENTS, ns(2))
     app = CbtuiApp(start_lesson=LESSON.id, start_changes=Changes(threads=4), open_session=engines)

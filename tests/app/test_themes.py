@@ -4,8 +4,8 @@ import pytest
 from textual.app import App
 
 from cbtui.app import CbtuiApp
-from cbtui.colour_themes import THEMES, palette_of
-from cbtui.contrast import contrast
+from cbtui.looks.colour_themes import THEMES, palette_of
+from cbtui.looks.contrast import contrast
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
 from tests.support.fake_session import FakeEngines
 from tests.support.runs import shared_group_run

@@ -3,14 +3,14 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from cbtui.findings import Watch
+from cbtui.runs.live.findings import Watch
 from cbtui.widgets.code.files import SourceFiles
 from cbtui.widgets.code.marks import marks_at
 from cbtui.widgets.diagnosis import diagnose
 from cbtui.widgets.factory.painter import FactoryPainter
 from cbtui.widgets.lanes import LOOKS_A_FRAME, Painter
 from sim.trace import events as ev
-from sim.trace.concurrency import Concurrency
+from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.runs import ns

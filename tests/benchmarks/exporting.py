@@ -7,6 +7,7 @@ from io import TextIOWrapper
 from tempfile import TemporaryFile
 from typing import IO, Protocol
 
+from sim.export import CallTable, ChromeFile, Narrator, PerfettoFile, report, svg
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,
@@ -27,7 +28,6 @@ from sim.trace.events import (
     WaitEnded,
     WaitStarted,
 )
-from sim.trace.export import CallTable, ChromeFile, Narrator, PerfettoFile, report, svg
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 

@@ -3,7 +3,7 @@
 import time
 from functools import lru_cache
 
-from cbtui.findings import Watch
+from cbtui.runs.live.findings import Watch
 from sim.trace.events import AnyEvent
 from sim.trace.timeline import Timeline
 from tests.benchmarks import seeking

@@ -12,10 +12,11 @@ from typing import Any
 
 import msgspec
 
-from cbtui.lesson_setup import setup_for, setup_for_files
-from cbtui.session import Session
+from cbtui.engines.session import Session
+from cbtui.runs.setup.lesson_setup import setup_for, setup_for_files
 from lessons.catalogue import find
 from sim.engine.setup import RobotUse, RunSetup
+from sim.recording import About, Beginning, Recorder, read
 from sim.ros.interfaces import to_cdr
 from sim.trace.events import (
     AnyEvent,
@@ -27,7 +28,6 @@ from sim.trace.events import (
     RunStarted,
     TopicAppeared,
 )
-from sim.trace.recording import About, Beginning, Recorder, read
 from sim.trace.timeline import Timeline
 
 _RATE = 100

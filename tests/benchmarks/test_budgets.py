@@ -12,11 +12,11 @@ from types import FrameType
 
 import pytest
 
-from cbtui.live_run import LiveRun
+from cbtui.runs.live.live_run import LiveRun
 from cbtui.widgets.lanes import LOOKS_A_FRAME, Painter
-from cbtui.widgets.lanes.roster import MOST
 from sim.engine.setup import RunSetup
 from sim.trace.model import Window
+from sim.trace.roster import MOST
 from tests.benchmarks import scenes
 from tests.benchmarks.crowd import Drawn, call, timers
 from tests.benchmarks.drawing import FRAME, long_run

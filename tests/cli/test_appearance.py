@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 from cbtui import cli
-from cbtui.commands.appearance import Appearance, appearance, given
-from cbtui.config import read_text
-from cbtui.terminal import BROWSER_DRIVER, charset_of
+from cbtui.commands.options.appearance import Appearance, appearance, given
+from cbtui.keys.config import read_text
+from cbtui.terminal.capabilities import BROWSER_DRIVER, charset_of
 
 
 def parsed(*words: str) -> Appearance:

@@ -9,10 +9,10 @@ from typing import Any
 import pytest
 
 from cbtui import cli
-from cbtui.commands import changes
-from cbtui.record import setup_of
+from cbtui.commands.options import changes
+from cbtui.runs.recorded.recording_file import setup_of
 from sim.engine.setup import GroupChange, PeriodChange
-from sim.trace.recording import read
+from sim.recording import read
 
 CHANGES = (
     *("--group", "SetBool_callback=shared"),

@@ -78,7 +78,7 @@ def test_run_takes_the_clock_that_is_asked_for_or_the_lessons_own(
         clocks.append(program.clock)
         return 0
 
-    monkeypatch.setattr("cbtui.headless.run_headless", run_headless)
+    monkeypatch.setattr("cbtui.runs.headless.headless.run_headless", run_headless)
     assert cli.main(["run", *arguments]) == 0
     assert clocks == [clock]
 

@@ -10,7 +10,7 @@ from queue import Queue
 import pytest
 
 from cbtui import cli
-from cbtui.control import (
+from cbtui.engines.control_socket import (
     ControlServer,
     Done,
     NoEngine,

@@ -9,16 +9,16 @@ from pathlib import Path
 import pytest
 
 from cbtui import cli
-from cbtui.health import engines
-from cbtui.health.engines import engine
-from cbtui.health.extras import browser, editor, ros
-from cbtui.health.packages import bullet, dependencies, python
-from cbtui.health.places import configuration, folders, lessons_found, progress
-from cbtui.health.probes import Outcome, Probe
-from cbtui.health.requirements import Requirement, in_range, read_requirement, requirements
-from cbtui.health.screen import Screen, screen
-from cbtui.health.verdict import Sign, Verdict, fault, note, well
-from cbtui.installing import install_command
+from cbtui.doctor import engines
+from cbtui.doctor.engines import engine
+from cbtui.doctor.extras import browser, editor, ros
+from cbtui.doctor.packages import bullet, dependencies, python
+from cbtui.doctor.places import configuration, folders, lessons_found, progress
+from cbtui.doctor.probes import Outcome, Probe
+from cbtui.doctor.requirements import Requirement, in_range, read_requirement, requirements
+from cbtui.doctor.screen import Screen, screen
+from cbtui.doctor.verdict import Sign, Verdict, fault, note, well
+from cbtui.text.installing import install_command
 from tests.support.nobody import without_home
 
 
@@ -61,7 +61,7 @@ def test_the_exit_code_is_1_only_if_something_is_at_fault(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     verdicts = [well("a", "is"), note("b", "is less", "do this")]
-    monkeypatch.setattr("cbtui.health.examinations", lambda *_: iter(verdicts))
+    monkeypatch.setattr("cbtui.doctor.examinations", lambda *_: iter(verdicts))
     assert cli.main(["doctor"]) == 0
     verdicts.append(fault("c", "is not", "do that"))
     assert cli.main(["doctor"]) == 1
@@ -92,7 +92,7 @@ def test_a_package_that_is_missing_or_too_old_is_told_with_the_command_that_mend
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     needed = (Requirement("rich", ">=99"), Requirement("no-such-thing", ">=1"))
-    monkeypatch.setattr("cbtui.health.packages.requirements", lambda: needed)
+    monkeypatch.setattr("cbtui.doctor.packages.requirements", lambda: needed)
     old, missing = dependencies(_Ended(Outcome("", "", 0, "")))
     assert "cbtui needs >=99" in old.what
     assert "is not installed" in missing.what
@@ -151,7 +151,7 @@ def test_where_there_is_no_pip_as_in_an_environment_of_uvs_uv_is_to_install(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     assert install_command("rich>=13") == f"{sys.executable} -m pip install 'rich>=13'"
-    monkeypatch.setattr("cbtui.installing.find_spec", lambda _: None)
+    monkeypatch.setattr("cbtui.text.installing.find_spec", lambda _: None)
     assert install_command("rich>=13") == f"uv pip install --python {sys.executable} 'rich>=13'"
 
 
@@ -255,7 +255,7 @@ def test_no_folder_for_temporary_files_is_a_fault(monkeypatch: pytest.MonkeyPatc
     def refuse() -> str:
         raise FileNotFoundError(2, "No usable temporary directory")
 
-    monkeypatch.setattr("cbtui.health.places.tempfile.gettempdir", refuse)
+    monkeypatch.setattr("cbtui.doctor.places.tempfile.gettempdir", refuse)
     assert _of(folders(Path.cwd), "temp folder").sign is Sign.FAULT
 
 

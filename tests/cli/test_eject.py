@@ -13,8 +13,8 @@ import pytest
 from msgspec import structs
 
 from cbtui import cli
-from cbtui.ament_package import AmentPackage, LessonProgram
-from cbtui.eject import EjectError, Unit, chosen, package_of, units_of
+from cbtui.eject.ament_package import AmentPackage, LessonProgram
+from cbtui.eject.eject import EjectError, Unit, chosen, package_of, units_of
 from lessons.catalogue import find, lessons, lessons_in
 from lessons.lesson import Lesson
 from sim.launch import LaunchRun

@@ -7,8 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from cbtui import cli, exercise_files
-from cbtui.checking import observe, setup_to_judge
+from cbtui import cli
+from cbtui.learning import exercise_files
+from cbtui.runs.judged.checking import observe
+from cbtui.runs.setup.lesson_setup import setup_to_judge
 from lessons.progress import Progress
 from tests.cli.exercise_files import (
     A_GIGABYTE,

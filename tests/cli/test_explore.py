@@ -11,11 +11,12 @@ from pathlib import Path
 
 import pytest
 
-from cbtui import cli, exploring
+from cbtui import cli
 from cbtui.commands import explore as command
-from cbtui.exploration_text import exploration_text
-from cbtui.exploring import Exploration, Failure, Result
-from cbtui.family import Family
+from cbtui.engines.process_tree import Family
+from cbtui.runs.judged import exploring
+from cbtui.runs.judged.exploration_text import exploration_text
+from cbtui.runs.judged.exploring import Exploration, Failure, Result
 from lessons.catalogue import find
 from sim.engine.setup import RunSetup
 from tests.cli.exploring_files import CHECK_THEN_ACT, IN_ONE_GROUP, LOCK_ORDER

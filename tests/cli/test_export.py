@@ -10,9 +10,9 @@ import perfetto.protos.perfetto.trace.perfetto_trace_pb2 as pb
 import pytest
 
 from cbtui import cli
-from cbtui.exporting import ExportError, Wish, export
+from cbtui.runs.recorded.exporting import ExportError, Wish, export
+from sim.recording import About, Recorder
 from sim.trace.events import AnyEvent, EntityAppeared, GroupAppeared, RunStarted, ThreadAppeared
-from sim.trace.recording import About, Recorder
 from tests.support.runs import shared_group_run
 from tests.trace.export.examples import small_run
 

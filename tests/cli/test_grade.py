@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from cbtui import cli
-from cbtui.grading import papers_in
+from cbtui.grading.grading import papers_in
 from tests.cli.exercise_files import LEAVES, LESSON, SOLUTION, STARTER, SYNTAX_ERROR
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from cbtui import cli
-from cbtui.commands import inputs
+from cbtui.commands.options import inputs
 from tests.support.runs import shared_group_run
 from tests.trace.recording.files import write
 

@@ -8,9 +8,9 @@ import pytest
 from rosbags.highlevel import AnyReader
 
 from cbtui import cli
-from cbtui.record import CannotRecordError, setup_of, start_recording
+from cbtui.runs.recorded.recording_file import CannotRecordError, setup_of, start_recording
 from sim.engine.setup import RunSetup, TimedCall
-from sim.trace.recording import About, read
+from sim.recording import About, read
 from tests.trace.recording.files import write
 from tests.trace.samples import FULL
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from cbtui import cli
-from cbtui.record import about
-from cbtui.repeat import CannotRepeatError, repeated
+from cbtui.runs.recorded.recording_file import about
+from cbtui.runs.recorded.repeat import CannotRepeatError, repeated
 from sim.engine.setup import ProgramSetup, RunSetup
 from tests.trace.recording.files import write
 from tests.trace.samples import FULL

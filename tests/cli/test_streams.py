@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.commands.output import CannotSayError
-from cbtui.commands.targets import need_terminal
-from cbtui.program_log import write_line
-from cbtui.terminal import charset_of
+from cbtui.commands.options.targets import need_terminal
+from cbtui.runs.headless.program_log import write_line
+from cbtui.terminal.capabilities import charset_of
+from cbtui.text.output import CannotSayError
 
 _CBTUI = f"{sys.executable} -m cbtui"
 

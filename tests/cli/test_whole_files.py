@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.events_file import EventsFile
-from cbtui.exporting import FORMATS, ExportError, Wish, export
+from cbtui.runs.recorded.events_file import EventsFile
+from cbtui.runs.recorded.exporting import FORMATS, ExportError, Wish, export
 from sim.trace.events import AnyEvent
 from sim.whole_file import whole_file, write_whole
 from tests.support.runs import shared_group_run

@@ -18,7 +18,7 @@ import sim.engine.process
 from sim.clock import VirtualClock
 from sim.clock.asyncio_loops import ProgramLoops
 from sim.clock.stdlib import live_on
-from sim.engine.children import refuse_children
+from sim.engine.programs.children import refuse_children
 
 told = []
 clock = VirtualClock()

@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.actions import ACTIONS, key_id
-from cbtui.config import read_file, read_text
-from cbtui.keymap import Keymap, keys_of
+from cbtui.keys.actions import ACTIONS, key_id
+from cbtui.keys.config import read_file, read_text
+from cbtui.keys.keymap import Keymap, keys_of
 
 
 def keys(keymap: Keymap, name: str) -> tuple[str, ...]:

@@ -6,10 +6,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from textual.binding import BindingsMap
 
-from cbtui.actions import ACTIONS, Scope, actions_of, bindings_of, key_id
 from cbtui.app import CbtuiApp
-from cbtui.config_keys import read_keys
-from cbtui.keymap import Keymap, canonical, keys_of
+from cbtui.keys.actions import ACTIONS, Scope, actions_of, bindings_of, key_id
+from cbtui.keys.config_keys import read_keys
+from cbtui.keys.keymap import Keymap, canonical, keys_of
 
 POOL = sorted({key for action in ACTIONS for key in keys_of(action)} | {"f5", "f6", "ctrl+g", "é", "*"})
 CHOICES = st.dictionaries(

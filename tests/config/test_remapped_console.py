@@ -5,9 +5,9 @@ from textual.command import Hit
 from textual.widgets import Static
 
 from cbtui.app import CbtuiApp
-from cbtui.config import read_text
-from cbtui.keymap import Keymap
-from cbtui.palette import ActionsProvider
+from cbtui.keys.command_palette import ActionsProvider
+from cbtui.keys.config import read_text
+from cbtui.keys.keymap import Keymap
 from cbtui.screens.help import HelpScreen
 from cbtui.screens.menu import MenuScreen
 from cbtui.widgets.key_bar import KeyBar

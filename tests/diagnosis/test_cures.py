@@ -6,7 +6,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from cbtui.lesson_setup import setup_for
+from cbtui.runs.setup.lesson_setup import setup_for
 from lessons.catalogue import find
 from sim.diagnosis import diagnose
 from sim.engine.setup import GroupChange, RunSetup, TimedCall

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.headless import run_set_up
+from cbtui.runs.headless.headless import run_set_up
 from sim.diagnosis import diagnose
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
 from tests.support.engine_runs import SECOND, Run, program_setup, run_program, run_to_end

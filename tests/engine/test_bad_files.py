@@ -8,7 +8,7 @@ from typing import NamedTuple
 import pytest
 
 from cbtui import cli
-from cbtui.session import Session
+from cbtui.engines.session import Session
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
 from sim.trace.events import AnyEvent, CallbackStarted, Notice, Printed, ProcessAppeared, ProcessEnded
 from tests.support.builder import ns

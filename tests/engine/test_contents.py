@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 import pytest
 
-from cbtui.session import Session
+from cbtui.engines.session import Session
 from sim.engine.commands import KeepContents
 from sim.ros.contents import Contents
 from sim.ros.interfaces import from_cdr, message

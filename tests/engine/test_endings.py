@@ -11,10 +11,10 @@ from time import monotonic
 import msgspec
 import pytest
 
-from cbtui.lesson_setup import setup_for_files
-from cbtui.session import Session
+from cbtui.engines.session import Session
+from cbtui.runs.setup.lesson_setup import setup_for_files
 from sim.engine.commands import Stop
-from sim.engine.ending import GRACE
+from sim.engine.programs.ending import GRACE
 from sim.trace.events import AnyEvent, Notice, Printed, RunEnded
 from tests.support.engine_runs import Run, program_setup, run_program, run_to_end
 

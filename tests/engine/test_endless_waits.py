@@ -14,7 +14,7 @@ from collections import Counter
 from sim.clock import VirtualClock
 from sim.clock.schedule import schedule_of
 from sim.clock.stdlib import live_on
-from sim.engine.endless_waits import EndlessWaits
+from sim.engine.watchdogs.endless_waits import EndlessWaits
 from sim.ros.host import Host, install
 from sim.ros.probe import SilentProbe
 

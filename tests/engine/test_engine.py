@@ -9,8 +9,8 @@ from queue import Queue
 import msgspec
 import pytest
 
-from cbtui.lesson_setup import setup_for
-from cbtui.session import Session
+from cbtui.engines.session import Session
+from cbtui.runs.setup.lesson_setup import setup_for
 from lessons.catalogue import find
 from sim.engine.commands import CallService, Pause, ResetWorld, Resume, SetSpeed
 from sim.engine.setup import TimedInput

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from sim.engine.programs.starting import is_launch_file
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup, TimedLine
-from sim.engine.starting import is_launch_file
 from sim.trace.events import LineEnded, LineSaid, Logged, NodeAppeared, Notice, Printed, ProcessEnded
 from tests.support.engine_runs import SECOND, Run, run_to_end
 

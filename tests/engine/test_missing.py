@@ -4,7 +4,7 @@ import sys
 
 import pytest
 
-from sim.engine.missing import on_missing
+from sim.engine.failures.missing import on_missing
 from sim.ros.interfaces import packages
 
 PIP = "pip install {}, into the Python that runs cbtui"

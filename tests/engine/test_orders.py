@@ -5,9 +5,9 @@ from queue import Queue
 
 import msgspec
 
-from cbtui.checking import setup_to_judge
-from cbtui.forking import forking_context
-from cbtui.session import Session
+from cbtui.engines.forking import forking_context
+from cbtui.engines.session import Session
+from cbtui.runs.setup.lesson_setup import setup_to_judge
 from lessons.catalogue import find
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
 from sim.trace.events import AnyEvent, Notice, Severity

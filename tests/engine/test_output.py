@@ -1,4 +1,4 @@
-from sim.engine.output import LineSink
+from sim.engine.stdio.output import LineSink
 
 
 def lines_of(*texts: str) -> list[str]:

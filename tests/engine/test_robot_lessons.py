@@ -5,7 +5,7 @@ from itertools import pairwise
 import pytest
 
 from sim.trace.events import AnyEvent, CallbackStarted, EntityAppeared, Logged, MessageDropped, RobotMoved
-from sim.trace.summary import summarise
+from sim.trace.figures.summary import summarise
 from tests.support.engine_runs import SECOND, Run, run_lesson
 
 BLOCKED = ("single-thread", "shared-group")

@@ -7,7 +7,7 @@ from queue import Queue
 import msgspec
 import pytest
 
-from cbtui.session import Session
+from cbtui.engines.session import Session
 from sim.clock.virtual import RECESS
 from sim.engine.commands import CallService, InputCommand, Stop
 from sim.engine.inputs import inputs_of

@@ -6,7 +6,7 @@ from queue import Queue
 import msgspec
 import pytest
 
-from cbtui.session import Session
+from cbtui.engines.session import Session
 from sim.engine.commands import Type
 from sim.engine.inputs import inputs_of
 from sim.engine.setup import Keyboard, RunSetup, TimedText

@@ -5,7 +5,7 @@ from typing import Any
 import msgspec
 import pytest
 
-from cbtui.lesson_setup import setup_for
+from cbtui.runs.setup.lesson_setup import setup_for
 from lessons.catalogue import find
 from sim.engine.setup import GroupChange, PeriodChange, RunSetup
 from sim.engine.tuned import tuning_of

@@ -6,8 +6,8 @@ from queue import Queue
 import pytest
 
 from sim.clock import VirtualClock
-from sim.engine import watchdog
-from sim.engine.watchdog import Watchdog
+from sim.engine.watchdogs import outside_time as watchdog
+from sim.engine.watchdogs.outside_time import Watchdog
 from sim.trace.events import AnyEvent, Notice
 
 

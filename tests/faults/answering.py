@@ -17,7 +17,7 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from cbtui.warden import CEILING
+from cbtui.engines.resource_guard import CEILING
 from tests.benchmarks.console import RUNS, opened
 from tests.faults.catalogue import FAULTS, Fault
 from tests.faults.support import ANSWERED, PATIENCE, node_with, nothing_left

@@ -16,16 +16,16 @@ import pytest
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
-from cbtui.live_run import LiveRun
-from cbtui.playhead import Playhead
+from cbtui.engines.session import Session
+from cbtui.runs.live.live_run import LiveRun
+from cbtui.runs.live.playhead import Playhead
 from cbtui.screens.lesson import LessonScreen
-from cbtui.session import Session
 from cbtui.widgets.diagnosis import verdict
 from cbtui.widgets.diagnosis_line import DiagnosisLine
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
-from sim.trace.concurrency import Concurrency
+from sim.recording import Recording, read
 from sim.trace.events import AnyEvent, Logged
-from sim.trace.recording import Recording, read
+from sim.trace.figures.concurrency import Concurrency
 from tests.support.console import WIDE
 
 News: TypeAlias = "list[AnyEvent] | str | None"

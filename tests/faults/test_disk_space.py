@@ -9,10 +9,11 @@ from typing import Any
 
 import pytest
 
-from cbtui.disk_space import DiskSpaceWatch
-from cbtui.live_run import LiveRun
+from cbtui.runs.live.disk_space import DiskSpaceWatch
+from cbtui.runs.live.live_run import LiveRun
 from sim.engine.setup import RunSetup
-from sim.trace import folding, spill
+from sim.trace import folding
+from sim.trace.storage import spill
 from sim.trace.timeline import Timeline
 from tests.support.runs import shared_group_run
 

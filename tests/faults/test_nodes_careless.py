@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import pytest
 
-from cbtui.live_run import State
-from cbtui.session import LONGEST_END
+from cbtui.engines.session import LONGEST_END
+from cbtui.runs.live.live_run import State
 from sim.engine.setup import RobotUse
 from sim.trace.model import Window
 from tests.faults.support import FIRST, Provoked, console_on, node_with, provoked, still_here

@@ -4,8 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from cbtui import cli, warden
-from cbtui.live_run import State
+from cbtui import cli
+from cbtui.engines import resource_guard as warden
+from cbtui.runs.live.live_run import State
 from tests.faults.support import FIRST, node_with, provoked, still_here
 from tests.support.processes import alive
 

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 import pytest
 
-from cbtui import warden
-from cbtui.live_run import LiveRun, State
-from sim.trace.recording import read
+from cbtui.engines import resource_guard as warden
+from cbtui.runs.live.live_run import LiveRun, State
+from sim.recording import read
 from tests.app.pictures import text_of
 from tests.faults.support import ANSWERED, FIRST, console_on, node_with, provoked, still_here
 from tests.support.engine_runs import SECOND

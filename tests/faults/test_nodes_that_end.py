@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import pytest
 
-from cbtui.live_run import State
+from cbtui.runs.live.live_run import State
 from tests.faults.support import FIRST, node_with, provoked
 
 

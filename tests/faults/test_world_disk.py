@@ -13,10 +13,10 @@ from threading import Barrier
 
 import pytest
 
-from cbtui.live_recording import LiveRecording
-from cbtui.live_run import State
+from cbtui.runs.live.live_recording import LiveRecording
+from cbtui.runs.live.live_run import State
 from sim.engine.setup import RunSetup
-from sim.trace.recording import read
+from sim.recording import read
 from tests.faults.support import ANSWERED, PATIENCE, console_on, node_with, nothing_left, still_here
 from tests.support.runs import shared_group_run
 

@@ -16,12 +16,12 @@ from threading import Event
 
 import pytest
 
-from cbtui.live_run import State
-from cbtui.session import Session
-from cbtui.silence import SILENT, Silence
+from cbtui.engines.hang_detector import SILENT, Silence
+from cbtui.engines.session import Session
+from cbtui.runs.live.live_run import State
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
+from sim.recording import read
 from sim.trace.events import AnyEvent, Logged, Notice, Printed, RunStarted, Severity
-from sim.trace.recording import read
 from tests.faults.support import ANSWERED, PATIENCE, console_on, node_with, nothing_left, still_here
 from tests.support.processes import engines_of
 
@@ -81,7 +81,7 @@ async def test_an_engine_that_is_killed_is_told_of_and_can_be_run_again(folder: 
 async def test_an_engine_that_is_stopped_is_told_of_and_goes_on_when_it_may(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("cbtui.session.LOOK", 0.05)
+    monkeypatch.setattr("cbtui.engines.session.LOOK", 0.05)
     async with console_on(node_with(folder, "pass")) as console:
         await console.until(still_here)
         stopped = engine()
@@ -101,7 +101,7 @@ async def test_an_engine_that_is_stopped_is_told_of_and_goes_on_when_it_may(
 async def test_an_engine_that_code_in_c_keeps_is_told_of(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("cbtui.session.LOOK", 0.05)
+    monkeypatch.setattr("cbtui.engines.session.LOOK", 0.05)
     async with console_on(node_with(folder, IN_C)) as console:
         await console.until(lambda live: live.state is State.SILENT)
         assert await console.answers() < ANSWERED

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from lessons.catalogue import find
-from sim.trace.recording import About, Recorder, read
+from sim.recording import About, Recorder, read
 from tests.faults.support import PATIENCE, node_with, nothing_left
 from tests.support.processes import engines_of
 from tests.support.runs import shared_group_run

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.trace.recording import read
+from sim.recording import read
 from tests.faults.support import PATIENCE, nothing_left
 from tests.terminal.console import TerminalConsole, opened
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from cbtui.lesson_scaffold import make_lesson
+from cbtui.learning.lesson_scaffold import make_lesson
 from tests.grading.forgeries import SOLUTION, Targets, written
 
 LESSON = "blinking"

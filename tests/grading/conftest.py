@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.confinement import Confinement
+from cbtui.grading.confinement import Confinement
 from tests.grading.classroom import Classroom
 
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from cbtui.lesson_scaffold import TEMPLATE
+from cbtui.learning.lesson_scaffold import TEMPLATE
 
 STARTER = (TEMPLATE / "starter.py").read_text()
 SOLUTION = (TEMPLATE / "solution.py").read_text()

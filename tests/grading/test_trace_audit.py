@@ -7,12 +7,12 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from cbtui.submission import Submission
-from cbtui.trace_audit import TraceAudit
+from cbtui.grading.submission import Submission
+from cbtui.grading.trace_audit import TraceAudit
 from sim.trace import events as ev
 from sim.trace.events import AnyEvent, encode
-from sim.trace.plausibility import Plausibility
-from sim.trace.sealing import BrokenSealError, Seal
+from sim.trace.integrity.plausibility import Plausibility
+from sim.trace.integrity.sealing import BrokenSealError, Seal
 
 KEY = b"k" * 32
 SOURCE = b"def tick():\n    pass\n\n\ndef main():\n    pass\n"

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.lesson_lint import faults_of
-from cbtui.lesson_scaffold import TEMPLATE
+from cbtui.learning.lesson_lint import faults_of
+from cbtui.learning.lesson_scaffold import TEMPLATE
 from lessons.catalogue import lessons
 from lessons.lesson import Lesson
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.lesson_scaffold import TEMPLATE
+from cbtui.learning.lesson_scaffold import TEMPLATE
 from lessons.judge import Judge
 from lessons.lesson import BadLesson, Lesson, read_lesson
 from sim.trace.timeline import Timeline

@@ -5,8 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.checking import setup_to_judge
-from cbtui.lesson_setup import setup_for
+from cbtui.runs.setup.lesson_setup import setup_for, setup_to_judge
 from lessons.lesson import BadLesson, Lesson, Setting, Try, number_after, read_lesson
 from sim.engine.setup import RobotUse
 

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from cbtui import lesson_lint
-from cbtui.lesson_lint import faults_in_runs, faults_in_texts, faults_of
-from cbtui.lesson_scaffold import TEMPLATE
+from cbtui.learning import lesson_lint
+from cbtui.learning.lesson_lint import faults_in_runs, faults_in_texts, faults_of
+from cbtui.learning.lesson_scaffold import TEMPLATE
 from lessons.judge import Judge
 from lessons.lesson import Lesson, read_lesson
 

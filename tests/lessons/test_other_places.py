@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.lesson_scaffold import make_lesson
+from cbtui.learning.lesson_scaffold import make_lesson
 from lessons import catalogue
 from lessons.catalogue import VARIABLE, find, lessons, lessons_in
 from lessons.lesson import BadLesson

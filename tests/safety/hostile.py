@@ -7,8 +7,8 @@ from pathlib import Path
 
 import msgspec
 
+from sim.recording import About, Recorder
 from sim.trace.events import AnyEvent
-from sim.trace.recording import About, Recorder
 from tests.trace.export.examples import small_run
 from tests.trace.samples import FULL
 

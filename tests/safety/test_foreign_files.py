@@ -8,11 +8,11 @@ from typing import Any
 
 import pytest
 
-from cbtui.config import read_file
+from cbtui.keys.config import read_file
 from lessons.lesson import BadLesson, read_lesson
 from lessons.progress import faulty_line
 from sim import foreign_file, plain_toml
-from sim.engine.source import NothingToRunError, read_source
+from sim.engine.programs.source import NothingToRunError, read_source
 from sim.launch.errors import LaunchError
 from sim.launch.loading import load_description
 from sim.packages.cmake_file import read_cmake

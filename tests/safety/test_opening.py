@@ -10,20 +10,20 @@ import pytest
 
 from cbtui import cli
 from cbtui.app import CbtuiApp
-from cbtui.config import read_file
-from cbtui.own_files import entry_for
-from cbtui.preview import CannotPreviewError, PreviewRun
-from cbtui.recent import Kind, Opened, Recents
-from cbtui.replay import of_recording
+from cbtui.keys.config import read_file
+from cbtui.learning.preview import CannotPreviewError, PreviewRun
+from cbtui.runs.live.replay import of_recording
+from cbtui.runs.setup.own_files import entry_for
+from cbtui.runs.setup.recent import Kind, Opened, Recents
 from lessons import catalogue
 from lessons.catalogue import find, lessons
 from lessons.lesson import BadLesson
 from lessons.progress import Progress
 from sim.packages import PackageError, find_packages
 from sim.plain_yaml import YamlError, load
+from sim.recording import About, Recorder, Recording, RecordingError, read
 from sim.ros.arguments import ArgumentsError, parse_arguments
 from sim.ros.parameter_yaml import ParameterYamlError, read_nodes
-from sim.trace.recording import About, Recorder, Recording, RecordingError, read
 from tests.safety import hostile
 from tests.shell.test_completion import completed
 from tests.support.console import WIDE, settle
@@ -370,7 +370,7 @@ def test_a_setup_file_that_wants_much_is_refused(workspace: Path, statement: str
 def test_a_run_is_not_readable_by_way_of_a_link_in_the_runtime_folder(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    from cbtui.control import runtime_folder
+    from cbtui.engines.control_socket import runtime_folder
 
     monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path))
     folder = runtime_folder()

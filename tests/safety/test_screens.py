@@ -8,10 +8,10 @@ from textual.app import App
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
-from cbtui.contenders import Contender, Terms
-from cbtui.recent import Kind, Opened, Recents
+from cbtui.runs.compared_runs import Contender, Terms
+from cbtui.runs.setup.recent import Kind, Opened, Recents
+from sim.recording import read
 from sim.trace.events import AnyEvent
-from sim.trace.recording import read
 from tests.safety import hostile
 from tests.safety.hostile import HOSTILE, obeyed
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle

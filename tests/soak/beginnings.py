@@ -6,9 +6,9 @@ from random import Random
 from typing import TypeAlias
 
 from cbtui.app import CbtuiApp
-from cbtui.contenders import Contender, Terms
+from cbtui.runs.compared_runs import Contender, Terms
 from lessons.catalogue import lessons
-from sim.trace.recording import About, Recorder, Recording, read
+from sim.recording import About, Recorder, Recording, read
 from tests.support.builder import ns
 from tests.support.console import RecordedConsole
 from tests.support.fake_session import FakeEngines

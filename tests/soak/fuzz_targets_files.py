@@ -6,15 +6,16 @@ from pathlib import Path
 import msgspec
 import yaml as pyyaml
 
-from cbtui import config as configuration
-from cbtui.recent import Recents
-from cbtui.record import setup_of
+from cbtui.keys import config as configuration
+from cbtui.runs.recorded.recording_file import setup_of
+from cbtui.runs.setup.recent import Recents
 from lessons.catalogue import ROOT
 from lessons.lesson import BadLesson, read_lesson
 from lessons.progress import Progress
 from sim import plain_yaml
 from sim.engine.setup import ProgramSetup, RunSetup, TimedCall, TimedInput, TimedLine
 from sim.packages import PackageError, find_packages
+from sim.recording.about import About, from_metadata, to_metadata
 from sim.ros.interfaces import DefinitionError, message
 from sim.ros.interfaces.folder import DefinitionFolder
 from sim.ros.interfaces.jazzy import JazzyMessages
@@ -22,7 +23,6 @@ from sim.ros.interfaces.registry import Registry
 from sim.ros.parameter_yaml import ParameterYamlError, read_nodes, read_value
 from sim.shell.messages import Outgoing, given_values
 from sim.shell.session import Failed
-from sim.trace.recording.about import About, from_metadata, to_metadata
 from tests.soak.fuzz_target import Target, listed, text_of
 
 DEFINITIONS = Path(plain_yaml.__file__).parent / "ros" / "interfaces" / "definitions"

@@ -5,8 +5,8 @@ from functools import cache
 from io import StringIO
 from pathlib import Path
 
-from cbtui.theme import Charset
-from cbtui.widgets.cells import fit, visible, without_tabs
+from cbtui.looks.theme import Charset
+from cbtui.text.cells import fit, visible, without_tabs
 from cbtui.widgets.log.filter import FilterError, filter_of
 from cbtui.widgets.log.line import line_of
 from sim.clock import RealClock

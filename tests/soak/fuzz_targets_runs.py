@@ -21,13 +21,13 @@ from sim.engine.commands import (
 )
 from sim.engine.commands import decode as decode_command
 from sim.engine.commands import encode as encode_command
+from sim.export import CallTable, ChromeFile, Narrator, PerfettoFile, report, svg
+from sim.export.jsonl import JsonLines
+from sim.recording import RecordingError, batch, read
 from sim.trace import events as ev
-from sim.trace.export import CallTable, ChromeFile, Narrator, PerfettoFile, report, svg
-from sim.trace.jsonl import JsonLines
+from sim.trace.figures.summary import summarise
+from sim.trace.figures.summary_text import plain_text
 from sim.trace.model import Window
-from sim.trace.recording import RecordingError, batch, read
-from sim.trace.summary import summarise
-from sim.trace.summary_text import plain_text
 from sim.trace.timeline import Timeline
 from tests.soak.fuzz_target import Target
 from tests.trace.export.examples import small_run

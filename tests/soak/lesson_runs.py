@@ -11,15 +11,15 @@ from typing import NamedTuple
 
 import msgspec
 
-from cbtui.changes import WISHES
-from cbtui.lesson_setup import setup_for
-from cbtui.session import Session
+from cbtui.engines.session import Session
+from cbtui.runs.setup.changes import WISHES
+from cbtui.runs.setup.lesson_setup import setup_for
 from lessons.catalogue import lessons
 from lessons.lesson import Lesson
 from sim.engine.setup import GroupChange, PeriodChange, RunSetup, TimedCall, TimedLine
+from sim.export.jsonl import JsonLines
 from sim.trace.events import AnyEvent, EventsLost, RunEnded
-from sim.trace.jsonl import JsonLines
-from sim.trace.message_counts import MessageCounts
+from sim.trace.integrity.message_counts import MessageCounts
 from tests.soak.footprint import Footprint, footprint, growth
 
 SECOND = 1_000_000_000

@@ -17,7 +17,7 @@ from sim.trace.events import (
     Published,
     RunEnded,
 )
-from sim.trace.message_counts import MessageCounts
+from sim.trace.integrity.message_counts import MessageCounts
 from tests.ros.schedules import Trouble, random_system
 from tests.soak import keys, lessons, schedules, stdlib_calls
 from tests.soak.footprint import footprint, growth

@@ -24,7 +24,7 @@ from unittest.mock import patch
 from textual._ansi_sequences import ANSI_SEQUENCES_KEYS
 from textual.keys import _character_to_key
 
-from cbtui.ending import FAULT
+from cbtui.terminal.ending import FAULT
 from tests.soak.beginnings import any_lesson, program, recorded
 from tests.soak.interruption import until_interrupted
 from tests.soak.results import FILE, record, today

@@ -12,10 +12,10 @@ from threading import Event
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
-from cbtui.checking import Observed
-from cbtui.colour_themes import STANDARD
-from cbtui.keymap import Keymap
-from cbtui.outcome import Observe
+from cbtui.keys.keymap import Keymap
+from cbtui.learning.outcome import Observe
+from cbtui.looks.colour_themes import STANDARD
+from cbtui.runs.judged.checking import Observed
 from cbtui.screens.lesson import LessonScreen
 from cbtui.widgets.lanes import Lanes
 from lessons.catalogue import find

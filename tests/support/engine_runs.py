@@ -7,8 +7,8 @@ from queue import Queue
 
 import msgspec
 
-from cbtui.lesson_setup import setup_for
-from cbtui.session import Session
+from cbtui.engines.session import Session
+from cbtui.runs.setup.lesson_setup import setup_for
 from lessons.catalogue import find
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup, TimedCall
 from sim.trace.events import AnyEvent, CallbackStarted, EntityAppeared, Logged, RunEnded

@@ -7,8 +7,8 @@ from pathlib import Path
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
-from cbtui.checking import setup_to_judge
-from cbtui.live_run import OpenSession
+from cbtui.runs.live.live_run import OpenSession
+from cbtui.runs.setup.lesson_setup import setup_to_judge
 from cbtui.screens.exercise import ExerciseScreen
 from lessons.catalogue import find
 from sim.trace.events import AnyEvent

@@ -2,14 +2,14 @@
 
 from collections.abc import Sequence
 
-from cbtui.live_run import Deliver, Ended
+from cbtui.engines.session import Deliver, Ended
 from sim.engine.commands import Command
 from sim.engine.setup import RunSetup
 from sim.trace.events import AnyEvent
 
 
 class FakeSession:
-    """Shaped like ``cbtui.session.Session``; everything happens on the thread of the caller."""
+    """Shaped like ``cbtui.engines.session.Session``; everything happens on the thread of the caller."""
 
     def __init__(
         self, setup: RunSetup, deliver: Deliver, ended: Ended, events: Sequence[AnyEvent], until: int

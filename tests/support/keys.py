@@ -4,7 +4,7 @@ from typing import NamedTuple, TypeAlias
 
 from textual.pilot import OutOfBounds, Pilot
 
-from cbtui.actions import ACTIONS
+from cbtui.keys.actions import ACTIONS
 
 
 class Size(NamedTuple):

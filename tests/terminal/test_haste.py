@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.ending import FAULT
-from sim.trace.recording import read
+from cbtui.terminal.ending import FAULT
+from sim.recording import read
 from tests.support.processes import alive
 from tests.terminal.console import opened
 

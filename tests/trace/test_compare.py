@@ -1,8 +1,5 @@
 """Two runs side by side: callbacks are matched by what they are, and figures are of the window only."""
 
-from sim.trace.comparison import compare
-from sim.trace.comparison_rows import Row, Verdict, extent, sections
-from sim.trace.comparison_text import comparison_text
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,
@@ -20,6 +17,9 @@ from sim.trace.events import (
     WaitEnded,
     WaitStarted,
 )
+from sim.trace.figures.comparison import compare
+from sim.trace.figures.comparison_rows import Row, Verdict, extent, sections
+from sim.trace.figures.comparison_text import comparison_text
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.builder import ns

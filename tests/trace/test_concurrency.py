@@ -1,5 +1,5 @@
-from sim.trace.concurrency import Concurrency
 from sim.trace.events import AnyEvent
+from sim.trace.figures.concurrency import Concurrency
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
 from tests.support.runs import dummy_server_run, shared_group_run, split_groups_run

@@ -7,9 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sim.trace.events import CommandGiven
-from sim.trace.history import History
 from sim.trace.model import Window
-from sim.trace.spill import Spill
+from sim.trace.storage.history import History
+from sim.trace.storage.spill import Spill
 
 times = st.integers(-20, 20)
 items = st.lists(st.builds(CommandGiven, times, st.text(max_size=3)), max_size=60)

@@ -8,9 +8,9 @@ from typing import Any, get_args
 
 import pytest
 
+from sim.export.jsonl import JsonLines
 from sim.trace import events as ev
 from sim.trace.events import AnyEvent
-from sim.trace.jsonl import JsonLines
 from tests.support.runs import dummy_server_run
 from tests.trace.samples import BARE, CAST, FULL
 

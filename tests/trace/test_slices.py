@@ -9,8 +9,8 @@ import pytest
 from msgspec.structs import replace
 
 from sim.trace import slices
-from sim.trace.comparison import compare, compare_in_slices
 from sim.trace.events import AnyEvent, WaitStarted
+from sim.trace.figures.comparison import compare, compare_in_slices
 from sim.trace.model import Window
 from sim.trace.slices import Slices, at_once, listed, parts
 from sim.trace.timeline import Timeline

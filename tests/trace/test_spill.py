@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from sim.trace import spill as module
-from sim.trace.spill import Spill
+from sim.trace.storage import spill as module
+from sim.trace.storage.spill import Spill
 
 
 def unchanged(data: bytes) -> bytes:

@@ -8,7 +8,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim.trace.concurrency import threads_at_once
 from sim.trace.events import (
     AnyEvent,
     CallbackResumed,
@@ -17,8 +16,8 @@ from sim.trace.events import (
     EntityKind,
     Reason,
 )
-from sim.trace.model import Span, Window
-from sim.trace.statistics import (
+from sim.trace.figures.concurrency import threads_at_once
+from sim.trace.figures.statistics import (
     CallbackStatistics,
     Distribution,
     ages_used,
@@ -27,6 +26,7 @@ from sim.trace.statistics import (
     statistics,
     statistics_of,
 )
+from sim.trace.model import Span, Window
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, ns
 from tests.trace.naive import Naive

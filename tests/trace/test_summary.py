@@ -3,8 +3,8 @@
 import pytest
 
 from sim.trace.events import Reason
-from sim.trace.summary import Summary, summarise
-from sim.trace.summary_text import duration, plain_text
+from sim.trace.figures.summary import Summary, summarise
+from sim.trace.figures.summary_text import duration, plain_text
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, dummy_server_one_thread_run, ns, shared_group_run, split_groups_run
 

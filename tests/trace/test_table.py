@@ -5,8 +5,8 @@ from bisect import bisect_left, bisect_right, insort_right
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim.trace.spill import Spill
-from sim.trace.table import Table
+from sim.trace.storage.spill import Spill
+from sim.trace.storage.table import Table
 
 rows = st.lists(st.tuples(st.integers(-20, 20), st.integers(-(2**63), 2**63 - 1)), max_size=60)
 spills = st.builds(Spill, at_hand=st.integers(1, 400), entries=st.integers(1, 7))

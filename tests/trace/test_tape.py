@@ -5,9 +5,9 @@ from itertools import chain
 
 import pytest
 
-from sim.trace import tape
 from sim.trace.events import AnyEvent, MessageSent
-from sim.trace.tape import Tape
+from sim.trace.storage import tape
+from sim.trace.storage.tape import Tape
 from tests.support.runs import shared_group_run
 
 EVENTS = shared_group_run().events

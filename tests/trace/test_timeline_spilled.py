@@ -30,7 +30,7 @@ from sim.trace.events import (
     WaitStarted,
 )
 from sim.trace.model import Window
-from sim.trace.spill import Spill
+from sim.trace.storage.spill import Spill
 from sim.trace.timeline import Timeline
 from tests.trace.naive import Naive, overlaps
 from tests.trace.systems import GROUP_OF, jumbled_runs, legal_runs

@@ -5,8 +5,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.cells import cell_len
 
-from cbtui.theme import Charset, Ink, Role
-from cbtui.widgets.cells import Row, fit, to_cells, visible, without_tabs
+from cbtui.looks.theme import Charset, Ink, Role
+from cbtui.text.cells import Row, fit, to_cells, visible, without_tabs
 
 
 def test_escape_sequences_become_pictures() -> None:

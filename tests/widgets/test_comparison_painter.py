@@ -2,9 +2,9 @@
 
 import pytest
 
-from cbtui.theme import Charset, Role
+from cbtui.looks.theme import Charset, Role
 from cbtui.widgets.comparison_painter import BLOCK, Line, headings, table
-from sim.trace.comparison_rows import Row, Section, Verdict
+from sim.trace.figures.comparison_rows import Row, Section, Verdict
 
 CALLBACKS = tuple(
     Section(

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cbtui.theme import Charset, Ink, Role
+from cbtui.looks.theme import Charset, Ink, Role
 from cbtui.widgets.dots import Dots
 
 INKS = (Ink(Role.TEXT), Ink(Role.WALL), Ink(Role.ROBOT))

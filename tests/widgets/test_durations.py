@@ -2,7 +2,7 @@
 
 import pytest
 
-from cbtui.widgets.durations import duration
+from cbtui.text.durations import duration
 from tests.support.runs import ns
 
 

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import pytest
 
-from cbtui.theme import Charset
+from cbtui.looks.theme import Charset
 from cbtui.widgets.lanes import Painter
 from sim.trace.events import Reason
 from sim.trace.model import Window

@@ -1,6 +1,6 @@
 """What a selected bar tells: its cause, its wait and who was in the way, in words."""
 
-from cbtui.theme import Charset
+from cbtui.looks.theme import Charset
 from cbtui.widgets.lanes.details import Details, details_of, details_of_selection
 from cbtui.widgets.lanes.details_rows import details_rows
 from cbtui.widgets.lanes.rows import ThreadLane

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rich.cells import cell_len
 
-from cbtui.theme import Charset, Role
+from cbtui.looks.theme import Charset, Role
 from cbtui.widgets.lanes import Painter, Selection, wanted_rows
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLane, ThreadLane, all_lanes
 from sim.trace.events import MessageDropped, Reason

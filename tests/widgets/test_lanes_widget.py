@@ -3,7 +3,7 @@
 from textual.app import App, ComposeResult
 from textual.geometry import Region
 
-from cbtui.theme import Charset
+from cbtui.looks.theme import Charset
 from cbtui.widgets.lanes import Lanes
 from sim.trace.model import Window
 from tests.support.runs import ns, shared_group_run

@@ -3,7 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cbtui.theme import Ink, Role, Run
+from cbtui.looks.theme import Ink, Role, Run
 from cbtui.widgets.painted import changed_part
 
 TEXT, WARN = Ink(Role.TEXT), Ink(Role.WARN)

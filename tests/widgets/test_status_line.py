@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from cbtui.live_run import State
+from cbtui.runs.live.live_run import State
 from cbtui.widgets.status_line import Status, status_row
 from tests.support.builder import ns
 

@@ -7,9 +7,9 @@ from rich.color import Color
 from rich.color_triplet import ColorTriplet
 from rich.style import Style
 
-from cbtui.contrast import BLACK, WHITE, contrast, legible
-from cbtui.palettes import DARK, HIGH_CONTRAST, HIGH_CONTRAST_LIGHT, LIGHT, Palette
-from cbtui.theme import GLYPHS, Charset, Ink, Role, group_colour, style_of, texture_of
+from cbtui.looks.contrast import BLACK, WHITE, contrast, legible
+from cbtui.looks.palettes import DARK, HIGH_CONTRAST, HIGH_CONTRAST_LIGHT, LIGHT, Palette
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, group_colour, style_of, texture_of
 from sim.trace.events import Reason
 
 PALETTES = [DARK, LIGHT, HIGH_CONTRAST, HIGH_CONTRAST_LIGHT]

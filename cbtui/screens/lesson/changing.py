@@ -4,10 +4,10 @@ import asyncio
 from collections.abc import Callable
 from typing import Any
 
-from cbtui.changeable import Callback, Changeable, callbacks_of, changeable, place_of
-from cbtui.changes import Changes
-from cbtui.contenders import side_of
-from cbtui.equivalent_code import code_of
+from cbtui.runs.compared_runs import side_of
+from cbtui.runs.setup.changeable import Callback, Changeable, callbacks_of, changeable, place_of
+from cbtui.runs.setup.changes import Changes
+from cbtui.runs.setup.equivalent_code import code_of
 from cbtui.screens.lesson.taking import TakingScreen
 from cbtui.screens.setup import SetupScreen
 from cbtui.screens.setup_rows import GroupRow, NumberRow, Row, ThreadsRow

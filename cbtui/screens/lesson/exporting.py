@@ -3,7 +3,7 @@
 import asyncio
 from time import monotonic
 
-from cbtui.live_export import LiveExport
+from cbtui.runs.live.live_export import LiveExport
 from cbtui.screens.export import Choice, ExportScreen
 from cbtui.screens.lesson.helping import HelpingScreen
 

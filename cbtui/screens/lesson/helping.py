@@ -2,9 +2,9 @@
 
 from pathlib import Path
 
-from cbtui.keymap import keymap_of
-from cbtui.lesson_page import Part
-from cbtui.named_keys import with_keys_in_force
+from cbtui.keys.keymap import keymap_of
+from cbtui.keys.named_keys import with_keys_in_force
+from cbtui.learning.lesson_page import Part
 from cbtui.screens.lesson.teaching import TeachingScreen
 from cbtui.widgets.guide import Guide
 from lessons.description import Exercise

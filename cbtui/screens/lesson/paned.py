@@ -9,10 +9,10 @@ from textual.containers import Container
 from textual.events import DescendantFocus
 from textual.widget import Widget
 
-from cbtui.actions import Scope
-from cbtui.editor import EditorError, edit
-from cbtui.keymap import keymap_of
+from cbtui.keys.actions import Scope
+from cbtui.keys.keymap import keymap_of
 from cbtui.screens.lesson.running import RunningScreen
+from cbtui.terminal.editor import EditorError, edit
 from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.diagnosis_line import DiagnosisLine

@@ -9,24 +9,25 @@ import msgspec
 from textual import on
 from textual.message import Message
 
-from cbtui.actions import PANES, Scope
-from cbtui.changes import Changes
-from cbtui.compositing import SparingCompositor
-from cbtui.contenders import Side
-from cbtui.findings import Watch
-from cbtui.garbage import collect_now, let_go_of_screen
-from cbtui.keymap import keymap_of
-from cbtui.live_recording import Finish
-from cbtui.live_run import Deliver, Ended, LiveRun, OpenSession
-from cbtui.playhead import Playhead
-from cbtui.record import CannotRecordError
+from cbtui.engines.session import Deliver, Ended
+from cbtui.keys.actions import PANES, Scope
+from cbtui.keys.keymap import keymap_of
+from cbtui.looks.theme import Charset
+from cbtui.runs.compared_runs import Side
+from cbtui.runs.live.findings import Watch
+from cbtui.runs.live.live_recording import Finish
+from cbtui.runs.live.live_run import LiveRun, OpenSession
+from cbtui.runs.live.playhead import Playhead
+from cbtui.runs.recorded.recording_file import CannotRecordError
+from cbtui.runs.setup.changes import Changes
+from cbtui.runs.setup.subject import Subject
 from cbtui.screens.sized import SizedScreen
-from cbtui.subject import Subject
-from cbtui.theme import Charset
+from cbtui.terminal.compositing import SparingCompositor
+from cbtui.terminal.garbage_collector import collect_now, let_go_of_screen
 from lessons.lesson import Lesson
 from sim.engine.setup import Keyboard
-from sim.trace.concurrency import Concurrency
 from sim.trace.events import AnyEvent
+from sim.trace.figures.concurrency import Concurrency
 
 if TYPE_CHECKING:
     from cbtui.app import CbtuiApp

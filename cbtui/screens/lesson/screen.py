@@ -8,10 +8,10 @@ from typing import ClassVar
 
 from textual.binding import BindingType
 
-from cbtui.actions import CHECKS, Scope, bindings_of
-from cbtui.keymap import keymap_of
-from cbtui.live_run import State
-from cbtui.playhead import SPANS
+from cbtui.keys.actions import CHECKS, Scope, bindings_of
+from cbtui.keys.keymap import keymap_of
+from cbtui.runs.live.live_run import State
+from cbtui.runs.live.playhead import SPANS
 from cbtui.screens.diagnoses import problems_note
 from cbtui.screens.layout import Layout
 from cbtui.screens.lesson.exporting import ExportingScreen

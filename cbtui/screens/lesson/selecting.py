@@ -2,7 +2,7 @@
 
 from textual import on
 
-from cbtui.findings import Told
+from cbtui.runs.live.findings import Told
 from cbtui.screens.diagnoses import DiagnosesScreen
 from cbtui.screens.lesson.timed import TimedScreen
 from cbtui.widgets.code import CodeView

@@ -3,12 +3,12 @@
 from collections.abc import Iterator
 
 from cbtui.screens.lesson.selecting import SelectingScreen
-from cbtui.widgets.diagnosis import call_note, diagnose, executor_label
-from cbtui.widgets.durations import duration
+from cbtui.text.durations import duration
+from cbtui.widgets.diagnosis import call_note, diagnose
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.details import details_of_selection
 from sim.trace.model import Nanoseconds
-from sim.trace.words import name_of, why_waiting
+from sim.trace.words import executor_label, name_of, why_waiting
 
 
 class TakingScreen(SelectingScreen):

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, cast
 from textual import on
 from textual.message import Message
 
-from cbtui.actions import Scope
-from cbtui.keymap import STANDARD, keymap_of
-from cbtui.lesson_page import Part, Signs, Standing, introduction, page_of, predicted
-from cbtui.outcome import Outcome, OutcomeRun
+from cbtui.keys.actions import Scope
+from cbtui.keys.keymap import STANDARD, keymap_of
+from cbtui.learning.lesson_page import Part, Signs, Standing, introduction, page_of, predicted
+from cbtui.learning.outcome import Outcome, OutcomeRun
+from cbtui.looks.theme import Charset
 from cbtui.screens.lesson.changing import ChangingScreen
 from cbtui.screens.prediction import PredictionScreen, Way
-from cbtui.theme import Charset
 from cbtui.widgets.guide import Guide
 from lessons.lesson import Lesson
 from lessons.progress import Progress

@@ -6,9 +6,9 @@ from enum import Enum, StrEnum
 from textwrap import wrap
 from typing import NamedTuple
 
-from cbtui.check_text import FAILED, PASSED
-from cbtui.theme import Charset
-from cbtui.widgets.cells import visible
+from cbtui.looks.theme import Charset
+from cbtui.runs.judged.check_text import FAILED, PASSED
+from cbtui.text.cells import visible
 from sim.trace.model import Nanoseconds
 
 _INDENT = 2

@@ -5,13 +5,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from enum import Enum, auto
 
-from cbtui.theme import GLYPHS, Charset
+from cbtui.looks.theme import GLYPHS, Charset
+from cbtui.text.durations import duration
 from cbtui.widgets.code.files import SourceFile, SourceFiles
-from cbtui.widgets.durations import duration
 from cbtui.widgets.lanes.names import short_thread
-from cbtui.widgets.lanes.roster import roster_of
 from sim.trace.events import EntityId
 from sim.trace.model import Entity, Moment, Nanoseconds, Span, Window
+from sim.trace.roster import roster_of
 from sim.trace.timeline import Timeline
 from sim.trace.words import why_waiting
 

@@ -14,9 +14,9 @@ from textual.message import Message
 from textual.reactive import var
 from textual.strip import Strip
 
-from cbtui.actions import Scope, bindings_of
-from cbtui.theme import GLYPHS, Charset, Ink, Role
-from cbtui.widgets.cells import fit, visible
+from cbtui.keys.actions import Scope, bindings_of
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role
+from cbtui.text.cells import fit, visible
 from cbtui.widgets.code.files import SourceFile, SourceFiles
 from cbtui.widgets.code.highlight import Kind, Word
 from cbtui.widgets.code.marks import Doing, Marked, marks_at

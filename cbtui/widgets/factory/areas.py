@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from cbtui.theme import GLYPHS, Ink, Role, texture_of
+from cbtui.looks.theme import GLYPHS, Ink, Role, texture_of
 from cbtui.widgets.factory.canvas import PLAIN, WARN, Canvas
 from cbtui.widgets.factory.glyphs import Walls
 from cbtui.widgets.factory.large_seats import LargeSeats

@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from cbtui.theme import GLYPHS, Ink, Role
-from cbtui.widgets.durations import duration
+from cbtui.looks.theme import GLYPHS, Ink, Role
+from cbtui.text.durations import duration
 from cbtui.widgets.factory.canvas import FAINT, PLAIN, STRONG, WARN, Canvas
 from cbtui.widgets.factory.scene import Area, Belt, Scene
 from cbtui.widgets.factory.words import belt_name, details, first_fitting, level, reasons

@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from cbtui.theme import Charset, Ink, Role, Run
-from cbtui.widgets.cells import Row, fit
+from cbtui.looks.theme import Charset, Ink, Role, Run
+from cbtui.text.cells import Row, fit
 from cbtui.widgets.factory.glyphs import FACTORY_GLYPHS, FactoryGlyphs
 
 PLAIN = Ink(Role.TEXT, 0)

@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 
-from cbtui.theme import Charset
+from cbtui.looks.theme import Charset
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,6 @@
 """Draws seats and workers three rows high, for a picture that a whole class can see."""
 
-from cbtui.theme import Ink
+from cbtui.looks.theme import Ink
 from cbtui.widgets.factory.canvas import FAINT, PLAIN, STRONG, Canvas
 from cbtui.widgets.factory.scene import Stay, Worker
 from cbtui.widgets.factory.seats import Seats

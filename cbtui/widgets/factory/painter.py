@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from cbtui.theme import Charset, Run
+from cbtui.looks.theme import Charset, Run
 from cbtui.widgets.factory.areas import Areas
 from cbtui.widgets.factory.belts import Belts
 from cbtui.widgets.factory.canvas import FAINT, STRONG, WARN, Canvas

@@ -6,10 +6,10 @@ from enum import Enum, auto
 from functools import cached_property
 
 from cbtui.widgets.lanes.names import short_thread
-from cbtui.widgets.lanes.roster import roster_of
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, SoleLane, ThreadLane, all_lanes, ever_ran
 from sim.trace.events import EntityKind, GroupKind, ThreadId
 from sim.trace.model import Blocked, Entity, Group, Moment, Nanoseconds, Queue, Span, Wait, Window
+from sim.trace.roster import roster_of
 from sim.trace.timeline import Timeline
 
 STEPS = 3

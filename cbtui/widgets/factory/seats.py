@@ -3,8 +3,8 @@
 from collections.abc import Callable, Sequence
 from functools import partial
 
-from cbtui.theme import Ink, Role
-from cbtui.widgets.durations import duration
+from cbtui.looks.theme import Ink, Role
+from cbtui.text.durations import duration
 from cbtui.widgets.factory.canvas import FAINT, PLAIN, STRONG, WARN, Canvas
 from cbtui.widgets.factory.plan import Columns, Place
 from cbtui.widgets.factory.scene import STEPS, Scene, Stay, Worker

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from textual.geometry import Size
 from textual.reactive import reactive
 
-from cbtui.theme import Charset, Run
+from cbtui.looks.theme import Charset, Run
 from cbtui.widgets.factory.painter import GLANCE, FactoryPainter
 from cbtui.widgets.painted import Painted
 from sim.trace.model import Nanoseconds

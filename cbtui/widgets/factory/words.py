@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from cbtui.widgets.durations import duration
+from cbtui.text.durations import duration
 from cbtui.widgets.factory.scene import Area, Belt, Scene, Stay, Worker
 from cbtui.widgets.lanes.status import short
 from sim.trace.events import EntityKind, GroupKind, Reason

@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from cbtui.theme import Ink
+from cbtui.looks.theme import Ink
 from cbtui.widgets.factory.canvas import FAINT, PLAIN, STRONG, Canvas
 from cbtui.widgets.factory.large_seats import draw_figure
 from cbtui.widgets.factory.scene import Scene, Stay, Worker

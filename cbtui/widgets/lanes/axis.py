@@ -2,8 +2,8 @@
 
 from collections.abc import Iterable
 
-from cbtui.theme import GLYPHS, Ink, Role
-from cbtui.widgets.cells import Row
+from cbtui.looks.theme import GLYPHS, Ink, Role
+from cbtui.text.cells import Row
 from cbtui.widgets.lanes.scale import Scale, labels
 from sim.trace.model import Mark
 

@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from cbtui.theme import Glyphs, Ink, Role, texture_of
-from cbtui.widgets.cells import Row
-from cbtui.widgets.durations import duration
+from cbtui.looks.theme import Glyphs, Ink, Role, texture_of
+from cbtui.text.cells import Row
+from cbtui.text.durations import duration
 from cbtui.widgets.lanes.columns import Column, Interval, Stretch, stretches
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.lanes.scale import Scale

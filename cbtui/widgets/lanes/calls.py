@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from itertools import islice
 
-from cbtui.theme import GLYPHS, Ink, Role
-from cbtui.widgets.cells import Row
-from cbtui.widgets.durations import duration
+from cbtui.looks.theme import GLYPHS, Ink, Role
+from cbtui.text.cells import Row
+from cbtui.text.durations import duration
 from cbtui.widgets.lanes.scale import Scale
 from sim.trace.model import Call, Nanoseconds
 from sim.trace.timeline import Timeline

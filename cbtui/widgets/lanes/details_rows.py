@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from cbtui.theme import GLYPHS, Charset, Ink, Role, Run
-from cbtui.widgets.cells import fit, visible
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, Run
+from cbtui.text.cells import fit, visible
 from cbtui.widgets.lanes.details import Details
 
 ROWS = 2

@@ -2,9 +2,9 @@
 
 from typing import NamedTuple
 
-from cbtui.actions import Scope
-from cbtui.keymap import STANDARD, Keymap
-from cbtui.theme import Charset
+from cbtui.keys.actions import Scope
+from cbtui.keys.keymap import STANDARD, Keymap
+from cbtui.looks.theme import Charset
 
 
 class LaneKeys(NamedTuple):

@@ -5,9 +5,9 @@ from dataclasses import dataclass
 from functools import partial
 from math import inf
 
-from cbtui.theme import GLYPHS, Charset, Ink, Role, Run, texture_of
-from cbtui.widgets.cells import Row, fit
-from cbtui.widgets.durations import duration
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, Run, texture_of
+from cbtui.text.cells import Row, fit
+from cbtui.text.durations import duration
 from cbtui.widgets.lanes.axis import draw_axis
 from cbtui.widgets.lanes.bars import Bars
 from cbtui.widgets.lanes.calls import Calls, draw_calls

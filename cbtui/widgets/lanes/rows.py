@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from cbtui.widgets.lanes.roster import MOST, roster_of
 from sim.trace.events import EntityId, GroupId, ThreadId
 from sim.trace.model import Entity, Group, Nanoseconds, Thread, Window
+from sim.trace.roster import MOST, roster_of
 from sim.trace.timeline import Timeline
 
 

@@ -2,8 +2,8 @@
 
 from dataclasses import dataclass
 
-from cbtui.theme import GLYPHS, Charset, Ink, Role, Run
-from cbtui.widgets.durations import duration
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, Run
+from cbtui.text.durations import duration
 from cbtui.widgets.lanes.calls import Calls
 from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, SoleLane, ThreadLane, ever_ran
 from sim.trace.events import EntityKind, GroupKind

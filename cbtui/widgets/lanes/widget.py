@@ -8,7 +8,7 @@ from textual.geometry import Size
 from textual.message import Message
 from textual.reactive import reactive
 
-from cbtui.theme import GLYPHS, Charset, Run
+from cbtui.looks.theme import GLYPHS, Charset, Run
 from cbtui.widgets.lanes.details import details_of_selection
 from cbtui.widgets.lanes.details_rows import ROWS, details_rows
 from cbtui.widgets.lanes.keys import USUAL_KEYS, LaneKeys

@@ -2,8 +2,8 @@
 
 from rich.cells import cell_len
 
-from cbtui.theme import Charset
-from cbtui.widgets.cells import visible
+from cbtui.looks.theme import Charset
+from cbtui.text.cells import visible
 from sim.trace.events import Logged, Printed
 
 

@@ -10,9 +10,9 @@ from textual.message import Message
 from textual.reactive import var
 from textual.strip import Strip
 
-from cbtui.actions import Scope, bindings_of
-from cbtui.theme import GLYPHS, Charset, Ink, Role
-from cbtui.widgets.cells import fit
+from cbtui.keys.actions import Scope, bindings_of
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role
+from cbtui.text.cells import fit
 from cbtui.widgets.following import Following
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.log.filter import Filter, LogEvent

@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from cbtui.theme import Charset
+from cbtui.looks.theme import Charset
 from cbtui.widgets.dots import DOTS_PER_CELL, Floats
 from sim.trace.events import ArenaShown, RobotMoved
 

@@ -3,8 +3,8 @@
 import math
 from collections.abc import Sequence
 
-from cbtui.theme import GLYPHS, Charset, Ink, Role
-from cbtui.widgets.cells import Row
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role
+from cbtui.text.cells import Row
 from sim.trace.events import RobotMoved, VelocityCommanded
 
 PLAIN = Ink(Role.TEXT)

@@ -6,9 +6,9 @@ from typing import NamedTuple
 
 from textual.geometry import Region
 
-from cbtui.theme import GLYPHS, Charset, Ink, Role, Run
-from cbtui.widgets.cells import Row
-from cbtui.widgets.durations import duration
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, Run
+from cbtui.text.cells import Row
+from cbtui.text.durations import duration
 from cbtui.widgets.robot.extents import View, near, whole
 from cbtui.widgets.robot.figures import figures
 from cbtui.widgets.robot.places import Look, Places, arrange

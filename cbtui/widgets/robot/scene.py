@@ -5,8 +5,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from cbtui.theme import TRAIL_STEPS, Charset, Ink, Role
-from cbtui.widgets.cells import Row
+from cbtui.looks.theme import TRAIL_STEPS, Charset, Ink, Role
+from cbtui.text.cells import Row
 from cbtui.widgets.dots import Dots, Floats
 from cbtui.widgets.robot.extents import View
 from sim.trace.events import ArenaShown, RobotMoved, Scanned

@@ -11,7 +11,7 @@ from textual.message import Message
 from textual.reactive import reactive
 from textual.strip import Strip
 
-from cbtui.theme import Charset, Run
+from cbtui.looks.theme import Charset, Run
 from cbtui.widgets.painted import Painted
 from cbtui.widgets.robot.film import half_blocks, ramp
 from cbtui.widgets.robot.painter import Painting, RobotPainter

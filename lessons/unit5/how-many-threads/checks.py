@@ -11,7 +11,7 @@ from lessons.checks import (
     turns,
     whole,
 )
-from sim.trace.concurrency import Concurrency
+from sim.trace.figures.concurrency import Concurrency
 from sim.trace.timeline import Timeline
 
 SENSORS = ("/odom", "/scan")

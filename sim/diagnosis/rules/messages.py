@@ -10,8 +10,8 @@ from sim.diagnosis.look import LongWait, Look
 from sim.diagnosis.rule import Explanation, Finding, Place, Rule, Weight, entity_of, place_of
 from sim.diagnosis.words import often, who
 from sim.trace.events import EntityId, EntityKind
+from sim.trace.figures.summary_text import duration
 from sim.trace.model import Nanoseconds, Span, Window
-from sim.trace.summary_text import duration
 from sim.trace.timeline import Timeline
 from sim.trace.words import why_waiting
 

@@ -7,8 +7,8 @@ from sim.diagnosis.look import Look
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, entity_of, place_of
 from sim.diagnosis.words import group_of, listed, often, threads_for, who, with_threads
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
+from sim.trace.figures.summary_text import duration
 from sim.trace.model import Entity, Nanoseconds, Span, Wait, Window
-from sim.trace.summary_text import duration
 from sim.trace.timeline import Timeline
 
 _HABIT = 3

@@ -8,8 +8,8 @@ from sim.diagnosis.look import LongWait, Look
 from sim.diagnosis.rule import Explanation, Finding, Rule, place_of
 from sim.diagnosis.words import group_of, often, threads_for, who
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
+from sim.trace.figures.summary_text import duration
 from sim.trace.model import Entity, Nanoseconds, Window
-from sim.trace.summary_text import duration
 from sim.trace.timeline import Timeline
 
 HALF_A_SECOND: Nanoseconds = 500_000_000

@@ -7,13 +7,13 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 from weakref import ref
 
-from sim.clock.units import wait_ns
 from sim.ros.action.cancelling import uuid_of
 from sim.ros.action.goal_ids import new_goal_id
 from sim.ros.action.goal_states import TERMINAL, GoalState
 from sim.ros.action.parts import SubscriptionPart
 from sim.ros.action.waitable import ActionWaitable, await_or_execute
 from sim.ros.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
+from sim.units import wait_ns
 
 if TYPE_CHECKING:
     from sim.ros.callback_groups import CallbackGroup

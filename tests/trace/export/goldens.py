@@ -6,7 +6,7 @@ Look at what changed before keeping it, at the picture too.
 from io import StringIO
 from pathlib import Path
 
-from sim.trace.export import CallTable, ChromeFile, report, svg
+from sim.export import CallTable, ChromeFile, report, svg
 from sim.trace.model import Window
 from tests.support.runs import ns
 from tests.trace.export.examples import small_run, timeline_of

@@ -9,8 +9,8 @@ from typing import Any
 
 import perfetto.protos.perfetto.trace.perfetto_trace_pb2 as pb
 
+from sim.export import ChromeFile, Narrator, PerfettoFile
 from sim.trace.events import AnyEvent
-from sim.trace.export import ChromeFile, Narrator, PerfettoFile
 
 
 @dataclass

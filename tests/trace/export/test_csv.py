@@ -7,9 +7,9 @@ from io import StringIO
 import pytest
 from hypothesis import given
 
+from sim.export import CallTable
+from sim.export.texts import cell, seconds
 from sim.trace.events import AnyEvent
-from sim.trace.export import CallTable
-from sim.trace.export.texts import cell, seconds
 from sim.trace.model import Span, Window
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run

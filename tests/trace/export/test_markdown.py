@@ -2,8 +2,8 @@
 
 import re
 
-from sim.trace.export import report
-from sim.trace.export.texts import markdown
+from sim.export import report
+from sim.export.texts import markdown
 from tests.support.runs import Run, shared_group_run
 from tests.trace.export.examples import small_run, timeline_of
 

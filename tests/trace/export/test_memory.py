@@ -8,6 +8,7 @@ from typing import IO, Any, cast
 
 import pytest
 
+from sim.export import CallTable, ChromeFile, Narrator, PerfettoFile
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,
@@ -18,7 +19,6 @@ from sim.trace.events import (
     WaitEnded,
     WaitStarted,
 )
-from sim.trace.export import CallTable, ChromeFile, Narrator, PerfettoFile
 from tests.trace.systems import System
 
 STEP = 20_000_000

@@ -7,6 +7,7 @@ from typing import get_args
 import pytest
 from hypothesis import given
 
+from sim.export import Narrator, PerfettoFile
 from sim.trace.events import (
     AnyEvent,
     CallbackStarted,
@@ -19,7 +20,6 @@ from sim.trace.events import (
     RunStarted,
     ThreadAppeared,
 )
-from sim.trace.export import Narrator, PerfettoFile
 from sim.trace.model import Window
 from tests.support.runs import Run, dummy_server_run, ns, shared_group_run
 from tests.trace.export import reading

@@ -3,8 +3,8 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sim.export.ordering import InOrder, Parcel
 from sim.trace.events import AnyEvent, EntityAppeared, EntityKind, EntityReady, WaitStarted
-from sim.trace.export.ordering import InOrder, Parcel
 from tests.support.runs import Run, ns
 from tests.trace.systems import jumbled_runs
 

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sim.export import svg
+from sim.export.lanes import ticks
 from sim.trace.events import AnyEvent, Reason
-from sim.trace.export import svg
-from sim.trace.export.lanes import ticks
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, ns, shared_group_run

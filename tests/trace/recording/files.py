@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
+from sim.recording import About, Recorder
 from sim.trace.events import AnyEvent, MessageSent, TimePassed, TopicAppeared
-from sim.trace.recording import About, Recorder
 from sim.trace.timeline import Timeline
 from tests.support.runs import shared_group_run
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import pytest
 
+from sim.recording import About, BackgroundRecorder, Recorder, read
 from sim.trace.events import AnyEvent, Notice, RunStarted, Severity, ThreadAppeared
-from sim.trace.recording import About, BackgroundRecorder, Recorder, read
 from tests.trace.recording.files import ABOUT, run_in_batches, without_contents
 
 BATCHES = run_in_batches()
@@ -79,7 +79,7 @@ FORGETFUL = """
 import sys
 from pathlib import Path
 from sim.trace.events import RunStarted
-from sim.trace.recording import About, BackgroundRecorder, Recorder
+from sim.recording import About, BackgroundRecorder, Recorder
 recorder = BackgroundRecorder(Recorder(Path(sys.argv[1]), About(title="forgotten")))
 recorder.take([RunStarted(0, "forgotten", "real", 0)])
 {ending}

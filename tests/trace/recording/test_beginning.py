@@ -3,6 +3,7 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
+from sim.recording import Beginning
 from sim.trace.events import (
     AnyEvent,
     CallbackStarted,
@@ -11,7 +12,6 @@ from sim.trace.events import (
     MessageDropped,
     TopicAppeared,
 )
-from sim.trace.recording import Beginning
 from tests.support.runs import dummy_server_run, shared_group_run
 from tests.trace.recording.files import TOPICS, timeline_of
 from tests.trace.samples import CAST

@@ -13,10 +13,10 @@ from pathlib import Path
 import pytest
 from mcap.writer import CompressionType, Writer
 
+from sim.recording import About, Recorder, Recording, RecordingError, batch, read
 from sim.trace.events import AnyEvent, ArenaShown, Printed, RunStarted, TopicAppeared
-from sim.trace.recording import About, Recorder, Recording, RecordingError, batch, read
-from sim.trace.summary import summarise
-from sim.trace.summary_text import plain_text
+from sim.trace.figures.summary import summarise
+from sim.trace.figures.summary_text import plain_text
 from tests.trace.recording.files import (
     run_in_batches,
     timeline_of,
@@ -158,7 +158,7 @@ WRITER = """
 import sys, time
 from pathlib import Path
 from sim.trace.events import Printed, RunStarted
-from sim.trace.recording import About, BackgroundRecorder, Recorder
+from sim.recording import About, BackgroundRecorder, Recorder
 recorder = Recorder(Path(sys.argv[1]), About(title="killed"))
 if sys.argv[2] == "background":
     recorder = BackgroundRecorder(recorder)

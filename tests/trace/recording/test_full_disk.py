@@ -10,9 +10,9 @@ from typing import Any, cast
 
 import pytest
 
-from cbtui.events_file import EventsFile
+from cbtui.runs.recorded.events_file import EventsFile
+from sim.recording import About, Recorder, RecordingError, read, recorder
 from sim.trace.events import AnyEvent, Notice, Severity
-from sim.trace.recording import About, Recorder, RecordingError, read, recorder
 from tests.trace.recording.files import run_in_batches, without_contents
 
 BATCHES = run_in_batches(9)[:3]

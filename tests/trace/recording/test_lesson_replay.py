@@ -8,14 +8,14 @@ from queue import Queue
 import msgspec
 import pytest
 
-from cbtui.lesson_setup import setup_for
-from cbtui.replay import ReplaySession
+from cbtui.runs.live.replay import ReplaySession
+from cbtui.runs.setup.lesson_setup import setup_for
 from lessons.catalogue import find
 from sim.engine.setup import TimedCall
+from sim.recording import About, Recorder, read
 from sim.trace.events import AnyEvent, MessageSent
+from sim.trace.figures.statistics import statistics
 from sim.trace.model import Window
-from sim.trace.recording import About, Recorder, read
-from sim.trace.statistics import statistics
 from sim.trace.timeline import Timeline
 from tests.support.engine_runs import SECOND, Run, run_to_end
 from tests.trace.recording.files import timeline_of

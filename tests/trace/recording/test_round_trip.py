@@ -12,9 +12,9 @@ from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
 from rosbags.interfaces import ConnectionExtRosbag2
 
+from sim.recording import About, Recorder, read
 from sim.trace.events import AnyEvent, MessageSent, Printed, TimePassed, TopicAppeared
 from sim.trace.model import Window
-from sim.trace.recording import About, Recorder, read
 from tests.trace.recording.files import (
     ABOUT,
     TOPICS,

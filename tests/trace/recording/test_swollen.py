@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 from mcap.writer import CompressionType, Writer
 
-from cbtui.reading_progress import ReadingProgress
+from cbtui.runs.recorded.reading_progress import ReadingProgress
+from sim.recording import batch, chunk, read
+from sim.recording.about import NAME, About, to_metadata
 from sim.trace.events import AnyEvent, Notice, RunStarted, Severity
-from sim.trace.recording import batch, chunk, read
-from sim.trace.recording.about import NAME, About, to_metadata
 
 START: list[AnyEvent] = [RunStarted(0, "x", "virtual", 0)]
 NOTICES: list[AnyEvent] = [Notice(1, Severity.INFO, "")] * 1000
@@ -81,8 +81,8 @@ def test_reading_for_more_than_a_second_shows_how_far_it_is(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], terminal: bool
 ) -> None:
     monkeypatch.setattr("sys.stderr.isatty", lambda: terminal)
-    monkeypatch.setattr("cbtui.reading_progress._SOON", -1.0)
-    monkeypatch.setattr("cbtui.reading_progress._PERIOD", -1.0)
+    monkeypatch.setattr("cbtui.runs.recorded.reading_progress._SOON", -1.0)
+    monkeypatch.setattr("cbtui.runs.recorded.reading_progress._PERIOD", -1.0)
     path = tmp_path / "run.mcap"
     write(path, [[batch.pack_batch(NOTICES)]] * 4)
     list(ReadingProgress(read(path)).batches())

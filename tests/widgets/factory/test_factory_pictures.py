@@ -1,6 +1,6 @@
 """The factory as text: who sits, who waits and why can be read without a colour."""
 
-from cbtui.theme import Charset
+from cbtui.looks.theme import Charset
 from cbtui.widgets.factory import FactoryPainter
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, dummy_server_run, ns, shared_group_run, split_groups_run

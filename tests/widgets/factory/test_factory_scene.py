@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from rich.cells import cell_len
 
-from cbtui.theme import Charset, Role
+from cbtui.looks.theme import Charset, Role
 from cbtui.widgets.factory import FactoryPainter
 from cbtui.widgets.factory.scene import Area, Scene, Stay, scene_of
 from sim.trace.events import Reason

@@ -2,7 +2,7 @@
 
 from textual.app import App, ComposeResult
 
-from cbtui.theme import Charset
+from cbtui.looks.theme import Charset
 from cbtui.widgets.factory import FactoryPainter, FactoryView
 from tests.support.runs import ns, shared_group_run, split_groups_run
 from tests.widgets.pictures import told

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from rich.cells import cell_len
 from textual.geometry import Region
 
-from cbtui.theme import Charset, Role
+from cbtui.looks.theme import Charset, Role
 from cbtui.widgets.robot import Look
 from cbtui.widgets.robot.extents import Extent, View, near, whole
 from cbtui.widgets.robot.painter import RobotPainter

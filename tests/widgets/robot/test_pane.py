@@ -6,7 +6,7 @@ import msgspec
 import pytest
 from textual.geometry import Region
 
-from cbtui.theme import Charset, Role
+from cbtui.looks.theme import Charset, Role
 from cbtui.widgets.robot import Look
 from cbtui.widgets.robot.painter import RobotPainter
 from cbtui.widgets.robot.places import Places, arrange

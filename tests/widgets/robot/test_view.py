@@ -7,7 +7,7 @@ import pytest
 from textual.app import App, ComposeResult
 from textual.pilot import Pilot
 
-from cbtui.theme import Charset
+from cbtui.looks.theme import Charset
 from cbtui.widgets.robot import Look, RobotView
 from cbtui.widgets.robot.painter import RobotPainter
 from sim.camera import Picture, Shot

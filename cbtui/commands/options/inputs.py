@@ -1,0 +1,61 @@
+"""The options that give a run inputs at moments of it: calls of its service, ``ros2`` lines, and keys."""
+
+import argparse
+from collections.abc import Iterable
+from operator import itemgetter
+
+from cbtui.commands.options import values
+from cbtui.commands.options.targets import refuse
+
+
+def add_options(parser: argparse.ArgumentParser) -> None:
+    """Give a command ``--call`` and ``--at``."""
+    parser.add_argument(
+        "--call",
+        dest="calls",
+        metavar="SECONDS",
+        type=values.moment,
+        action="append",
+        default=[],
+        help="call the SetBool service at that time of what is run; may be given again",
+    )
+    parser.add_argument(
+        "--at",
+        dest="lines",
+        metavar=("SECONDS", "LINE"),
+        nargs=2,
+        action=values.TimedLine,
+        default=[],
+        help="carry out a ros2 line at that time, such as 2 'ros2 topic list'; may be given again",
+    )
+
+
+def add_typing(parser: argparse.ArgumentParser) -> None:
+    """Give a command ``--type``."""
+    parser.add_argument(
+        "--type",
+        dest="typed",
+        metavar=("SECONDS", "TEXT"),
+        nargs=2,
+        action=values.TimedKeys,
+        default=[],
+        help=r"type that text at that time, for a program that reads from the keyboard, such as 2 w or "
+        r"3 '0.5\n'; may be given again (else: what is typed here, or comes through a pipe)",
+    )
+
+
+def check(options: argparse.Namespace, seconds: float) -> None:
+    """Refuse what would come when a run of so many seconds is over."""
+    moments = [("call", at) for at in options.calls] + [("line", at) for at, _ in options.lines]
+    moments += [("key", at) for at, _ in getattr(options, "typed", ())]
+    for what, at in moments:
+        if at >= seconds:
+            refuse(f"a {what} at {at:g} s comes when the run of {seconds:g} s is over; see --for")
+
+
+def words(calls: Iterable[float], lines: Iterable[tuple[float, str]]) -> list[str]:
+    """The options as they stand on a command line, in the order of time."""
+    return [
+        *(word for at in sorted(calls) for word in ("--call", f"{at:.12g}")),
+        *(word for at, line in sorted(lines, key=itemgetter(0)) for word in ("--at", f"{at:.12g}", line)),
+    ]

@@ -1,0 +1,95 @@
+"""What a command is to run: a lesson, or files; what is neither ends the program with one line and 2."""
+
+import argparse
+import os
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+from cbtui.terminal.capabilities import is_browser, is_dumb
+from cbtui.text.output import complain, is_text
+
+if TYPE_CHECKING:
+    from lessons.lesson import Lesson
+    from sim.engine.setup import RunSetup
+
+
+def lesson_of(name: str) -> "Lesson":
+    """The lesson of that id; an unknown one ends the program with one line and 2."""
+    from lessons.catalogue import UnknownLesson, find
+
+    try:
+        return find(name)
+    except UnknownLesson as error:
+        refuse(str(error))
+
+
+def refuse(sentence: str) -> NoReturn:
+    """End the program with one line and 2."""
+    complain(sentence)
+    raise SystemExit(2)
+
+
+def need_terminal(instead: str) -> None:
+    """End the program where there is no terminal; ``instead`` is the command that needs none."""
+    if is_browser(os.environ):
+        return
+    if not (sys.stdin.isatty() and sys.stdout.isatty()):
+        refuse(f"the console needs a terminal; use {instead} where there is none")
+    if not sys.stderr.isatty():
+        refuse("the console draws on standard error; leave that to the terminal, without 2>")
+    if is_dumb(os.environ):
+        refuse(f"this terminal (TERM={os.environ['TERM']}) cannot place its cursor; use {instead}")
+
+
+def setup_of_targets(options: argparse.Namespace, speed: float | None) -> "RunSetup":
+    """The set-up of the targets."""
+    from cbtui.runs.setup.lesson_setup import setup_for, setup_for_files
+
+    if not is_file_name(options.targets[0]):
+        if len(options.targets) > 1:
+            refuse("one lesson runs at a time; several targets must all be files")
+        return setup_for(lesson_of(options.targets[0]), threads=options.threads, speed=speed)
+    paths = [file_of(name) for name in options.targets]
+    return setup_for_files(paths, options.arguments, threads=options.threads, speed=speed)
+
+
+def is_file_name(target: str) -> bool:
+    """Tell whether a target is meant as a file rather than as a lesson's id."""
+    return target.endswith((".py", ".xml", ".yaml", ".yml")) or "/" in target
+
+
+def file_of(name: str) -> Path:
+    """The program file of that name; one that is not there ends the program with one line and 2."""
+    path = Path(name)
+    try:
+        if path.is_dir():
+            refuse(f"{name} is a folder; name the file in it that is to run")
+        if not path.exists():
+            refuse(f"there is no file {name}; give a Python file, or a lesson of cbtui list")
+        if not path.is_file():
+            refuse(f"{name} is a pipe or a device; give a file, which can be read more than once")
+    except OSError as error:
+        refuse(f"{name} cannot be opened: {error.strerror}")
+    if not is_text(str(path.resolve())):
+        refuse(f"{name}: what runs has to have a name in UTF-8, and so have its folders; rename it")
+    return path
+
+
+def folder_of(name: str) -> Path:
+    """The folder of that name; one that is not there ends the program with one line and 2."""
+    path = Path(name)
+    try:
+        if not path.is_dir():
+            refuse(f"there is no folder {name}")
+    except OSError as error:
+        refuse(f"{name} cannot be opened: {error.strerror}")
+    return path
+
+
+def same_file(one: Path, other: Path) -> bool:
+    """Tell whether two paths lead to one file, which need not be there yet."""
+    try:
+        return one.samefile(other)
+    except OSError:
+        return os.path.realpath(one) == os.path.realpath(other)

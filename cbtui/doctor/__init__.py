@@ -1,0 +1,46 @@
+"""Looks at all that cbtui needs from a machine; each thing in a function that can be asked alone."""
+
+import os
+import shutil
+import sys
+import sysconfig
+from collections.abc import Iterator
+from pathlib import Path
+
+from cbtui.doctor.engines import engine
+from cbtui.doctor.extras import browser, editor, ros
+from cbtui.doctor.packages import bullet, dependencies, python
+from cbtui.doctor.places import configuration, folders, lessons_found, progress
+from cbtui.doctor.probes import Probe
+from cbtui.doctor.screen import Screen, screen
+from cbtui.doctor.verdict import Verdict
+
+
+def examinations(charset: str, config: str | None = None) -> Iterator[Verdict]:
+    """Yield what is found, thing by thing.
+
+    ``charset`` is what the screen would be drawn with, ``config`` a configuration instead of one's own.
+    Takes about two seconds: an engine and other processes are started, and ended. Nothing is changed.
+    """
+    importing, world = Probe.of_imports(), Probe.of_world()
+    try:
+        yield python(sys.version_info[:3])
+        yield from dependencies(importing)
+        yield bullet(world, sys.version_info[:2], sysconfig.get_platform())
+        yield engine()
+        yield from lessons_found()
+        yield from screen(Screen(os.environ, charset, _size()))
+        yield from folders(Path.cwd)
+        yield from configuration(None if config is None else Path(config))
+        yield progress()
+        yield editor(os.environ)
+        yield browser()
+        yield from ros(os.environ)
+    finally:
+        importing.end()
+        world.end()
+
+
+def _size() -> os.terminal_size | None:
+    terminal = all(stream.isatty() for stream in (sys.stdin, sys.stdout, sys.stderr))
+    return shutil.get_terminal_size() if terminal else None

@@ -1,0 +1,65 @@
+"""What not everybody needs: an editor, the console in a browser, and a ROS 2 of the machine's own."""
+
+import shlex
+import shutil
+import socket
+from collections.abc import Iterator, Mapping
+from importlib.util import find_spec
+from pathlib import Path
+
+from cbtui.doctor.verdict import Verdict, note, well
+from cbtui.text.installing import install_command
+
+_PORT = 8000
+"""The port that ``cbtui serve`` takes when none is named."""
+
+
+def editor(environment: Mapping[str, str]) -> Verdict:
+    """Look whether the person's editor is there."""
+    named = environment.get("VISUAL", "").strip() or environment.get("EDITOR", "").strip()
+    if not named:
+        return note(
+            "editor", "none is named", "export EDITOR=nano or another, to open your code from the console"
+        )
+    try:
+        program = shlex.split(named)[0]
+    except ValueError:
+        return note("editor", f"the quotes of {named} do not match", "set EDITOR anew")
+    if shutil.which(program, path=environment.get("PATH")) is None:
+        return note("editor", f"{program} is not there", "set EDITOR to one that is")
+    return well("editor", named)
+
+
+def browser(port: int = _PORT) -> Verdict:
+    """Look whether the console can be shown in a browser."""
+    if find_spec("textual_serve") is None:
+        return well("browser", f"left out; {install_command('cbtui[serve]')} brings cbtui serve")
+    with socket.socket() as tried:
+        tried.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        try:
+            tried.bind(("127.0.0.1", port))
+        except OSError:
+            return note("browser", f"port {port} is in use", "give cbtui serve another with --port")
+    return well("browser", f"cbtui serve can have port {port}")
+
+
+def ros(environment: Mapping[str, str]) -> Iterator[Verdict]:
+    """Look for a real ROS 2 beside cbtui's model of it."""
+    distribution = environment.get("ROS_DISTRO")
+    try:
+        spec = find_spec("rclpy")
+    except (ImportError, ValueError):
+        spec = None
+    if spec is not None:
+        place = Path(spec.origin).parent if spec.origin else "this Python's path"
+        yield note(
+            "ROS 2",
+            f"a real rclpy lies in {place}; programs that cbtui runs get its model instead",
+            "use python3 or ros2 run for the real one; nothing passes between the two",
+        )
+    elif distribution:
+        yield well(
+            "ROS 2", f"{distribution} is set up here, for another Python; nothing passes to or from it"
+        )
+    else:
+        yield well("ROS 2", "none here, and none needed")

@@ -1,0 +1,106 @@
+"""Folders that are written to, and the files in them: configuration, progress, lessons."""
+
+import os
+import tempfile
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+from cbtui.doctor.verdict import Verdict, fault, note, well
+from cbtui.keys.config import read_file, standard_path
+from lessons.catalogue import ROOT, VARIABLE, lessons
+from lessons.lesson import BadLesson
+from lessons.progress import faulty_line, usual_path
+
+
+def folders(current: Callable[[], Path]) -> Iterator[Verdict]:
+    """Look whether what cbtui writes has a place; nothing is written."""
+    yield _folder(
+        "state folder",
+        usual_path().parent,
+        "set HOME or XDG_STATE_HOME to a folder of yours to have progress kept",
+    )
+    yield _temporary()
+    try:
+        here = current()
+    except OSError:
+        yield note("this folder", "is not there any more", "go to another; exercises are written here")
+        return
+    yield _folder(
+        "this folder", here, "go to a folder of yours before cbtui start and recordings, which write there"
+    )
+
+
+def _temporary() -> Verdict:
+    try:
+        return well("temp folder", tempfile.gettempdir())
+    except OSError:
+        return fault(
+            "temp folder", "there is none to write to", "set TMPDIR to a folder of yours; a run needs one"
+        )
+
+
+def _folder(subject: str, folder: Path, remedy: str) -> Verdict:
+    if not folder.is_absolute():
+        return note(subject, "there is no home folder", remedy)
+    if not is_writable(folder):
+        return note(subject, f"{folder} cannot be written to", remedy)
+    return well(subject, str(folder))
+
+
+def is_writable(folder: Path) -> bool:
+    """Tell whether files can be made in a folder, which may have to be made first."""
+    try:
+        nearest = next(each for each in (folder, *folder.parents) if each.exists())
+    except (OSError, StopIteration):
+        return False
+    return nearest.is_dir() and os.access(nearest, os.W_OK | os.X_OK)
+
+
+def configuration(named: Path | None) -> Iterator[Verdict]:
+    """Look at the configuration with its keys: the one that is named, else one's own."""
+    path = named or standard_path()
+    try:
+        there = path.exists()
+    except OSError:
+        there = True  # reading it says why it cannot be
+    if named is None and not path.is_absolute():
+        remedy = "set HOME or XDG_CONFIG_HOME, or name a file with --config, for keys and colours of your own"
+        yield note("config", "there is no home folder", remedy)
+        return
+    if named is None and not there:
+        yield well("config", f"none ({path} would be it; cbtui keys writes one to begin with)")
+        return
+    complaints = read_file(path).complaints
+    for complaint in complaints:
+        yield note("config", complaint, f"mend {path}; till then this entry is left out")
+    if not complaints:
+        yield well("config", str(path))
+
+
+def progress() -> Verdict:
+    """Look at the file of progress."""
+    path = usual_path()
+    remedy = f"the next console keeps it under another name and goes on; mend or delete {path}"
+    try:
+        if not path.is_absolute() or not path.exists():
+            return well("progress", "none yet")
+        line = faulty_line(path)
+    except OSError as error:
+        return note(
+            "progress", f"{path} cannot be read ({error.strerror})", "give yourself the right to read it"
+        )
+    if line is not None:
+        return note("progress", f"{path.name}:{line} is no progress", remedy)
+    return well("progress", str(path))
+
+
+def lessons_found() -> Iterator[Verdict]:
+    """Look at all lessons, those from elsewhere, too."""
+    try:
+        every = lessons()
+    except BadLesson as error:
+        yield fault("lessons", str(error), f"mend it, or take its folder out of {VARIABLE}")
+        return
+    elsewhere = [lesson for lesson in every if not lesson.folder.is_relative_to(ROOT)]
+    more = f", {len(elsewhere)} of them from elsewhere" if elsewhere else ""
+    yield well("lessons", f"{len(every)}{more}")

@@ -1,0 +1,1 @@
+"""Writes lessons as ROS 2 packages that ``colcon build`` takes."""

@@ -1,0 +1,204 @@
+"""An ament_python package as text: what its files are called, and what is in them.
+
+Source of the form: ``ros2 pkg create --build-type ament_python``; REP 149 for ``package.xml``.
+"""
+
+import ast
+import json
+import keyword
+import shlex
+import sys
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from itertools import pairwise
+from pathlib import PurePosixPath
+from string import Template
+from xml.sax.saxutils import escape
+
+from cbtui.eject import ament_texts as texts
+
+_KEYS = {
+    "cv2": "python3-opencv",
+    "matplotlib": "python3-matplotlib",
+    "numpy": "python3-numpy",
+    "scipy": "python3-scipy",
+    "tf2_ros": "tf2_ros_py",
+    "yaml": "python3-yaml",
+}
+"""What rosdep calls a module whose package has another name."""
+_ROBOT_INTERFACES = frozenset(("geometry_msgs", "nav_msgs", "sensor_msgs"))
+
+
+@dataclass(frozen=True, kw_only=True)
+class LessonProgram:
+    """One lesson's node: an executable and a launch file of the package."""
+
+    name: str
+    """The executable's: letters, digits and underscores."""
+    title: str
+    teaches: str
+    source: bytes
+    """The node's file, as it is; it has a ``main()``."""
+    arguments: tuple[str, ...] = ()
+    """The command line that the lesson gives it, without the program's name."""
+    service: tuple[str, str] | None = None
+    """Name and type of the SetBool service that the node itself offers, if it does."""
+
+    @property
+    def module(self) -> str:
+        """The name of its module, which must be one that ``import`` takes."""
+        importable = self.name.isidentifier() and not keyword.iskeyword(self.name)
+        return self.name if importable else f"lesson_{self.name}"
+
+
+@dataclass(frozen=True, kw_only=True)
+class AmentPackage:
+    """A package of lessons.
+
+    ``also`` gives executables further names; ``launch_files`` are added as they are.
+    """
+
+    name: str
+    title: str
+    """What it is about, in one line."""
+    programs: tuple[LessonProgram, ...]
+    also: Mapping[str, LessonProgram] = field(default_factory=dict)
+    launch_files: Mapping[str, bytes] = field(default_factory=dict)
+
+    def files(self) -> dict[PurePosixPath, bytes]:
+        """The content of every file, by its place in the package's folder."""
+        launch_files = {
+            **self.launch_files,
+            **{f"{each.name}.launch.py": _launch_file(self.name, each).encode() for each in self.programs},
+        }
+        nodes = [each.source for each in self.programs]
+        depends = {"ros2launch", *_depends(nodes), *_depends(launch_files.values())}
+        return {
+            PurePosixPath("package.xml"): self._manifest(depends).encode(),
+            PurePosixPath("setup.py"): self._setup().encode(),
+            PurePosixPath("setup.cfg"): self._filled(texts.SETUP_CFG).encode(),
+            PurePosixPath("README.md"): self._readme(_depends(nodes)).encode(),
+            PurePosixPath("resource", self.name): b"",
+            PurePosixPath(self.name, "__init__.py"): b"",
+            **{PurePosixPath(self.name, f"{each.module}.py"): each.source for each in self.programs},
+            **{PurePosixPath("launch", name): content for name, content in launch_files.items()},
+            PurePosixPath("test", "test_programs.py"): self._test().encode(),
+        }
+
+    def _filled(self, text: str, **more: str) -> str:
+        return Template(text).substitute(package=self.name, **more)
+
+    def _manifest(self, depends: Iterable[str]) -> str:
+        lines = "\n".join(f"  <exec_depend>{escape(each)}</exec_depend>" for each in sorted(depends))
+        return self._filled(texts.MANIFEST, description=escape(self.title), depends=lines)
+
+    def _setup(self) -> str:
+        programs = {each.name: each for each in self.programs} | {**self.also}
+        entries = [f"{name} = {self.name}.{each.module}:main" for name, each in programs.items()]
+        lines = "\n".join(f"            {_literal(entry)}," for entry in entries)
+        return self._filled(texts.SETUP_PY, description=_literal(self.title), entries=lines)
+
+    def _test(self) -> str:
+        names = "\n".join(f"    {_literal(each.module)}," for each in self.programs)
+        return self._filled(texts.TEST, modules=names)
+
+    def _readme(self, depends: Iterable[str]) -> str:
+        return self._filled(
+            texts.README,
+            title=self.title,
+            first=self.programs[0].name,
+            launching="".join(self._launching()),
+            robot=texts.ROBOT if _ROBOT_INTERFACES.intersection(depends) else "",
+            lessons="\n".join(map(self._about, self.programs)),
+        )
+
+    def _launching(self) -> Iterator[str]:
+        """How to give a launch file other values, shown on the first one that takes some."""
+        for program in self.programs:
+            for name, value in _launch_arguments(program.arguments).values():
+                argument = shlex.quote(f"{name}:={value}")
+                yield self._filled(texts.LAUNCHING, name=program.name, argument=argument)
+                return
+
+    def _about(self, program: LessonProgram) -> str:
+        others = [f", also `{name}`" for name, each in self.also.items() if each is program]
+        names = "".join([f"`{program.name}`", *others])
+        sentences = [f"- **{_one_line(program.title)}** ({names}): {_one_line(program.teaches)}"]
+        if program.arguments:
+            line = shlex.join(["ros2", "run", self.name, program.name, *program.arguments])
+            sentences.append(f"`{line}`")
+        if program.service is not None:
+            sentences.append(texts.CALL.format(*program.service))
+        return "\n  ".join(sentences)
+
+
+def _launch_file(package: str, program: LessonProgram) -> str:
+    """The launch file that starts the program with its arguments, those with a value as launch arguments."""
+    if not program.arguments:
+        return Template(texts.LAUNCH).substitute(package=package, name=program.name)
+    declared = _launch_arguments(program.arguments)
+    words = [_literal(word) for word in program.arguments]
+    for place, (name, _) in declared.items():
+        words[place] = f"LaunchConfiguration({_literal(name)})"
+    return Template(texts.LAUNCH_WITH_ARGUMENTS).substitute(
+        package=package,
+        name=program.name,
+        imports=texts.LAUNCH_ARGUMENT_IMPORTS if declared else "",
+        substitutions=texts.SUBSTITUTION_IMPORTS if declared else "",
+        declarations="".join(
+            texts.DECLARATION.format(_literal(name), _literal(value)) for name, value in declared.values()
+        ),
+        words="\n".join(f"                    {word}," for word in words),
+    )
+
+
+def _launch_arguments(words: tuple[str, ...]) -> dict[int, tuple[str, str]]:
+    """Name and value of what a launch file lets a person change, by the value's place on the command line.
+
+    That is what stands behind an option of the program's own; ROS's own arguments stay as they are.
+    """
+    found: dict[int, tuple[str, str]] = {}
+    names: set[str] = set()
+    own = words[: words.index("--ros-args")] if "--ros-args" in words else words
+    for place, (option, value) in enumerate(pairwise(own), start=1):
+        name = option.lstrip("-").replace("-", "_")
+        if _is_option(option) and not _is_option(value) and name.isidentifier() and name not in names:
+            names.add(name)
+            found[place] = (name, value)
+    return found
+
+
+def _is_option(word: str) -> bool:
+    """Tell whether a word names an option; ``-1.0`` does not."""
+    return word.startswith("-") and not word.lstrip("-")[:1].isdigit() and word.strip("-") != ""
+
+
+def _depends(sources: Iterable[bytes]) -> set[str]:
+    """The packages that files of Python import from, as rosdep calls them, without Python's own."""
+    modules = {module for source in sources for module in imported_modules(source)}
+    return {_KEYS.get(module, module) for module in modules - sys.stdlib_module_names}
+
+
+def imported_modules(source: bytes) -> set[str]:
+    """The first parts of the names of all modules that a file of Python imports.
+
+    Raises:
+        SyntaxError: it is not Python.
+    """
+    found: set[str] = set()
+    for node in ast.walk(ast.parse(source)):
+        match node:
+            case ast.Import(names=aliases):
+                found.update(alias.name.partition(".")[0] for alias in aliases)
+            case ast.ImportFrom(module=str(module), level=0):
+                found.add(module.partition(".")[0])
+    return found
+
+
+def _literal(text: str) -> str:
+    """Text as Python writes it, in the double quotes that formatters want."""
+    return json.dumps(text, ensure_ascii=False)
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())

@@ -1,0 +1,165 @@
+"""Takes lessons home: each unit as a ROS 2 package, written to a folder without a loss to what is there."""
+
+import ast
+import os
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from cbtui.eject.ament_package import AmentPackage, LessonProgram, imported_modules
+from lessons.lesson import Lesson
+from sim.packages import Package, PackageError
+from sim.whole_file import write_whole
+
+_NUMBERED = re.compile(r"(?P<number>\d[\w.]*)\s+(?P<title>.*)", re.DOTALL)
+
+
+class EjectError(Exception):
+    """What stands in the way, in one sentence for the person."""
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit of the course, and its lessons in teaching order; ``number`` is empty for one that has none."""
+
+    number: str
+    title: str
+    package: str
+    """The name of the package that it becomes; a valid one by REP 144."""
+    lessons: tuple[Lesson, ...]
+
+
+def units_of(lessons: Iterable[Lesson]) -> list[Unit]:
+    """Return the units that the lessons belong to, in the lessons' order."""
+    units: dict[str, Unit] = {}
+    for lesson in lessons:
+        number, title = _number_and_title(lesson.unit)
+        package = _package_name(f"unit{number}" if number else title)
+        before = units.get(package, Unit(number, title, package, ()))
+        units[package] = Unit(before.number, before.title, package, (*before.lessons, lesson))
+    return list(units.values())
+
+
+def chosen(units: Sequence[Unit], names: Sequence[str]) -> list[Unit]:
+    """Return the units of these numbers or package names; all of them where none is named.
+
+    Raises:
+        EjectError: there is no such unit.
+    """
+    for name in names:
+        if not any(name in (unit.number, unit.package) for unit in units):
+            known = ", ".join(unit.number or unit.package for unit in units)
+            raise EjectError(f"there is no unit {name}; there are: {known}")
+    return [unit for unit in units if not names or {unit.number, unit.package} & {*names}]
+
+
+def package_of(unit: Unit) -> AmentPackage:
+    """Return the unit as a package.
+
+    If a package of that name lies beside the lessons, the names that it gives their nodes stay valid, and its
+    launch files come along.
+
+    Raises:
+        EjectError: a node cannot be read, or cannot be part of a package as it is.
+    """
+    programs = tuple(map(_program, unit.lessons))
+    also: dict[str, LessonProgram] = {}
+    launch_files: dict[str, bytes] = {}
+    for package in _packages_beside(unit):
+        try:
+            also |= _further_names(package, programs)
+            launch_files |= {name: package.launch_file(name).read_bytes() for name in package.launch_files}
+        except PackageError as error:
+            raise EjectError(str(error)) from None
+    return AmentPackage(
+        name=unit.package,
+        title=" ".join(unit.title.split()),
+        programs=programs,
+        also=also,
+        launch_files=launch_files,
+    )
+
+
+def changed_files(files: Mapping[Path, bytes]) -> list[Path]:
+    """Return those of the files that are there already with another content. Raises OSError."""
+    return [path for path, content in files.items() if os.path.lexists(path) and not _holds(path, content)]
+
+
+def write_files(files: Mapping[Path, bytes]) -> int:
+    """Write what is not there yet as it should be; returns how many files that were.
+
+    A file is there whole or as it was before, and a link is replaced rather than followed. Raises OSError.
+    """
+    missing = {path: content for path, content in files.items() if not _holds(path, content)}
+    for path, content in missing.items():
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_whole(path, content, follow=False)
+    return len(missing)
+
+
+def _holds(path: Path, content: bytes) -> bool:
+    return path.is_file() and path.read_bytes() == content
+
+
+def _number_and_title(unit: str) -> tuple[str, str]:
+    parts = _NUMBERED.fullmatch(unit.strip())
+    return ("", unit) if parts is None else (parts["number"], parts["title"])
+
+
+def _package_name(text: str) -> str:
+    """A name as REP 144 wants it: lower case, letters first, single underscores."""
+    words = re.findall(r"[a-z0-9]+", text.lower())
+    name = "_".join((*words, "pkg"))
+    return name if name[0].isalpha() else f"unit_{name}"
+
+
+def _packages_beside(unit: Unit) -> list[Package]:
+    folders = {lesson.folder.parent / unit.package: None for lesson in unit.lessons}
+    return [Package(unit.package, folder) for folder in folders if (folder / "package.xml").is_file()]
+
+
+def _further_names(package: Package, programs: Sequence[LessonProgram]) -> dict[str, LessonProgram]:
+    """The lesson's program for each executable of a package; they are known by their text.
+
+    A package may hold links to the nodes, or, once installed, copies of them.
+    """
+    found: dict[str, LessonProgram] = {}
+    for name in package.executables:
+        path = package.executable(name).path
+        source = path.read_bytes()
+        same = next((program for program in programs if program.source == source), None)
+        if same is None:
+            raise EjectError(f"{path} is the node of no lesson, so that the executable {name} would be lost")
+        found[name] = same
+    taken = {program.name for program in programs}
+    return {name: program for name, program in found.items() if name not in taken}
+
+
+def _program(lesson: Lesson) -> LessonProgram:
+    path = lesson.node_path
+    try:
+        source = path.read_bytes()
+        modules = imported_modules(source)
+    except OSError as error:
+        raise EjectError(f"{path} cannot be read: {error.strerror}") from None
+    except (SyntaxError, ValueError) as error:
+        raise EjectError(f"{path} is not Python: {error}") from None
+    if not _has_main(source):
+        raise EjectError(f"{path} has no function main(), which an executable of a package starts with")
+    for module in sorted(modules):
+        if (path.parent / f"{module}.py").is_file() or (path.parent / module).is_dir():
+            raise EjectError(f"{path} imports {module} from its own folder, which a package has no place for")
+    offered = lesson.service.name.lstrip("/").encode() in source
+    return LessonProgram(
+        name=lesson.id.replace("-", "_"),
+        title=lesson.title,
+        teaches=lesson.teaches,
+        source=source,
+        arguments=tuple(lesson.arguments_with(None)),
+        service=(lesson.service.name, lesson.service.type) if offered else None,
+    )
+
+
+def _has_main(source: bytes) -> bool:
+    return any(isinstance(node, ast.FunctionDef) and node.name == "main" for node in ast.parse(source).body)

@@ -1,0 +1,1 @@
+"""The engine process from outside: its session, process tree, limits, hang detection and control socket."""

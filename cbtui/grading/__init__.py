@@ -1,0 +1,1 @@
+"""Marks the submissions of many learners, each confined and audited."""

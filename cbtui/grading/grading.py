@@ -1,0 +1,259 @@
+"""The files of many learners, each run and judged apart, so that none can change another's marks."""
+
+import compileall
+import hashlib
+import os
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from cbtui.grading.confinement import PACKAGES, Confinement
+from cbtui.grading.submission import BadSubmissionError, Submission, read_submission
+from cbtui.grading.supervisor import Marks, mark
+from cbtui.text.output import is_text
+from lessons.judge import Judge
+from lessons.lesson import Lesson
+
+_PYTHON = ".py"
+
+
+class PackagesChangedError(Exception):
+    """The program or its lessons are no longer what they were; the text is a sentence."""
+
+
+@dataclass(frozen=True)
+class Paper:
+    """What one learner handed in for one exercise; without a lesson or a file, why it cannot be checked.
+
+    ``folder`` is the learner's own, if the file is in one.
+    """
+
+    learner: str
+    lesson: Lesson | None = None
+    file: Path | None = None
+    problem: str = ""
+    folder: Path | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Entry:
+    """A paper as it was read at the start; without a submission ``problem`` says why it cannot be run."""
+
+    paper: Paper
+    total: int = 0
+    submission: Submission | None = None
+    problem: str = ""
+
+    @property
+    def key(self) -> tuple[str, str, str]:
+        """Whose it is, for which exercise, and what tells its files from others."""
+        lesson, submission = self.paper.lesson, self.submission
+        digest = "" if submission is None else submission.digest
+        return self.paper.learner, "" if lesson is None else lesson.id, digest
+
+
+@dataclass(frozen=True)
+class Grade:
+    """What came of an entry."""
+
+    entry: Entry
+    marks: Marks
+
+    @property
+    def passed(self) -> int:
+        """How many checks passed."""
+        return sum(passed for passed, _ in self.marks.checks)
+
+    @property
+    def good(self) -> bool:
+        """Whether every check passed."""
+        return 0 < self.entry.total == self.passed
+
+    @property
+    def suspicion(self) -> str:
+        """What gives the run away as forged; empty where nothing does."""
+        return "; ".join(self.marks.doubts)
+
+
+def papers_in(folder: Path, exercises: Sequence[Lesson], only: Lesson | None) -> list[Paper]:
+    """Return what lies in a folder: a folder or a file for each learner, in order of their names.
+
+    A file is told by its name: ``split_groups.py`` in a learner's folder, ``split_groups_ann.py`` or
+    ``ann_split_groups.py`` beside others'. With ``only`` all is for that exercise, and a learner's only
+    Python file may be called anything.
+
+    Raises:
+        OSError: the folder cannot be read.
+    """
+    papers: list[Paper] = []
+    for path in sorted(folder.iterdir()):
+        if path.name.startswith((".", "__")):
+            continue
+        if path.is_symlink():
+            papers.append(Paper(path.name, only, problem=f"{path} is a link; put what it leads to there"))
+        elif path.is_dir():
+            papers += _of_learner(path, exercises, only)
+        elif path.suffix == _PYTHON:
+            papers.append(_of_file(path, exercises, only))
+    return papers
+
+
+class HandedIn:
+    """All papers, read at once: what a program does to the files later changes nobody's marks."""
+
+    def __init__(self, papers: Iterable[Paper]) -> None:
+        """Read them.
+
+        Raises:
+            BadLesson: the checks of a lesson cannot be used.
+        """
+        self._totals: dict[str, int] = {}
+        self.entries = [self._entry(paper) for paper in papers]
+        self._packages = _Packages(entry.paper.lesson for entry in self.entries)
+        self._on_disk = {entry: entry.key for entry in self.entries}
+
+    @property
+    def most_checks(self) -> int:
+        """How many checks the exercise with the most has."""
+        return max(self._totals.values(), default=0)
+
+    def grades(
+        self,
+        entries: Iterable[Entry],
+        limit: float,
+        confinement: Confinement,
+        watch: Callable[[], str | None],
+    ) -> Iterator[Grade]:
+        """Grade some of the entries one after another, each for at most ``limit`` real seconds.
+
+        ``watch`` says after each what else it changed that it must not.
+
+        Raises:
+            PackagesChangedError: a program changed files of cbtui or of a lesson; its own grade came before.
+        """
+        for entry in entries:
+            lesson, submission = entry.paper.lesson, entry.submission
+            if lesson is None or submission is None:
+                yield Grade(entry, Marks(trouble=entry.problem))
+                continue
+            marks = mark(submission, lesson.folder, limit, confinement)
+            packages = self._packages.changed()
+            changed = [*packages[:1], *self._changed_papers()]
+            seen = [f"{path} was changed while it ran" for path in changed] + [*filter(None, [watch()])]
+            yield Grade(entry, _doubted(marks, seen))
+            if packages:
+                others = f" and {len(packages) - 1} more" if packages[1:] else ""
+                raise PackagesChangedError(
+                    f"{packages[0]}{others} changed while {submission.program} of {entry.paper.learner} ran, "
+                    "and no marks would be right from here on; put cbtui and the lessons back as they were, "
+                    "and go on with --resume"
+                )
+
+    def _entry(self, paper: Paper) -> Entry:
+        if paper.lesson is None:
+            return Entry(paper, problem=paper.problem)
+        if paper.lesson.id not in self._totals:
+            self._totals[paper.lesson.id] = len(Judge(paper.lesson).checks)
+        total = self._totals[paper.lesson.id]
+        if paper.file is None:
+            return Entry(paper, total, problem=paper.problem)
+        if not is_text(paper.file.name):
+            return Entry(paper, total, problem="its path is not UTF-8; rename it")
+        try:
+            return Entry(paper, total, read_submission(paper.file, paper.folder))
+        except BadSubmissionError as error:
+            return Entry(paper, total, problem=str(error))
+
+    def _changed_papers(self) -> Iterator[Path | None]:
+        """The files that are no longer what they were when this was last asked."""
+        for entry in self.entries:
+            key = self._entry(entry.paper).key
+            if key != self._on_disk[entry]:
+                self._on_disk[entry] = key
+                yield entry.paper.file
+
+
+class _Packages:
+    """The files of cbtui, of the engine and of lessons, as they are when this is made."""
+
+    def __init__(self, lessons: Iterable[Lesson | None]) -> None:
+        own = [PACKAGES / name for name in ("cbtui", "lessons", "sim")]
+        folders = {lesson.folder for lesson in lessons if lesson is not None}
+        self._folders = [*own, *sorted(each for each in folders if not each.is_relative_to(PACKAGES))]
+        for folder in self._folders:
+            compileall.compile_dir(folder, quiet=2)  # so that nothing is compiled into it later
+        self._digests = self._now()
+
+    def changed(self) -> list[Path]:
+        """Return the files that were changed, added or removed since."""
+        now = self._now()
+        paths = dict.fromkeys([*self._digests, *now])
+        return [path for path in paths if self._digests.get(path) != now.get(path)]
+
+    def _now(self) -> dict[Path, bytes]:
+        return {
+            path: _digest(path)
+            for folder in self._folders
+            for place, _, names in os.walk(folder)
+            for path in (Path(place, name) for name in names)
+        }
+
+
+def _digest(path: Path) -> bytes:
+    try:
+        return hashlib.sha256(path.read_bytes()).digest()
+    except OSError:
+        return b""
+
+
+def _doubted(marks: Marks, seen: Sequence[str]) -> Marks:
+    return Marks(trouble=marks.trouble, doubts=(*marks.doubts, *seen)) if seen else marks
+
+
+def line(grade: Grade) -> str:
+    """Return a grade in a line for a terminal."""
+    learner, lesson, _ = grade.entry.key
+    suspicion = f"suspicious: {grade.suspicion}" if grade.suspicion else ""
+    said = filter(None, [learner, lesson, grade.marks.trouble, suspicion])
+    return " ".join("  ".join([f"{grade.passed}/{grade.entry.total}", *said]).splitlines())
+
+
+def _of_learner(folder: Path, exercises: Sequence[Lesson], only: Lesson | None) -> list[Paper]:
+    try:
+        files = sorted(path for path in folder.iterdir() if path.suffix == _PYTHON)
+    except OSError as error:
+        return [Paper(folder.name, only, problem=f"{folder} cannot be read: {error.strerror}")]
+    wanted = exercises if only is None else [only]
+    named = {path.name: path for path in files}
+    found = [
+        Paper(folder.name, each, named[each.file_name], folder=folder)
+        for each in wanted
+        if each.file_name in named
+    ]
+    if found:
+        return found
+    if only is not None and len(files) == 1:
+        return [Paper(folder.name, only, files[0], folder=folder)]
+    first, *others = (each.file_name for each in wanted)
+    names = f"{first}, nor one of another exercise" if others else first
+    return [Paper(folder.name, only, problem=f"{folder} has no file {names}")]
+
+
+def _of_file(path: Path, exercises: Sequence[Lesson], only: Lesson | None) -> Paper:
+    if only is not None:
+        learner = _without(path.stem, only)
+        return Paper(path.stem if learner is None else learner, only, path)
+    for lesson in sorted(exercises, key=lambda each: -len(each.file_name)):
+        learner = _without(path.stem, lesson)
+        if learner is not None:
+            return Paper(learner, lesson, path)
+    return Paper(path.stem, problem=f"{path.name} does not tell by its name which exercise it is for")
+
+
+def _without(stem: str, lesson: Lesson) -> str | None:
+    """What a file's name has beside the lesson's; None where it does not have that."""
+    name = lesson.file_name.removesuffix(_PYTHON)
+    for rest in (stem.removeprefix(name), stem.removesuffix(name)):
+        if rest != stem:
+            return rest.strip("_-. ") or stem
+    return None

@@ -1,0 +1,153 @@
+"""The table of marks as CSV: each row is written as soon as it is known, and a table can be gone on with."""
+
+import csv
+import io
+import os
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import TypeAlias
+
+from cbtui.grading.grading import Grade
+
+Row: TypeAlias = Mapping[str, str]
+_BEFORE = ("learner", "lesson", "passed", "total")
+_AFTER = ("problem", "suspicious", "digest")
+
+
+class BadSheetError(Exception):
+    """A table that cannot be gone on with; the text is a sentence."""
+
+
+class MarkSheet:
+    """The rows, by their columns; ``checks`` is how many columns there are for what came of checks."""
+
+    def __init__(self, checks: int) -> None:
+        self._columns = [*_BEFORE, *(f"check {number}" for number in range(1, checks + 1)), *_AFTER]
+        self.rows: list[Row] = []
+
+    def add(self, grade: Grade) -> str:
+        """Take a grade; returns its row as text."""
+        learner, lesson, digest = grade.entry.key
+        row = {
+            "learner": learner,
+            "lesson": lesson,
+            "passed": str(grade.passed),
+            "total": str(grade.entry.total),
+            **{f"check {place}": _result(*each) for place, each in enumerate(grade.marks.checks, start=1)},
+            "problem": grade.marks.trouble,
+            "suspicious": grade.suspicion,
+            "digest": digest,
+        }
+        self.rows.append({name: _harmless(text) for name, text in row.items()})
+        return self._line(self.rows[-1])
+
+    def read(self, text: str, wanted: Iterable[tuple[str, str, str]]) -> None:
+        """Take the whole rows of an earlier table whose learner, lesson and digest are among ``wanted``.
+
+        Raises:
+            BadSheetError: it has other columns.
+        """
+        rows = [*csv.reader(io.StringIO(text))]
+        if rows and text.find("\n") > 0 and rows[0] != self._columns:
+            raise BadSheetError("its columns are not those of these exercises")
+        known = {tuple(map(_harmless, key)) for key in wanted if key[-1]}
+        # The last row of a table that was cut off is no row.
+        for cells in rows[1 : len(rows) if text.endswith("\n") else -1]:
+            if (
+                len(cells) == len(self._columns)
+                and _key(row := dict(zip(self._columns, cells, strict=True))) in known
+            ):
+                self.rows.append(row)
+
+    def holds(self, key: tuple[str, str, str]) -> bool:
+        """Whether there is a row for a learner, a lesson and the digest of files."""
+        return tuple(map(_harmless, key)) in map(_key, self.rows)
+
+    def text(self) -> str:
+        """Return all of it."""
+        return "".join([self._text(self._columns), *map(self._line, self.rows)])
+
+    def _line(self, row: Row) -> str:
+        return self._text([row.get(name, "") for name in self._columns])
+
+    def _text(self, cells: Iterable[str]) -> str:
+        text = io.StringIO()
+        csv.writer(text, lineterminator="\n").writerow(cells)
+        return text.getvalue()
+
+
+def _key(row: Row) -> tuple[str, ...]:
+    return row["learner"], row["lesson"], row["digest"]
+
+
+def _result(passed: bool, text: str) -> str:
+    return f"{'passed' if passed else 'failed'}: {text}"
+
+
+def _harmless(cell: str) -> str:
+    """A cell that no spreadsheet takes for a formula: what a learner's program says can stand in it."""
+    return f"'{cell}" if cell.lstrip(" ").startswith(("=", "+", "-", "@", "\t", "\r", "\n")) else cell
+
+
+class SheetStream:
+    """A table that goes row by row to where nobody can change it; ``write`` takes text."""
+
+    def __init__(self, sheet: MarkSheet, write: Callable[[str], None]) -> None:
+        self._sheet = sheet
+        self._write = write
+
+    def begin(self) -> None:
+        """Write what is in the table already."""
+        self._write(self._sheet.text())
+
+    def append(self, row: str) -> None:
+        """Write one more row."""
+        self._write(row)
+
+    def mended(self) -> str | None:
+        """Say nothing: it is as it was."""
+        return None
+
+
+class SheetFile:
+    """A table in a file, which grows row by row; one that somebody else changes is put right."""
+
+    def __init__(self, sheet: MarkSheet, path: Path) -> None:
+        self.path = path
+        self._sheet = sheet
+        self._written = b""
+
+    def begin(self) -> None:
+        """Write what is in the table already.
+
+        Raises:
+            OSError: as every method, the file cannot be written.
+        """
+        self._written = _encoded(self._sheet.text())
+        self._write(self._written, "wb")
+
+    def append(self, row: str) -> None:
+        """Write one more row."""
+        self._write(_encoded(row), "ab")
+        self._written += _encoded(row)
+
+    def mended(self) -> str | None:
+        """Look whether the file is as it was written, and write it again if not; says so then."""
+        if not self._is_ordinary() or (self.path.exists() and self.path.read_bytes() == self._written):
+            return None
+        self._write(self._written, "wb")
+        return f"{self.path} was changed while it ran"
+
+    def _is_ordinary(self) -> bool:
+        return self.path.is_file() or not self.path.exists()
+
+    def _write(self, data: bytes, mode: str) -> None:
+        with self.path.open(mode) as file:
+            file.write(data)
+            file.flush()
+            if self._is_ordinary():
+                os.fsync(file.fileno())
+
+
+def _encoded(text: str) -> bytes:
+    return text.encode(errors="backslashreplace")

@@ -1,0 +1,151 @@
+"""The process between the grader and a submission: it runs the copy, judges the trace and hands on the marks.
+
+A submission that kills its parent ends this process, and whoever waits for the marks hears of that.
+"""
+
+import multiprocessing
+import os
+import resource
+import secrets
+import signal
+import sys
+import tempfile
+import threading
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import partial
+from multiprocessing.connection import Connection
+from pathlib import Path
+from types import FrameType
+from typing import Any, NoReturn
+
+import msgspec
+
+from cbtui.engines.forking import forking_context
+from cbtui.engines.session import Session
+from cbtui.grading.confinement import Confinement
+from cbtui.grading.submission import Submission
+from cbtui.grading.trace_audit import TraceAudit
+from cbtui.runs.judged.check_text import verdict_line
+from cbtui.runs.judged.checking import observe
+from cbtui.runs.setup.lesson_setup import setup_to_judge
+from lessons.judge import Judge
+from lessons.lesson import read_lesson
+
+_LARGEST_FILE = 1 << 28
+"""Bytes that a program may write to one file."""
+_PATIENCE = 30.0
+"""Real seconds beyond a run's own limit that its judging may take."""
+_TO_END = 2.0
+_MOST_BYTES = 1 << 24
+_PRELOADED = (__name__,)
+
+
+class Marks(msgspec.Struct, frozen=True):
+    """What came of a submission: a line for each check, and whether it passed.
+
+    ``trouble`` says why nothing could be judged, ``doubts`` what gives away a forgery: then there are none.
+    """
+
+    checks: tuple[tuple[bool, str], ...] = ()
+    trouble: str = ""
+    doubts: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Assignment:
+    """A submission to run and judge. ``limit`` is in real seconds; ``folder`` is empty, for its copy."""
+
+    submission: Submission
+    lesson: Path
+    limit: float
+    folder: Path
+    launcher: Path | None
+    environment: Mapping[str, str]
+    confinement: Confinement
+
+
+def mark(submission: Submission, lesson: Path, limit: float, confinement: Confinement) -> Marks:
+    """Run a submission and judge it by the checks in a lesson's folder, whatever it does."""
+    with tempfile.TemporaryDirectory(prefix="cbtui-grade-", ignore_cleanup_errors=True) as place:
+        folder = Path(place).resolve() / "copy"
+        folder.mkdir()
+        return _marks_by_supervisor(
+            Assignment(
+                submission,
+                lesson,
+                limit,
+                folder,
+                confinement.launcher(folder, folder.with_name("launcher")),
+                confinement.environment(folder),
+                confinement,
+            )
+        )
+
+
+def _marks_by_supervisor(assignment: Assignment) -> Marks:
+    context: Any = forking_context(_PRELOADED)
+    ours, theirs = context.Pipe()
+    process = context.Process(target=_supervise, args=(assignment, theirs), name="cbtui-supervisor")
+    process.start()
+    theirs.close()
+    try:
+        if not ours.poll(assignment.limit + _PATIENCE):
+            return Marks(trouble="what its run showed took too long to be judged")
+        return msgspec.msgpack.decode(ours.recv_bytes(_MOST_BYTES), type=Marks)
+    except (EOFError, OSError, msgspec.DecodeError):
+        return Marks(doubts=("it ended or disturbed the process that graded it",))
+    finally:
+        process.terminate()
+        process.join(_TO_END)
+        process.kill()
+        process.join()
+        ours.close()
+
+
+def _supervise(assignment: Assignment, grader: Connection) -> None:
+    """Be the supervisor, in a session of its own, with nothing of the terminal's."""
+    os.setsid()
+    signal.signal(signal.SIGTERM, _leave)
+    threading.Thread(target=_end_with_grader, name="grader-watch", daemon=True).start()
+    nothing = os.open(os.devnull, os.O_RDWR)
+    for number in range(3):
+        os.dup2(nothing, number)
+    os.environ.clear()
+    os.environ.update(assignment.environment)
+    sys.path[:] = assignment.confinement.import_path
+    sys.dont_write_bytecode = True
+    os.chdir(assignment.folder)
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (_LARGEST_FILE, _LARGEST_FILE))
+    if assignment.launcher is not None:
+        multiprocessing.set_executable(str(assignment.launcher))
+    grader.send_bytes(msgspec.msgpack.encode(_marks(assignment)))
+
+
+def _marks(assignment: Assignment) -> Marks:
+    submission, lesson = assignment.submission, read_lesson(assignment.lesson)
+    judge = Judge(lesson)
+    program = submission.write_to(assignment.folder)
+    key = secrets.token_bytes(32)
+    setup = msgspec.structs.replace(setup_to_judge(lesson, program), packages=(), seal=key)
+    libraries = assignment.confinement.libraries
+    audit = TraceAudit(key, submission, assignment.folder, libraries, virtual=setup.clock == "virtual")
+    run = observe(setup, program.name, assignment.limit, open_session=partial(Session, unpack=audit.unpack))
+    doubts = audit.doubts(whole=run.trouble is None)
+    if doubts or run.trouble is not None:
+        return Marks(trouble=run.trouble or "", doubts=doubts)
+    judged = judge.verdicts(run.timeline)
+    return Marks(tuple((each.verdict.passed, f"{each.check.asks}; {verdict_line(each)}") for each in judged))
+
+
+def _leave(_number: int, _frame: FrameType | None) -> NoReturn:
+    sys.exit(1)
+
+
+def _end_with_grader() -> None:
+    """End this process in order when the grader is killed."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        parent.join()
+    os.kill(os.getpid(), signal.SIGTERM)

@@ -1,0 +1,1 @@
+"""Actions, key map and configuration: everything a person can press."""

@@ -1,0 +1,1 @@
+"""What a learner goes through: pages, predictions, exercises and progress; and the proof of a lesson."""

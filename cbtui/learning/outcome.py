@@ -1,0 +1,93 @@
+"""What a lesson's own run shows: which answers of its predictions are true, read off a trace."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from threading import Event
+from typing import TYPE_CHECKING, TypeAlias
+
+from lessons.lesson import BadLesson, Lesson
+
+if TYPE_CHECKING:
+    from cbtui.runs.judged.checking import Observed
+    from sim.engine.setup import RunSetup
+
+Observe: TypeAlias = Callable[["RunSetup", str, Event], "Observed"]
+"""Runs a set-up to its end on the caller's thread; the event breaks the run off."""
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The true answer of each prediction, by its place; or none, and in a sentence why there are none."""
+
+    true: tuple[int, ...] = ()
+    trouble: str | None = None
+
+
+class OutcomeRun:
+    """One run that predictions are held against.
+
+    ``run`` blocks a thread of its own, ``give_up`` may be called from any other.
+    """
+
+    def __init__(self, lesson: Lesson, observe: Observe) -> None:
+        self._lesson = lesson
+        self._observe = observe
+        self._given_up = Event()
+        self._ended = Event()
+
+    def give_up(self) -> None:
+        """Let ``run`` end its engine and come back; again does nothing."""
+        self._given_up.set()
+
+    def wait(self, seconds: float) -> None:
+        """Wait until the engine has ended, no longer than so many real seconds."""
+        self._ended.wait(seconds)
+
+    def run(self) -> Outcome:
+        """Run the lesson and read the answers off; its engine has ended when this comes back."""
+        try:
+            return self._outcome()
+        except BadLesson as error:
+            return Outcome(trouble=str(error))
+        except OSError as error:
+            return Outcome(trouble=f"the engine could not be started: {error.strerror or error}")
+        finally:
+            self._ended.set()
+
+    def _outcome(self) -> Outcome:
+        from cbtui.runs.setup.lesson_setup import (
+            setup_to_judge,  # on this thread: the screen must not stand still for it
+        )
+        from lessons.judge import Judge
+
+        judge = Judge(self._lesson)
+        observed = self._observe(setup_to_judge(self._lesson), self._lesson.node_path.name, self._given_up)
+        if observed.broken_off:
+            return Outcome(trouble=observed.trouble)
+        return Outcome(tuple(judge.true_answer(each, observed.timeline) for each in self._lesson.predictions))
+
+
+def observe_engine(setup: "RunSetup", name: str, given_up: Event) -> "Observed":
+    """Run a set-up in an engine of its own."""
+    from cbtui.runs.judged.checking import observe
+
+    return observe(setup, name, given_up=given_up)
+
+
+def run_in_words(lesson: Lesson) -> str:
+    """Say which run a lesson's predictions are held against."""
+    run = lesson.run
+    parts = [f"a run of {run.seconds:g} s"]
+    if run.threads is not None:
+        parts.append(f"{run.threads} thread{'s'[: run.threads - 1]}")
+    if run.calls:
+        parts.append(f"{lesson.service.name} called at {_listed([f'{at:g}' for at in run.calls])} s")
+    parts += [f"`{line}` given at {at:g} s" for at, line in run.lines]
+    first, *others = parts
+    return f"{first} with {_listed(others)}" if others else first
+
+
+def _listed(words: list[str]) -> str:
+    """``a``, ``a and b``, ``a, b and c``."""
+    *most, last = words
+    return f"{', '.join(most)} and {last}" if most else last

@@ -1,0 +1,123 @@
+"""A lesson's first seconds, run headless and as fast as it goes, for the menu to draw them small."""
+
+from queue import Empty, Queue
+from threading import Event
+from time import monotonic
+from typing import TYPE_CHECKING, TypeAlias
+
+from lessons.catalogue import comes_along
+from lessons.lesson import Lesson
+
+if TYPE_CHECKING:
+    from cbtui.runs.live.live_run import OpenSession
+    from sim.engine.setup import RunSetup
+    from sim.trace.events import AnyEvent
+    from sim.trace.timeline import Timeline
+
+_SECOND = 1_000_000_000
+LENGTH = 20 * _SECOND
+"""How long such a run lasts in its own time: nanoseconds."""
+CALLS = (5 * _SECOND, 7 * _SECOND)
+"""When the lesson's service is called in it, as ``s`` would: a lesson on a service shows nothing without."""
+_PATIENCE = 30.0
+"""Real seconds after which a run that has not come to its end is given up."""
+
+_News: TypeAlias = "list[AnyEvent] | str | None"
+
+
+class CannotPreviewError(Exception):
+    """A lesson that could not be run; the text is a sentence."""
+
+
+class GivenUpError(Exception):
+    """Nobody wants the run any more."""
+
+
+def why_not(lesson: Lesson) -> str | None:
+    """Return why a lesson is not run before it is opened; None if it can be."""
+    if not comes_along(lesson):
+        return "it comes from somebody else, and is only run once you open it"
+    if lesson.setup.clock == "real":
+        return f"on the real clock that would take {LENGTH / _SECOND:g} s of computing"
+    return None
+
+
+class PreviewRun:
+    """One such run. ``run`` blocks a thread of its own, ``give_up`` may be called from any other."""
+
+    def __init__(self, lesson: Lesson, open_session: "OpenSession") -> None:
+        self._lesson = lesson
+        self._open_session = open_session
+        self._news: Queue[_News | GivenUpError] = Queue()
+        self._given_up = False
+        self._ended = Event()
+
+    def give_up(self) -> None:
+        """Let ``run`` end its engine and come back; again does nothing."""
+        self._given_up = True
+        self._news.put(GivenUpError())
+
+    def wait(self, seconds: float) -> None:
+        """Wait until the engine has ended, no longer than so many real seconds."""
+        self._ended.wait(seconds)
+
+    def run(self) -> "Timeline":
+        """Run the lesson; its engine has ended when this comes back, whatever way.
+
+        Raises:
+            CannotPreviewError: the run did not come to its end, or its lesson runs on the real clock or is
+                none of the package's own.
+            GivenUpError: ``give_up`` was called.
+        """
+        try:
+            return self._run()
+        finally:
+            self._ended.set()
+
+    def _run(self) -> "Timeline":
+        reason = why_not(self._lesson)
+        if reason is not None:
+            raise CannotPreviewError(reason)
+        from sim.trace.timeline import Timeline  # numpy and all: on this thread, not on the screen's
+
+        timeline = Timeline(until_ending=True)
+        session = self._open_session(preview_setup(self._lesson), self._news.put, self._news.put)
+        if self._given_up:
+            raise GivenUpError
+        try:
+            session.start()
+        except OSError as error:
+            raise CannotPreviewError(f"the engine could not be started: {error.strerror or error}") from None
+        try:
+            self._follow(timeline)
+        finally:
+            session.stop()
+        return timeline
+
+    def _follow(self, timeline: "Timeline") -> None:
+        """Take what the engine sends until it has ended."""
+        limit = monotonic() + _PATIENCE
+        while True:
+            try:
+                news = self._news.get(timeout=max(0.0, limit - monotonic()))
+            except Empty:
+                raise CannotPreviewError(f"it did not come to its end in {_PATIENCE:g} s") from None
+            if isinstance(news, GivenUpError):
+                raise news
+            if news is None:
+                return
+            if isinstance(news, str):
+                raise CannotPreviewError(news)
+            timeline.extend(news)
+
+
+def preview_setup(lesson: Lesson) -> "RunSetup":
+    """Return the set-up of a lesson's short run: its own, on virtual time."""
+    import msgspec
+
+    from cbtui.runs.setup.lesson_setup import setup_for
+    from sim.engine.setup import TimedCall
+
+    return msgspec.structs.replace(
+        setup_for(lesson, speed=None), until=LENGTH, calls=tuple(TimedCall(at, data=True) for at in CALLS)
+    )

@@ -1,0 +1,225 @@
+"""What things look like: colours of callback groups, textures of waits, and the glyphs of each charset."""
+
+from dataclasses import dataclass
+from enum import Enum, StrEnum, auto
+from functools import lru_cache
+from typing import NamedTuple
+
+from rich.color import Color, blend_rgb
+from rich.color_triplet import ColorTriplet
+from rich.style import Style
+
+from cbtui.looks.contrast import legible, readable_on
+from cbtui.looks.palettes import Palette
+from sim.trace.events import Reason
+
+
+class Charset(StrEnum):
+    """Which glyphs the terminal can show."""
+
+    BRAILLE = "braille"
+    BLOCK = "block"
+    ASCII = "ascii"
+
+
+class Role(Enum):
+    """What a piece of a picture stands for; the palette decides how it looks."""
+
+    TEXT = auto()
+    FAINT = auto()
+    STRONG = auto()
+    LETTER = auto()
+    BAR = auto()
+    TEXTURE = auto()
+    LABEL = auto()
+    LINE = auto()
+    HATCH = auto()
+    WARN = auto()
+    MARK = auto()
+    NOW = auto()
+    WALL = auto()
+    SPHERE = auto()
+    ROBOT = auto()
+    TRAIL = auto()
+    TRUE_SCAN = auto()
+    SEEN_SCAN = auto()
+
+
+class Ink(NamedTuple):
+    """How a run of text is to look.
+
+    ``number`` is the place of a callback group (0 for A) for the roles that show one, and the age step
+    for ``TRAIL`` (0 the oldest). ``later`` marks what lies after the cursor, ``selected`` what the person
+    has selected.
+    """
+
+    role: Role
+    number: int = -1
+    later: bool = False
+    selected: bool = False
+
+
+class Run(NamedTuple):
+    """Text in one ink."""
+
+    text: str
+    ink: Ink
+
+
+TRAIL_STEPS = 4
+"""Into how many ages the robot's trail is divided."""
+
+
+@dataclass(frozen=True)
+class Glyphs:
+    """The signs of one charset. ``left`` and ``right`` are a column filled from that side, by eighths.
+
+    ``textures`` are what whole columns of callback groups are filled with, A's first; they are drawn in the
+    role ``textured``, which may lay them on the group's colour.
+    """
+
+    left: str
+    right: str
+    line: str
+    double_line: str
+    point: str
+    hatch: dict[Reason, str]
+    frame: str
+    cursor: str
+    up: str
+    back: str
+    forth: str
+    now: str
+    ellipsis: str
+    degree: str
+    cross: str
+    lost: str
+    blocked: str
+    between: str
+    textures: str
+    textured: Role
+
+
+_BLOCKS = Glyphs(
+    left=" ▎▎▍▌▋▊▉█",
+    right=" ▕▕▐▐▐▐██",
+    line="─",
+    double_line="═",
+    point="·",
+    hatch={
+        Reason.GROUP_HELD: "\N{BOX DRAWINGS LIGHT DIAGONAL UPPER RIGHT TO LOWER LEFT}",
+        Reason.NO_FREE_WORKER: "\N{BOX DRAWINGS LIGHT DIAGONAL UPPER LEFT TO LOWER RIGHT}",
+        Reason.NOBODY_SPINS: "\N{BOX DRAWINGS LIGHT DIAGONAL CROSS}",
+    },
+    frame="│",
+    cursor="┊",
+    up="▲",
+    back="◂",
+    forth="▸",
+    now="▲",
+    ellipsis="…",
+    degree="°",
+    cross="✗",
+    lost="×",
+    blocked="░",
+    between="·",
+    textures="█·═║┼○",
+    textured=Role.TEXTURE,
+)
+_PLAIN = Glyphs(
+    left=" ||||####",
+    right=" ||||####",
+    line="-",
+    double_line="=",
+    point=".",
+    hatch={Reason.GROUP_HELD: "/", Reason.NO_FREE_WORKER: "\\", Reason.NOBODY_SPINS: "x"},
+    frame="|",
+    cursor=":",
+    up="^",
+    back="<",
+    forth=">",
+    now="^",
+    ellipsis="~",
+    degree=" deg",
+    cross="X",
+    lost="*",
+    blocked="%",
+    between="-",
+    textures="#+=o@&",
+    textured=Role.BAR,
+)
+GLYPHS = {Charset.BRAILLE: _BLOCKS, Charset.BLOCK: _BLOCKS, Charset.ASCII: _PLAIN}
+
+
+def texture_of(number: int, glyphs: Glyphs) -> Run:
+    """Return what fills a column of the group at a place in the order of letters (0 for A).
+
+    Neighbours differ; groups beyond the textures begin them again.
+    """
+    glyph = glyphs.textures[number % len(glyphs.textures)]
+    return Run(glyph, Ink(Role.BAR if glyph == glyphs.left[8] else glyphs.textured, number))
+
+
+def group_colour(number: int, palette: Palette) -> str:
+    """Return the colour of the group at a place in the order of letters (0 for A), as ``#RRGGBB``."""
+    return palette.groups[number] if 0 <= number < len(palette.groups) else palette.other
+
+
+@lru_cache(maxsize=2048)
+def style_of(ink: Ink, palette: Palette, background: str) -> Style:
+    """Return the Rich style of an ink on a background (``#RRGGBB``), as contrasting as the palette asks."""
+    ground = _triplet(background)
+    least = palette.shapes if ink.role in _SHAPES else palette.words
+    colour = legible(_triplet(_colour(ink, palette)), ground, least)
+    if ink.role is Role.TRAIL:
+        colour = blend_rgb(ground, colour, 0.4 + 0.6 * ink.number / (TRAIL_STEPS - 1))
+    if ink.later:
+        colour = blend_rgb(colour, ground, 0.55)
+        if ink.role not in _SHAPES:
+            colour = legible(colour, ground, least * _LATER)
+    if ink.selected:
+        bright = _triplet(palette.text)
+        ground = blend_rgb(ground, bright, 0.25)
+        colour = legible(blend_rgb(colour, bright, 0.45), ground, least)
+    if ink.role is Role.TEXTURE:
+        drawn = legible(colour, colour, palette.textures)
+        return Style(color=Color.from_triplet(drawn), bgcolor=Color.from_triplet(colour))
+    if ink.role is Role.LABEL:
+        return Style(color=Color.from_triplet(readable_on(colour)), bgcolor=Color.from_triplet(colour))
+    return Style(
+        color=Color.from_triplet(colour),
+        bgcolor=Color.from_triplet(ground),
+        bold=ink.role in _BOLD,
+    )
+
+
+_LATER = 2 / 3
+"""How much of their contrast words keep at least that lie after the cursor."""
+
+_BOLD = {Role.STRONG, Role.LETTER, Role.WARN, Role.MARK, Role.NOW, Role.ROBOT}
+_OF_A_GROUP = {Role.LETTER, Role.BAR, Role.TEXTURE, Role.LABEL, Role.LINE, Role.HATCH}
+_SHAPES = {
+    Role.BAR,
+    Role.TEXTURE,
+    Role.LABEL,
+    Role.WALL,
+    Role.SPHERE,
+    Role.ROBOT,
+    Role.TRAIL,
+    Role.TRUE_SCAN,
+    Role.SEEN_SCAN,
+}
+"""What is drawn rather than written; a label's and a texture's own contrast is with their bar."""
+
+
+def _colour(ink: Ink, palette: Palette) -> str:
+    if ink.role in _OF_A_GROUP:
+        return group_colour(ink.number, palette)
+    if ink.role is Role.STRONG:
+        return palette.text
+    colour: str = getattr(palette, ink.role.name.lower())
+    return colour
+
+
+def _triplet(colour: str) -> ColorTriplet:
+    return Color.parse(colour).get_truecolor()

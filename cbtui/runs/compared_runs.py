@@ -1,0 +1,265 @@
+"""Two runs that are compared, each a recording, a lesson or a file: read or run, until both are there."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from queue import Empty, Queue
+from threading import Event
+from typing import TypeAlias
+
+import msgspec
+
+from cbtui.engines.session import Session
+from cbtui.runs.live.live_run import LiveRun
+from cbtui.runs.recorded.repeat import CannotRepeatError, repeated
+from cbtui.runs.setup.changes import Changes
+from cbtui.text.output import complain, say
+from sim.engine.setup import RunSetup, TimedCall, TimedLine
+from sim.recording import RecordingError, read
+from sim.trace.events import AnyEvent
+from sim.trace.figures.comparison import compare
+from sim.trace.figures.comparison_text import comparison_text
+from sim.trace.model import Nanoseconds, Window
+from sim.trace.timeline import Timeline
+
+_SECOND = 1_000_000_000
+_BATCHES = 64
+_PATIENCE = 0.1
+"""Seconds after which it is looked whether a run is still wanted."""
+LENGTH = 60 * _SECOND
+"""How long runs are that nothing gives a length: nanoseconds."""
+
+
+class CannotCompareError(Exception):
+    """Something that cannot be compared; the text is a sentence."""
+
+
+class GivenUp(Exception):  # noqa: N818 - nothing went wrong
+    """The person no longer wants the runs."""
+
+
+@dataclass(frozen=True)
+class Contender:
+    """One of two runs: a recording's path, or what is to be run."""
+
+    name: str
+    what: Path | RunSetup
+
+    @property
+    def service(self) -> str:
+        """The service that has a lane before its first call; "" for none."""
+        chosen = self.what.service if isinstance(self.what, RunSetup) else None
+        return "" if chosen is None else chosen.name
+
+
+@dataclass(frozen=True)
+class Terms:
+    """What is compared, and what is given to those that are run.
+
+    ``start`` and ``end`` bound the window, which ends where the shorter run does at the latest; what is run
+    lasts until its end. ``calls`` are when the SetBool service is called, ``lines`` ``ros2`` lines with
+    their moments; ``inputs`` is a recording whose inputs are given instead of them. Times are nanoseconds.
+    """
+
+    start: Nanoseconds = 0
+    end: Nanoseconds | None = None
+    calls: Sequence[Nanoseconds] = ()
+    lines: Sequence[tuple[Nanoseconds, str]] = ()
+    inputs: Path | None = None
+
+
+def _never() -> bool:
+    return False
+
+
+@dataclass(frozen=True)
+class Side:
+    """One of two runs as they are compared: what it is called, and all that is known of it.
+
+    ``alive`` tells whether the timeline still grows; ``service`` is one that has a lane before its first
+    call; ``damage`` is a sentence on what of a recording cannot be read, or how the run failed.
+    """
+
+    name: str
+    timeline: Timeline
+    service: str = ""
+    alive: Callable[[], bool] = _never
+    damage: str | None = None
+
+    def at_rest(self) -> "Side":
+        """The same of a run that nothing more is taken from."""
+        return replace(self, alive=_never)
+
+    @property
+    def failure(self) -> str | None:
+        """How the run failed, if it did."""
+        ended = self.timeline.ended
+        return f"{self.name}: {ended.reason}" if ended is not None and ended.failed else None
+
+
+@dataclass(frozen=True)
+class Progress:
+    """How far a run has come, and how far it goes: nanoseconds; ``until`` None: nobody knows."""
+
+    name: str
+    doing: str
+    at: Nanoseconds
+    until: Nanoseconds | None = None
+
+
+Tell: TypeAlias = Callable[[Progress], None]
+
+
+@dataclass(frozen=True)
+class Gathered:
+    """Both runs, and the window that was asked for as far as both have it."""
+
+    first: Side
+    second: Side
+    window: Window
+
+
+def side_of(run: LiveRun, changes: Changes) -> Side:
+    """A run of the console's as one side; called by its ``changes``, which is what two runs differ in."""
+    service = run.setup.service
+    return Side(
+        f"{run.setup.title}, {changes.words or 'as written'}",
+        run.timeline,
+        "" if service is None else service.name,
+        alive=lambda: run.alive,
+    )
+
+
+def compare_runs(first: Contender, second: Contender, terms: Terms) -> int:
+    """Print the comparison; returns the exit code: 0 well, 1 a run failed, 2 there is nothing to compare."""
+    try:
+        found = gather(first, second, terms, tell=lambda _: None, given_up=Event())
+    except CannotCompareError as error:
+        complain(str(error))
+        return 2
+    one, other = found.first, found.second
+    compared = compare(one.timeline, other.timeline, found.window)
+    say(comparison_text(compared, one.name, other.name))
+    failures = [side.failure for side in (one, other) if side.failure is not None]
+    for sentence in dict.fromkeys([one.damage, other.damage, *failures]):
+        if sentence is not None:
+            complain(sentence)
+    return 1 if failures else 0
+
+
+def gather(first: Contender, second: Contender, terms: Terms, tell: Tell, given_up: Event) -> Gathered:
+    """Read what is recorded and run the rest, on the caller's thread; may take as long as it takes.
+
+    Raises:
+        CannotCompareError: one cannot be read or run, or nothing is left to compare.
+        GivenUp: ``given_up`` was set meanwhile.
+    """
+    known = [
+        _recorded(each.name, each.what, tell, given_up) if isinstance(each.what, Path) else None
+        for each in (first, second)
+    ]
+    until = _until([side.timeline.end for side in known if side is not None], terms, tell, given_up)
+    _check(terms, until)
+    one, other = (
+        side or _run(each, terms, until, tell, given_up)
+        for each, side in zip((first, second), known, strict=True)
+    )
+    return Gathered(one, other, Window(terms.start, until))
+
+
+def _until(lengths: list[Nanoseconds], terms: Terms, tell: Tell, given_up: Event) -> Nanoseconds:
+    """Where the comparison ends: as asked, where the shorter recording does, or where the inputs do."""
+    if terms.end is not None:
+        return min([terms.end, *lengths])
+    if not lengths and terms.inputs is not None:
+        return _recorded(str(terms.inputs), terms.inputs, tell, given_up).timeline.end
+    return min(lengths, default=LENGTH)
+
+
+def _check(terms: Terms, until: Nanoseconds) -> None:
+    if until <= terms.start:
+        start, end = terms.start / _SECOND, until / _SECOND
+        raise CannotCompareError(f"nothing is left to compare from {start:g} s to {end:g} s")
+    moments = [("call", at) for at in terms.calls] + [("line", at) for at, _ in terms.lines]
+    for what, at in moments:
+        if at >= until:
+            raise CannotCompareError(
+                f"a {what} at {at / _SECOND:g} s comes after the {until / _SECOND:g} s that are compared; "
+                "give --to a later end"
+            )
+
+
+def _recorded(name: str, path: Path, tell: Tell, given_up: Event) -> Side:
+    timeline = Timeline(until_ending=True)
+    try:
+        recording = read(path)
+        for events in recording.batches():
+            timeline.extend(events)
+            tell(Progress(name, "reading", timeline.end))
+            if given_up.is_set():
+                raise GivenUp
+    except RecordingError as error:
+        raise CannotCompareError(str(error)) from None
+    except OSError as error:
+        raise CannotCompareError(f"{path} cannot be read to its end: {error.strerror}") from None
+    damage = None if recording.damage is None else f"{name}: {recording.damage}"
+    return Side(name, timeline, damage=damage)
+
+
+def _prepared(
+    contender: Contender, terms: Terms, until: Nanoseconds, missing: Callable[[str], None]
+) -> RunSetup:
+    """A set-up for the contender's own clock, as fast as it goes; for virtual time, if it gets inputs.
+
+    ``missing`` gets a sentence if some of these cannot be read.
+    """
+    assert isinstance(contender.what, RunSetup)
+    clock = contender.what.clock if terms.inputs is None else "virtual"
+    program = msgspec.structs.replace(contender.what, clock=clock, speed=None)
+    if terms.inputs is not None:
+        try:
+            return repeated(terms.inputs, program, seconds=until / _SECOND, threads=None, tell=missing)
+        except CannotRepeatError as error:
+            raise CannotCompareError(str(error)) from None
+    return msgspec.structs.replace(
+        program,
+        until=until,
+        calls=tuple(TimedCall(at, data=True) for at in sorted(terms.calls)),
+        lines=tuple(TimedLine(at, text) for at, text in sorted(terms.lines, key=lambda line: line[0])),
+    )
+
+
+def _run(contender: Contender, terms: Terms, until: Nanoseconds, tell: Tell, given_up: Event) -> Side:
+    name = contender.name
+    damage: list[str] = []
+    setup = _prepared(contender, terms, until, damage.append)
+    news: Queue[list[AnyEvent] | str | None] = Queue(_BATCHES)
+    session = Session(setup, news.put, news.put)
+    timeline = Timeline(until_ending=True)
+    try:
+        session.start()
+        while isinstance(batch := _next(news, given_up), list):
+            timeline.extend(batch)
+            tell(Progress(name, "running", timeline.end, setup.until))
+    finally:
+        session.stop()
+        _drain(news)
+    if batch is not None:
+        raise CannotCompareError(f"{name} could not be run to its end: {batch}")
+    return Side(name, timeline, contender.service, damage=next(iter(damage), None))
+
+
+def _next(news: "Queue[list[AnyEvent] | str | None]", given_up: Event) -> list[AnyEvent] | str | None:
+    while True:
+        if given_up.is_set():
+            raise GivenUp
+        try:
+            return news.get(timeout=_PATIENCE)
+        except Empty:
+            continue
+
+
+def _drain(news: "Queue[list[AnyEvent] | str | None]") -> None:
+    """Let a reader go that waits for room."""
+    while not news.empty():
+        news.get_nowait()

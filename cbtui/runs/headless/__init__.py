@@ -1,0 +1,1 @@
+"""Runs without the console: log to stderr, summary to stdout."""

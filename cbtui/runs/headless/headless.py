@@ -1,0 +1,229 @@
+"""Runs a program without the console: log to stderr, summary and diagnosis to stdout, events to files."""
+
+import time
+from collections.abc import Iterator, Sequence
+from contextlib import ExitStack
+from operator import itemgetter
+from pathlib import Path
+from queue import Empty, Queue
+from signal import Signals
+from typing import TypeAlias
+
+import msgspec
+
+from cbtui.engines.listening import ListeningSession
+from cbtui.engines.session import LONGEST_END
+from cbtui.runs.headless.program_log import ProgramLog
+from cbtui.runs.headless.standard_input import StandardInput
+from cbtui.runs.live.disk_space import DiskSpaceWatch
+from cbtui.runs.recorded.events_file import EventsFile
+from cbtui.runs.recorded.recording_file import CannotRecordError, start_recording
+from cbtui.runs.recorded.repeat import why_unrepeatable
+from cbtui.terminal.interrupts import heard, whole
+from cbtui.text.output import CannotSayError, complain, say
+from sim.diagnosis import diagnose, findings_text
+from sim.engine.commands import Stop
+from sim.engine.setup import Keyboard, RunSetup, TimedCall, TimedLine, TimedText
+from sim.recording import Recorder
+from sim.trace.events import AnyEvent
+from sim.trace.figures.summary import summarise
+from sim.trace.figures.summary_text import plain_text
+from sim.trace.timeline import Timeline
+from sim.units import nearest_ns
+
+_SECOND = 1_000_000_000
+_LOOK = 0.1
+"""Real seconds between two looks whether an engine that was told to end still has not."""
+_BATCHES = 64
+"""Batches that may wait for this process; a full queue holds the engine up, and nothing is lost."""
+
+News: TypeAlias = "list[AnyEvent] | str | None"
+
+
+def run_headless(
+    program: RunSetup,
+    *,
+    seconds: float,
+    calls: Sequence[float],
+    call_data: bool,
+    lines: Sequence[tuple[float, str]],
+    typed: Sequence[tuple[float, str]] = (),
+    events_path: str | None,
+    recording_path: str | None = None,
+    replace_recording: bool = False,
+) -> int:
+    """Run a program to its end; returns the exit code: 0 well, 1 it failed, 2 a file cannot be written.
+
+    Ctrl-C, ``kill`` and a terminal that is closed end the run early, and what it came to is told and recorded
+    all the same; the exit code then is 128 and the signal's number.
+
+    ``seconds`` is how long the run lasts in its own time, ``calls`` when its SetBool service is called,
+    ``lines`` which ``ros2`` lines are carried out when, ``typed`` what is typed when at the programs'
+    terminal; without any of that, the terminal is this process's standard input. A recording replaces
+    another one only with ``replace_recording``.
+    """
+    setup = msgspec.structs.replace(
+        program,
+        until=nearest_ns(seconds),
+        calls=tuple(TimedCall(nearest_ns(at), call_data) for at in sorted(calls)),
+        lines=tuple(TimedLine(nearest_ns(at), text) for at, text in sorted(lines, key=itemgetter(0))),
+        typed=tuple(TimedText(nearest_ns(at), text) for at, text in sorted(typed, key=itemgetter(0))),
+        keyboard=Keyboard.NOBODY if typed else Keyboard.LIVE,
+        contents=recording_path is not None,
+    )
+    return run_set_up(
+        setup, events_path=events_path, recording_path=recording_path, replace_recording=replace_recording
+    )
+
+
+def run_set_up(
+    setup: RunSetup, *, events_path: str | None, recording_path: str | None, replace_recording: bool
+) -> int:
+    """Run what is set up whole, as ``run_headless`` does."""
+    with ExitStack() as files:
+        try:
+            file = None if events_path is None else EventsFile(Path(events_path))
+        except OSError as error:
+            complain(f"cannot write events to {events_path}: {error.strerror}")
+            return 2
+        if file is not None:
+            files.callback(file.close)
+        recorder: Recorder | None = None
+        if recording_path is not None:
+            try:
+                with whole():
+                    recorder = start_recording(Path(recording_path), setup, replace=replace_recording)
+                    files.callback(_close, recorder)
+            except CannotRecordError as error:
+                complain(str(error))
+                return 2
+        if file is not None:
+            file.begin()
+        try:
+            return _Headless(setup, file, recorder).run()
+        except (BrokenPipeError, CannotSayError):
+            raise  # of what is said, not of the run
+        except OSError as error:
+            complain(f"the run was cut short: {error.strerror}")
+            return 1
+
+
+class _Headless:
+    """One run: takes the news of its session on this thread, one batch after another."""
+
+    def __init__(self, setup: RunSetup, file: EventsFile | None, recorder: Recorder | None) -> None:
+        self._setup = setup
+        self._news: Queue[News] = Queue(_BATCHES)
+        self._session = ListeningSession(setup, self._news.put, self._news.put)
+        self._timeline = Timeline(until_ending=True)
+        self._file = file
+        self._recorder = recorder
+        self._room = DiskSpaceWatch(self._timeline)
+        self._input = StandardInput(self._session.send) if setup.keyboard is Keyboard.LIVE else None
+        self._log = ProgramLog(echo=self._input is None)
+        self._told: Signals | None = None
+        self._patient_until = 0.0
+
+    def run(self) -> int:
+        """Run to the end, whatever ends it, and print the summary and what the rules found."""
+        try:
+            with heard(self._end_early):
+                complaint = self._session.start()
+                if complaint is not None:
+                    complain(complaint)
+                loss = self._follow()
+        finally:
+            if self._input is not None:
+                self._input.close()
+            self._session.stop()
+        self._log.finish()
+        say(plain_text(summarise(self._timeline)))
+        found = findings_text(diagnose(self._timeline), self._timeline)
+        say(f"\n{found}" if found else "")
+        if self._setup.seed and why_unrepeatable(self._timeline.notices):
+            complain(f"this program is not repeatable: seed {self._setup.seed} orders its threads, no more")
+        return self._verdict(loss) if self._told is None else 128 + self._told
+
+    def _end_early(self, told: Signals) -> None:
+        """Have the engine end, which it tells of as of everything else."""
+        self._told = told
+        self._patient_until = time.monotonic() + LONGEST_END
+        self._session.send(Stop())
+
+    def _follow(self) -> str | None:
+        """Take news until the last; what was lost, if the engine was."""
+        for events in iter(self._batches()):
+            with whole():
+                self._keep(events)
+            self._log.print(events)
+            if self._input is not None:
+                self._input.follow(events)
+            self._tell_of_room()
+        return self._loss
+
+    def _tell_of_room(self) -> None:
+        if self._recorder is None:
+            news = self._room.news(None, 0)
+        else:
+            news = self._room.news(self._recorder.path, self._recorder.size)
+        if news is not None:
+            complain(news)
+
+    def _keep(self, events: list[AnyEvent]) -> None:
+        if self._recorder is not None:
+            self._recorder.take(events)
+        self._timeline.extend(events)
+        if self._file is not None:
+            self._file.take(events)
+
+    def _batches(self) -> Iterator[list[AnyEvent]]:
+        while isinstance(news := self._next(), list):
+            yield news
+        self._loss = news
+
+    def _next(self) -> News:
+        while self._told is None or time.monotonic() < self._patient_until:
+            try:
+                return self._news.get(timeout=_LOOK)
+            except Empty:
+                continue
+        return None
+
+    def _verdict(self, loss: str | None) -> int:
+        if loss is not None:
+            complain(f"{loss} at {self._timeline.end / _SECOND:.3f} s; run it again")
+            return 1
+        ended = self._timeline.ended
+        if ended is not None and ended.failed:
+            complain(" ".join(ended.reason.split()))
+            return 1
+        return max(self._events_verdict(), self._recording_verdict())
+
+    def _events_verdict(self) -> int:
+        if self._file is None:
+            return 0
+        self._file.close()
+        if self._file.failure is not None:
+            complain(f"the events in the file are not whole: {self._file.failure}")
+            return 1
+        return 0
+
+    def _recording_verdict(self) -> int:
+        if self._recorder is None:
+            return 0
+        if self._timeline.contents_lost:
+            complain(
+                f"{self._timeline.contents_lost} messages came faster than they could be recorded; "
+                "the recording tells that they were sent, not what they held"
+            )
+        _close(self._recorder)
+        if self._recorder.failure is not None:
+            complain(f"the recording is not whole: {self._recorder.failure}")
+            return 1
+        return 0
+
+
+def _close(recorder: Recorder) -> None:
+    """Write a recording to its end, however often the person presses Ctrl-C."""
+    with whole():
+        recorder.close()

@@ -1,0 +1,121 @@
+"""``cbtui ros2 …``: carries out a ros2 line in the run that is going on, or in an engine made for it."""
+
+import shlex
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from queue import Queue
+from typing import TypeVar
+
+from cbtui.engines.control_socket import Done, NoEngine, RemoteLine, Said, connect
+from cbtui.engines.listening import ListeningSession
+from cbtui.runs.headless.program_log import ProgramLog, write_line
+from cbtui.runs.headless.standard_input import StandardInput
+from cbtui.runs.setup.lesson_setup import setup_for_line
+from cbtui.text.cells import without_tabs
+from cbtui.text.output import complain
+from sim.engine.commands import InterruptLine, Stop
+from sim.trace.events import AnyEvent, LineEnded, LineGiven, LineSaid, RunEnded
+
+ItemT = TypeVar("ItemT")
+
+_CUT_OFF = 1
+_LINE = 1
+"""The number of the one line of an engine that was made for it."""
+
+
+def run_line(words: Sequence[str], process: int | None) -> int:
+    """Carry out the line ``ros2 WORDS``; returns its exit status.
+
+    It goes to the run of that process number; for None to the one that was started last, or, where there is
+    none, to an engine in which nothing else runs.
+    """
+    text = shlex.join(["ros2", *words])
+    try:
+        connection = connect(process)
+    except NoEngine as error:
+        if process is not None:
+            complain(str(error))
+            return 2
+        complain(
+            f"{error}, so this line runs in an engine of its own; to reach a run, "
+            "give its terminal and this one the same XDG_RUNTIME_DIR, a folder of your own"
+        )
+        return _AloneLine(text).run()
+    return _follow_elsewhere(RemoteLine(connection, text))
+
+
+def _follow_elsewhere(line: RemoteLine) -> int:
+    for answer in _interruptible(line.next_answer, line.interrupt):
+        match answer:
+            case Said(text=said, error=error):
+                write_line(without_tabs(said), error=error)
+            case Done(status=None):
+                complain("the run ended before the line did")
+                return _CUT_OFF
+            case Done(status=int() as status):
+                return status
+    return _CUT_OFF
+
+
+class _AloneLine:
+    """A line in an engine of its own, whose programs print here too."""
+
+    def __init__(self, text: str) -> None:
+        self._news: Queue[list[AnyEvent] | str | None] = Queue(64)
+        setup = setup_for_line(text, Path.cwd())
+        self._session = ListeningSession(setup, self._news.put, self._news.put)
+        self._input = StandardInput(self._session.send)
+        self._log = ProgramLog()
+        self._status = _CUT_OFF
+
+    def run(self) -> int:
+        """Carry it out; the first Ctrl-C goes to the line, the second ends the engine."""
+        complaint = self._session.start()
+        if complaint is not None:
+            complain(complaint)
+        try:
+            for news in _interruptible(self._news.get, self._interrupt):
+                if not isinstance(news, list):
+                    break
+                self._take(news)
+            if news is not None:
+                complain(str(news))
+        except KeyboardInterrupt:
+            self._session.send(Stop())
+        finally:
+            self._input.close()
+            self._session.stop()
+        return self._status
+
+    def _interrupt(self) -> None:
+        self._session.send(InterruptLine(_LINE))
+
+    def _take(self, events: list[AnyEvent]) -> None:
+        self._input.follow(events)
+        for event in events:
+            match event:
+                case LineGiven():
+                    pass  # the person has just typed it
+                case LineSaid(text=text, error=error):
+                    write_line(without_tabs(text), error=error)
+                case LineEnded(status=status):
+                    self._status = status
+                case RunEnded(failed=True, reason=reason):
+                    complain(reason)
+                case _:
+                    self._log.print([event])
+
+
+def _interruptible(take: Callable[[], ItemT], interrupt: Callable[[], None]) -> Iterator[ItemT]:
+    """What ``take`` gives, again and again; the first Ctrl-C while it waits calls ``interrupt`` instead."""
+    interrupted = False
+    while True:
+        try:
+            item = take()
+        except KeyboardInterrupt:
+            if interrupted:
+                raise
+            interrupted = True
+            interrupt()
+            continue
+        yield item

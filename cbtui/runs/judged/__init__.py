@@ -1,0 +1,1 @@
+"""Runs followed to their end: checked, explored, bounded."""

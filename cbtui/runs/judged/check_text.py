@@ -1,0 +1,53 @@
+"""What came of checks, as plain text for a terminal."""
+
+from collections.abc import Iterator
+from textwrap import fill
+
+from cbtui.runs.judged.checking import Checked
+from lessons.checks import problems
+from lessons.judge import Judged
+from sim.diagnosis.text import WIDTH
+from sim.trace.model import Nanoseconds
+from sim.trace.timeline import Timeline
+
+PASSED, FAILED = "✓", "✗"
+_TIME_UP = "its time was up"
+"""What the engine says of a run that lasted as long as it was to."""
+_SECOND: Nanoseconds = 1_000_000_000
+
+
+def checked_text(checked: Checked) -> str:
+    """Each check with what was expected and seen, how many passed, and for those that did not, what is wrong.
+
+    Empty where nothing could be judged.
+    """
+    if not checked.judged:
+        return ""
+    return "\n".join([*_lines(checked), ""])
+
+
+def verdict_line(judged: Judged) -> str:
+    """What was expected of a check, what was seen, and when."""
+    verdict = judged.verdict
+    when = "" if verdict.at is None else f", at {verdict.at / _SECOND:.3f} s"
+    return f"expected {verdict.expected}; saw {verdict.seen}{when}"
+
+
+def _lines(checked: Checked) -> Iterator[str]:
+    for each in checked.judged:
+        yield f"{PASSED if each.verdict.passed else FAILED} {each.check.asks}"
+        yield f"    {verdict_line(each)}"
+    yield f"{checked.passed} of {checked.total} checks passed"
+    if checked.good:
+        return
+    for fault in faults(checked.run.timeline):
+        yield fill(fault, WIDTH, initial_indent="  ! ", subsequent_indent="    ", break_on_hyphens=False)
+
+
+def faults(timeline: Timeline) -> Iterator[str]:
+    """Yield what is wrong with a run beside its checks: that it was over too soon, what was diagnosed."""
+    ended = timeline.ended
+    if ended is not None and not ended.reason.startswith(_TIME_UP):
+        yield f"the run was over at {ended.t / _SECOND:.3f} s: {' '.join(ended.reason.split())}"
+    for found in problems(timeline):
+        yield found.rule.explain(found, timeline).what

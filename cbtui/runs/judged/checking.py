@@ -1,0 +1,158 @@
+"""Runs a lesson's node, or a learner's file in its place, on the lesson's clock, so that checks can judge it.
+
+Whatever the file does, it ends: a run has a limit of real time and one of what it may write.
+"""
+
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from queue import Empty, Full, Queue
+from threading import Event
+from typing import TypeAlias
+
+import msgspec
+
+from cbtui.engines.session import Session
+from cbtui.runs.setup.lesson_setup import setup_to_judge
+from lessons.judge import Judge, Judged
+from lessons.lesson import Lesson
+from sim.engine.setup import RunSetup
+from sim.trace.events import AnyEvent, Logged, Printed
+from sim.trace.model import Nanoseconds
+from sim.trace.timeline import Timeline
+
+LIMIT = 60.0
+"""Real seconds that a run may take; those of the lessons take one, on the real clock a few."""
+MOST_TEXT = 32_000_000
+"""Characters that a run may write to its log and its output."""
+_SECOND: Nanoseconds = 1_000_000_000
+_BATCHES = 64
+_LOOK = 0.1
+
+_News: TypeAlias = "list[AnyEvent] | str | None"
+
+
+@dataclass(frozen=True)
+class Observed:
+    """A run that is over, and in a sentence why it came to no good end; None if it did.
+
+    ``broken_off`` tells that it was cut short from outside or died, and did not fail by itself.
+    """
+
+    timeline: Timeline
+    trouble: str | None = None
+    broken_off: bool = False
+
+
+@dataclass(frozen=True)
+class Checked:
+    """What came of a learner's file: each check, or none and the sentence of what is wrong with the file."""
+
+    judged: tuple[Judged, ...]
+    total: int
+    run: Observed
+
+    @property
+    def passed(self) -> int:
+        """How many checks passed."""
+        return sum(each.verdict.passed for each in self.judged)
+
+    @property
+    def good(self) -> bool:
+        """Whether the file does all that the exercise asks."""
+        return self.run.trouble is None and self.passed == self.total
+
+
+def check(lesson: Lesson, judge: Judge, file: Path, limit: float = LIMIT, seed: int | None = None) -> Checked:
+    """Run a learner's file and judge it by a lesson's checks; takes about a second, at most ``limit``.
+
+    ``seed`` chooses the order of its threads, None the usual one.
+    """
+    setup = msgspec.structs.replace(setup_to_judge(lesson, file), seed=seed)
+    run = observe(setup, file.name, limit)
+    judged = () if run.trouble is not None else tuple(judge.verdicts(run.timeline))
+    return Checked(judged, len(judge.checks), run)
+
+
+def observe(
+    setup: RunSetup,
+    name: str,
+    limit: float = LIMIT,
+    given_up: Event | None = None,
+    open_session: Callable[..., Session] = Session,
+) -> Observed:
+    """Run what is set up to its end, on the caller's thread; ``name`` is what it is called in sentences.
+
+    Setting ``given_up``, from any thread, breaks the run off. ``open_session`` makes the session, as
+    ``Session`` does.
+    """
+    news: Queue[_News] = Queue(_BATCHES)
+    over = Event()
+
+    def put(item: _News) -> None:
+        while not over.is_set():
+            try:
+                news.put(item, timeout=_LOOK)
+            except Full:
+                continue
+            break
+
+    session = open_session(setup, put, put)
+    try:
+        session.start()
+        return _followed(news, name, limit, given_up or Event())
+    finally:
+        over.set()
+        session.stop()
+
+
+def _followed(news: "Queue[_News]", name: str, limit: float, given_up: Event) -> Observed:
+    timeline = Timeline(until_ending=True)
+    give_up = time.monotonic() + limit
+    text = 0
+    while (left := give_up - time.monotonic()) > 0:
+        if given_up.is_set():
+            return Observed(timeline, f"{name} was broken off at {_time(timeline)}", broken_off=True)
+        try:
+            batch = news.get(timeout=min(left, _LOOK))
+        except Empty:
+            continue
+        if batch is None or isinstance(batch, str):
+            return over(timeline, name, batch)
+        timeline.extend(batch)
+        text += text_in(batch)
+        if text > MOST_TEXT:
+            return Observed(timeline, wrote_too_much(timeline, name), broken_off=True)
+    return Observed(timeline, took_too_long(timeline, name, limit), broken_off=True)
+
+
+def over(timeline: Timeline, name: str, loss: str | None) -> Observed:
+    """Return what is to be said of a run that came to its end; ``loss`` says how its engine was lost."""
+    if loss is not None:
+        sentence = f"{name} ended its whole process at {_time(timeline)}: {loss}"
+        return Observed(timeline, sentence, broken_off=True)
+    ended = timeline.ended
+    if ended is None or not ended.failed:
+        return Observed(timeline)
+    reason = " ".join(ended.reason.split())
+    return Observed(timeline, reason if name in reason else f"{name}: {reason}")
+
+
+def text_in(events: Iterable[AnyEvent]) -> int:
+    """Return how many characters of log and output are among some events."""
+    return sum(len(event.text) for event in events if isinstance(event, Logged | Printed))
+
+
+def wrote_too_much(timeline: Timeline, name: str) -> str:
+    """Say that a run was ended for what it wrote."""
+    return f"{name} wrote more than {MOST_TEXT // 1_000_000} MB of log by {_time(timeline)}"
+
+
+def took_too_long(timeline: Timeline, name: str, limit: float) -> str:
+    """Say that a run was ended for the real seconds that it took."""
+    return f"{name} was given {limit:g} s of real time, and had not come further than {_time(timeline)}"
+
+
+def _time(timeline: Timeline) -> str:
+    return f"{timeline.end / _SECOND:.3f} s"

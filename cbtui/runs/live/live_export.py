@@ -1,0 +1,65 @@
+"""Exporting a run that is on screen: a file of its own in the current folder, written on another thread."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Event
+
+from cbtui.runs.live.live_recording import unused_name
+from cbtui.runs.recorded.exporting import FORMATS, ExportError, Source, Wish, export
+from sim.recording import RecordingError
+from sim.trace.model import Nanoseconds, Window
+
+
+class _GivenUpError(Exception):
+    """The export was given up."""
+
+
+@dataclass(frozen=True)
+class Material:
+    """What there is to export: a run's title, its events, how far they go, and a sentence on what is not."""
+
+    title: str
+    source: Source
+    end: Nanoseconds
+    missing: str = ""
+
+
+class LiveExport:
+    """One file in one of ``FORMATS``; ``window`` is what a picture shows, None for the whole run.
+
+    ``write`` is for any thread; the rest may be asked on another one meanwhile.
+    """
+
+    def __init__(self, material: Material, form: str, window: Window | None) -> None:
+        self._material = material
+        suffix = Path(FORMATS[form][0]).suffix
+        self._path = unused_name(material.title, suffix).absolute()
+        start, end = (0, None) if window is None else (window.start / 1e9, window.end / 1e9)
+        self._wish = Wish({form: self._path}, start, end, replace=False)
+        self._given_up = Event()
+        self.share = 0.0
+        """How much of the run is in the file, from 0 to 1."""
+        self.over = False
+        """Whether nothing more is done about it."""
+
+    def give_up(self) -> None:
+        """Leave off, and no file behind, unless it is whole already."""
+        self._given_up.set()
+
+    def write(self) -> str:
+        """Write the file to its end, and say where it is; or why there is none."""
+        try:
+            export(self._material.source, self._wish, self._reach)
+        except _GivenUpError:
+            return f"The export was given up before {self._path.name} was whole, and there is no such file"
+        except (ExportError, RecordingError) as error:
+            return f"Nothing was exported: {error}"
+        finally:
+            self.over = True
+        missing = self._material.missing
+        return f"Exported to {self._path}" + (f"; {missing}" if missing else "")
+
+    def _reach(self, moment: Nanoseconds) -> None:
+        if self._given_up.is_set():
+            raise _GivenUpError
+        self.share = min(1.0, moment / max(1, self._material.end))

@@ -1,0 +1,107 @@
+"""Recording a run that is on screen, from when the person asks for it until they have had enough."""
+
+import re
+import time
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+from typing import TypeAlias
+
+from cbtui.runs.recorded.recording_file import NameTakenError, start_recording
+from sim.engine.setup import RunSetup
+from sim.recording import BackgroundRecorder, Beginning, Recorder
+from sim.trace.events import AnyEvent
+
+Finish: TypeAlias = Callable[[], str]
+"""Writes a recording to its end, however long the disk takes, and says what it holds; for any thread."""
+
+_LONGEST_TITLE = 60
+_TRIES = 1000
+_QUICKER = 100
+"""How often another console may be quicker to take a name."""
+
+
+class LiveRecording:
+    """Records none or any number of stretches of a run, each to a file of its own.
+
+    It follows the run all the time, since a stretch has to tell what was there when it began. Files are
+    written on threads of their own. It belongs to one thread, but ``end`` may be called from any.
+    """
+
+    def __init__(self, setup: RunSetup) -> None:
+        self._setup = setup
+        self._beginning = Beginning()
+        self._recorder: BackgroundRecorder | None = None
+
+    @property
+    def count(self) -> int | None:
+        """How many events have been recorded; None if nothing is being recorded."""
+        return None if self._recorder is None else self._recorder.count
+
+    @property
+    def path(self) -> Path | None:
+        """The file that is being written; None if there is none."""
+        return None if self._recorder is None else self._recorder.path
+
+    @property
+    def size(self) -> int:
+        """Bytes in that file; 0 if there is none."""
+        return 0 if self._recorder is None else self._recorder.size
+
+    @property
+    def lost(self) -> int:
+        """How many events came too fast to be recorded; 0 if nothing is being recorded."""
+        return 0 if self._recorder is None else self._recorder.lost
+
+    def begin(self, key: str) -> str:
+        """Begin a recording in the current folder, and say so; ``key`` is what ends it.
+
+        Raises:
+            CannotRecordError: it cannot be made.
+        """
+        self._recorder = BackgroundRecorder(self._recorder_here(_QUICKER))
+        self._recorder.take(self._beginning.events())
+        return f"Recording to {self._recorder.path}; {key} again ends it"
+
+    def _recorder_here(self, tries: int) -> Recorder:
+        try:
+            return start_recording(unused_name(self._setup.title), self._setup)
+        except NameTakenError:
+            if not tries:
+                raise
+            return self._recorder_here(tries - 1)
+
+    def take(self, events: list[AnyEvent]) -> str | None:
+        """Follow the run; a sentence if its recording came to an end for it cannot be written."""
+        self._beginning.take(events)
+        recorder = self._recorder
+        if recorder is None:
+            return None
+        recorder.take(events)
+        return None if recorder.failure is None else self.end()
+
+    def end(self) -> str | None:
+        """Finish the recording, and say what it holds; None if there is none. Waits for the disk."""
+        finish = self.part()
+        return None if finish is None else finish()
+
+    def part(self) -> Finish | None:
+        """Record no more; return what is left to do, None if nothing is being recorded."""
+        recorder, self._recorder = self._recorder, None
+        return None if recorder is None else partial(_finish, recorder)
+
+
+def _finish(recorder: BackgroundRecorder) -> str:
+    recorder.close()
+    if recorder.failure is not None:
+        return f"The recording {recorder.path} is not whole: {recorder.failure}"
+    lost = f"; {recorder.lost:,} came too fast and are missing in it" if recorder.lost else ""
+    return f"Recorded {recorder.count:,} events in {recorder.path}{lost}"
+
+
+def unused_name(title: str, suffix: str = ".mcap") -> Path:
+    """A name with the title and the time of day that no file in the current folder has."""
+    plain = re.sub(r"[^A-Za-z0-9_-]+", "-", title).strip("-")[:_LONGEST_TITLE] or "run"
+    stem = f"{plain}-{time.strftime('%Y%m%d-%H%M%S')}"
+    names = (Path(f"{stem}{'' if number == 1 else f'-{number}'}{suffix}") for number in range(1, _TRIES))
+    return next((name for name in names if not name.exists()), Path(f"{stem}{suffix}"))

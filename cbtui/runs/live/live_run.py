@@ -1,0 +1,259 @@
+"""A run as the console holds it: its timeline, its session, and what the person has asked of it."""
+
+from collections.abc import Callable
+from enum import Enum, auto
+from itertools import count
+from typing import Protocol, TypeAlias
+
+from cbtui.engines.hang_detector import SILENT
+from cbtui.engines.session import Deliver, Ended
+from cbtui.runs.live.disk_space import DiskSpaceWatch
+from cbtui.runs.live.live_export import Material
+from cbtui.runs.live.live_recording import Finish, LiveRecording
+from sim.engine.commands import (
+    CallService,
+    Command,
+    CompleteLine,
+    InterruptLine,
+    KeepContents,
+    Pause,
+    ResetWorld,
+    Resume,
+    RunLine,
+    RunUntil,
+    RunUntilCallback,
+    SetSpeed,
+    Step,
+    Type,
+)
+from sim.engine.setup import RunSetup
+from sim.trace.events import AnyEvent, CommandGiven, EntityId, KeyboardAsked, Notice, TimeHalted
+from sim.trace.model import Nanoseconds
+from sim.trace.storage.tape import Tape
+from sim.trace.timeline import Timeline
+from sim.trace.words import name_of
+
+SPEEDS: tuple[float | None, ...] = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, None)
+"""Seconds of a run per real second that can be chosen; None, virtual only, is as fast as the engine can."""
+
+_LETS_GO = ("resume", "run until ")
+"""What the trace says of commands that let time go on: a halt before those was that of an earlier command."""
+
+
+class Session(Protocol):
+    """One engine process. ``deliver`` and ``ended`` are called on a thread of the session's own."""
+
+    def start(self) -> str | None:
+        """Start the process; a sentence if something about it does not work."""
+
+    def send(self, command: Command) -> None:
+        """Tell the engine something; ignored once it has ended."""
+
+    def stop(self) -> None:
+        """End the process, within a second; may be called again."""
+
+
+OpenSession: TypeAlias = Callable[[RunSetup, Deliver, Ended], Session]
+
+
+class State(Enum):
+    """How far a run has come."""
+
+    STARTING = auto()
+    LIVE = auto()
+    PAUSED = auto()
+    SILENT = auto()
+    ENDED = auto()
+    LOST = auto()
+    REPLAY_STANDS = auto()
+    REPLAY_PLAYS = auto()
+
+
+class LiveRun:
+    """A run in progress. It belongs to the UI thread: what the session delivers is handed over there."""
+
+    def __init__(self, setup: RunSetup, open_session: OpenSession, deliver: Deliver, ended: Ended) -> None:
+        self.setup = setup
+        self.timeline = Timeline(until_ending=setup.until is not None)
+        self._room = DiskSpaceWatch(self.timeline)
+        self._recording = LiveRecording(setup)
+        self._tape = Tape()
+        self.speed = setup.speed if self.virtual else setup.speed or 1.0
+        self.loss: str | None = None
+        self.paused = False
+        self._silent = False
+        self._goes_on = True
+        self._over = False
+        self._numbers = count(len(setup.lines) + 1)
+        self._line = 0
+        self._started = False
+        self._session = open_session(setup, deliver, ended)
+
+    @property
+    def state(self) -> State:
+        """How far the run has come; a lost engine outdoes everything else."""
+        if self.loss is not None:
+            return State.LOST
+        if self._over or self.timeline.ended is not None:
+            return State.ENDED
+        if self.timeline.started is None:
+            return State.STARTING
+        if self._silent:
+            return State.SILENT
+        return State.PAUSED if self.paused else State.LIVE
+
+    @property
+    def alive(self) -> bool:
+        """Whether the engine can still be told something."""
+        return self.state in (State.STARTING, State.LIVE, State.PAUSED, State.SILENT)
+
+    @property
+    def asked(self) -> KeyboardAsked | None:
+        """How a program waits for the keyboard now; None if none does."""
+        return self.timeline.asked(self.timeline.end) if self.alive else None
+
+    @property
+    def virtual(self) -> bool:
+        """Whether time stands still for every thread in a pause, and can go on step by step."""
+        return self.setup.clock == "virtual"
+
+    @property
+    def speeds(self) -> tuple[float | None, ...]:
+        """The speeds that can be chosen for this run."""
+        return SPEEDS if self.virtual else SPEEDS[:-1]
+
+    def start(self) -> str | None:
+        """Start the engine, one that cannot be started counts as lost; a sentence if not all of it works."""
+        try:
+            complaint = self._session.start()
+        except OSError as error:
+            self.loss = f"it could not be started: {error.strerror or error}"
+            return None
+        self._started = True
+        return complaint
+
+    def take(self, events: list[AnyEvent]) -> str | None:
+        """Add what the session delivered; a sentence on what it could not be kept in, or soon cannot."""
+        self.timeline.extend(events)
+        self._tape.take(events)
+        self._silent = False
+        for event in events:
+            if isinstance(event, Notice):
+                self._silent = self._silent or event.text.startswith(SILENT)
+            elif isinstance(event, TimeHalted):
+                self.paused = True
+            elif isinstance(event, CommandGiven) and self._goes_on and event.text.startswith(_LETS_GO):
+                self.paused = False
+        failure = self._recording.take(events)
+        if failure is not None:
+            self._session.send(KeepContents(wanted=False))
+        return failure or self._room.news(self._recording.path, self._recording.size)
+
+    def over(self, loss: str | None) -> Finish | None:
+        """Note that the engine is gone; ``loss`` says how, if it should not be.
+
+        Returns what finishes a recording and tells of it, None if there is none.
+        """
+        self._over = True
+        self.loss = loss
+        return self._recording.part()
+
+    def stop(self) -> str | None:
+        """End the engine and a recording, and say what that holds.
+
+        Blocks for up to a second and until the recording is written; may be called from any thread.
+        """
+        if self._started:
+            self._session.stop()
+        return self._recording.end()
+
+    @property
+    def recorded(self) -> int | None:
+        """How many events have been recorded; None if the run is not being recorded."""
+        return self._recording.count
+
+    @property
+    def recorded_bytes(self) -> int:
+        """How large the recording is by now."""
+        return self._recording.size
+
+    @property
+    def unrecorded(self) -> int:
+        """How many events came too fast to be recorded."""
+        return self._recording.lost
+
+    def record(self, key: str = "R") -> str:
+        """Begin a recording in the current folder, and say so; ``key`` is what ends it.
+
+        Raises:
+            CannotRecordError: it cannot be made.
+        """
+        sentence = self._recording.begin(key)
+        self._session.send(KeepContents(wanted=True))
+        return sentence
+
+    def end_recording(self) -> Finish | None:
+        """Record no more; return what finishes the recording and tells of it, None if there is none."""
+        self._session.send(KeepContents(wanted=False))
+        return self._recording.part()
+
+    def material(self) -> Material:
+        """What there is to export of the run so far."""
+        return Material(self.setup.title, self._tape, self.timeline.end, self._tape.missing)
+
+    def call(self, data: bool) -> None:
+        """Call the SetBool service that the run was set up with, or else the program's first."""
+        service = self.setup.service
+        self._session.send(CallService(None if service is None else service.name, data))
+
+    def give_line(self, text: str) -> None:
+        """Have a ``ros2`` line carried out."""
+        self._line = next(self._numbers)
+        self._session.send(RunLine(self._line, text))
+
+    def type(self, text: str) -> None:
+        """Type at the terminal of the programs."""
+        self._session.send(Type(text))
+
+    def interrupt_line(self) -> None:
+        """End the line that was given last, as Ctrl-C would."""
+        self._session.send(InterruptLine(self._line))
+
+    def complete_line(self, text: str, cursor: int) -> None:
+        """Ask what could stand at a place of a line; the answer comes with the trace."""
+        self._session.send(CompleteLine(next(self._numbers), text, cursor))
+
+    def pause(self) -> None:
+        """Stop time."""
+        self.paused, self._goes_on = True, False
+        self._session.send(Pause())
+
+    def resume(self) -> None:
+        """Let time go on."""
+        self.paused, self._goes_on = False, True
+        self._session.send(Resume())
+
+    def step(self) -> None:
+        """Go on to the next scheduling decision; time stands again there."""
+        self._session.send(Step())
+
+    def run_until(self, moment: Nanoseconds) -> None:
+        """Go on to a moment that has not come yet; time stands again there."""
+        self.paused, self._goes_on = False, True
+        self._session.send(RunUntil(moment))
+
+    def run_until_callback(self, entity: EntityId) -> None:
+        """Go on to the next event of an entity; time stands again there."""
+        self.paused, self._goes_on = False, True
+        self._session.send(RunUntilCallback(entity, name_of(entity, self.timeline)))
+
+    def reset_world(self) -> None:
+        """Put the robot back to its start."""
+        self._session.send(ResetWorld())
+
+    def change_speed(self, steps: int) -> None:
+        """Go up (> 0) or down in ``speeds``."""
+        speeds = self.speeds
+        place = max(0, min(speeds.index(self.speed) + steps, len(speeds) - 1))
+        self.speed = speeds[place]
+        self._session.send(SetSpeed(self.speed))

@@ -1,0 +1,251 @@
+"""A recording as the console shows it: its subject, the session that reads it, and the run it tells of."""
+
+import threading
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from pathlib import Path
+
+from cbtui.engines.session import Deliver, Ended
+from cbtui.runs.live.live_export import Material
+from cbtui.runs.live.live_recording import Finish
+from cbtui.runs.live.live_run import SPEEDS, LiveRun, State
+from cbtui.runs.live.playhead import Playhead
+from cbtui.runs.recorded.recording_file import setup_of
+from cbtui.runs.setup.own_files import PROGRAMS
+from cbtui.runs.setup.subject import Subject
+from sim.engine.commands import Command
+from sim.engine.setup import RunSetup
+from sim.foreign_file import read_text
+from sim.recording import About, Recording, RecordingError, read
+from sim.trace.events import AnyEvent
+from sim.trace.model import Nanoseconds
+
+_SECOND = 1_000_000_000
+_DELIVERED = 2000
+"""Events that are delivered at once: what the screen takes in between two frames."""
+_GRACE = 0.4
+"""Seconds that a reader gets to notice that it is to stop."""
+
+_LONGEST_SOURCE = 500_000
+"""Bytes of a program that is shown; recordings take no longer ones along either."""
+_GUIDE = """# Recording of {title}
+
+{facts}
+
+Every pane shows the moment that the status line tells.
+
+- `space` plays it from here, from its beginning at its end; `+` and `-` change how fast.
+- `[` and `]` go back and on, `,` and `.` by one event, `G` to a moment, `0` to the end.
+- `left` and `right` show another stretch of time, and leave that moment.
+"""
+
+
+class ReplaySession:
+    """Delivers a recording instead of a run; shaped like ``cbtui.engines.session.Session``.
+
+    ``deliver`` and ``ended`` are called on a thread of its own; what ``ended`` gets is one sentence on what
+    of the recording cannot be read, or None.
+    """
+
+    def __init__(self, recording: Recording, deliver: Deliver, ended: Ended) -> None:
+        self._recording = recording
+        self._deliver = deliver
+        self._ended = ended
+        self._stopping = threading.Event()
+        self._reader = threading.Thread(target=self._read, name="recording-reader", daemon=True)
+
+    def start(self) -> None:
+        """Start to read."""
+        self._reader.start()
+
+    def send(self, command: Command) -> None:
+        """Refuse a command: what was recorded cannot be told anything.
+
+        Raises:
+            NotImplementedError: always.
+        """
+        raise NotImplementedError(f"a recording takes no commands, and so no {type(command).__name__}")
+
+    def stop(self) -> None:
+        """Read no further. May be called again."""
+        self._stopping.set()
+        self._reader.join(_GRACE)
+
+    def _read(self) -> None:
+        try:
+            self._deliver_all()
+        except RecordingError as error:
+            self._ended(str(error))
+        except OSError as error:
+            self._ended(f"{self._recording.path} cannot be read to its end: {error.strerror}")
+        else:
+            damage = self._recording.damage
+            self._ended(None if damage is None else f"{self._recording.path.name}: {damage}")
+
+    def _deliver_all(self) -> None:
+        waiting: list[AnyEvent] = []
+        for events in self._recording.batches():
+            waiting += events
+            if len(waiting) >= _DELIVERED:
+                self._deliver(waiting)
+                waiting = []
+            if self._stopping.is_set():
+                return
+        if waiting:
+            self._deliver(waiting)
+
+
+class _ReadAgain:
+    """The events of a recording, read anew by whoever asks for them."""
+
+    def __init__(self, path: Path) -> None:
+        self._path = path
+
+    def batches(self) -> Iterator[list[AnyEvent]]:
+        """The events, batch after batch.
+
+        Raises:
+            RecordingError: nothing of the recording is left.
+            OSError: it cannot be read to its end.
+        """
+        yield from read(self._path).batches()
+
+
+class ReplayRun(LiveRun):
+    """A recorded run. It is played by moving the moment on screen, never by an engine.
+
+    ``damage`` is one sentence on what cannot be read of it, once it has been read to its end.
+    """
+
+    def __init__(self, recording: Recording, setup: RunSetup, deliver: Deliver, ended: Ended) -> None:
+        super().__init__(
+            setup, lambda _, deliver, ended: ReplaySession(recording, deliver, ended), deliver, ended
+        )
+        self._path = recording.path
+        self.speed = 1.0
+        self.paused = True
+        self.damage: str | None = None
+
+    @property
+    def state(self) -> State:
+        """Whether the moment on screen moves or stands."""
+        return State.REPLAY_STANDS if self.paused else State.REPLAY_PLAYS
+
+    @property
+    def is_read(self) -> bool:
+        """Whether it has been read to its end."""
+        return self._over
+
+    @property
+    def speeds(self) -> tuple[float | None, ...]:
+        """The speeds at which it can be played."""
+        return SPEEDS[:-1]
+
+    def take(self, events: list[AnyEvent]) -> str | None:
+        """Add what was read; there is nothing to record of it."""
+        self.timeline.extend(events)
+        return self._room.news(None, 0)
+
+    def material(self) -> Material:
+        """What there is to export: all of the recording, however much of it has been read."""
+        return Material(self.setup.title, _ReadAgain(self._path), self.timeline.end)
+
+    def over(self, loss: str | None) -> Finish | None:
+        """Note that it has been read to its end; what tells of what cannot be read, if there is such."""
+        super().over(None)
+        self.damage = loss
+        return None if loss is None else lambda: loss
+
+    def pause(self) -> None:
+        """Let the moment on screen stand."""
+        self.paused = True
+
+    def resume(self) -> None:
+        """Let the moment on screen move."""
+        self.paused = False
+
+    def change_speed(self, steps: int) -> None:
+        """Go up (> 0) or down in ``speeds``."""
+        place = max(0, min(self.speeds.index(self.speed) + steps, len(self.speeds) - 1))
+        self.speed = self.speeds[place]
+
+    def played(self, playhead: Playhead, elapsed: Nanoseconds) -> Playhead:
+        """Move a playhead on by what is played in ``elapsed`` real time; at the end it stands."""
+        end = self.timeline.end
+        moved = playhead.sought(playhead.now(end) + round(elapsed * (self.speed or 1.0)), end)
+        if moved.at is None:
+            self.paused = True
+        return moved
+
+
+def of_recording(recording: Recording) -> Subject:
+    """Return a recording as a subject; the sources are those that were recorded."""
+    about = recording.about
+    path, source = _source_of(recording)
+    setup = setup_of(about) or RunSetup(title=about.title, programs=(), clock=about.clock or "virtual")
+    title = _plain(about.title) or _plain(recording.path.name)
+    return Subject(
+        heading=title,
+        guide=_GUIDE.format(title=_escaped(title), facts="\n".join(_facts(recording))),
+        node_path=path,
+        service="" if setup.service is None else setup.service.name,
+        executor="",
+        set_up=lambda _threads, _speed: setup,
+        source=source,
+        sources=recording.sources,
+    )
+
+
+def _source_of(recording: Recording) -> tuple[Path, str]:
+    """The first program's path and text; what neither was recorded nor lies on this machine says so."""
+    names = [*recording.about.programs, *recording.sources]
+    name = next((name for name in names if name in recording.sources), next(iter(names), ""))
+    path = Path(_plain(name) or recording.path.name)
+    if name in recording.sources:
+        return path, recording.sources[name]
+    return path, _program_text(path) or _NO_SOURCE
+
+
+def _program_text(path: Path) -> str:
+    """A program that a recording names, if this machine has it; any file may be named, of any size."""
+    try:
+        return read_text(path, _LONGEST_SOURCE, "replace") if path.suffix in PROGRAMS else ""
+    except (OSError, ValueError):
+        return ""
+
+
+_NO_SOURCE = "# The recording holds no source of this program, and this machine has none.\n"
+
+
+def _facts(recording: Recording) -> list[str]:
+    about = recording.about
+    facts = [f"- file: {_escaped(_plain(str(recording.path)))}"]
+    if about.recorded:
+        facts.append(f"- recorded: {_moment(about.recorded)} by cbtui {_escaped(_plain(about.version))}")
+    facts.append(f"- clock: {_escaped(_plain(about.clock)) or 'unknown'}")
+    facts.append(f"- threads: {_threads(about)}")
+    facts += [f"- program: {_escaped(_plain(program))}" for program in about.programs]
+    if about.arguments:
+        facts.append(f"- arguments: {_escaped(_plain(' '.join(about.arguments)))}")
+    return facts
+
+
+def _threads(about: About) -> str:
+    return "the program's own number" if about.threads is None else str(about.threads)
+
+
+def _moment(nanoseconds: int) -> str:
+    try:
+        return f"{datetime.fromtimestamp(nanoseconds // _SECOND, UTC):%Y-%m-%d %H:%M:%S} UTC"
+    except (ValueError, OverflowError, OSError):
+        return "at no time that there is"
+
+
+def _plain(text: str) -> str:
+    """A recorded text without what a terminal or a file system would take for a command."""
+    return "".join(character for character in text if character.isprintable())
+
+
+def _escaped(text: str) -> str:
+    """A text that Markdown shows as it is."""
+    return "".join(f"\\{each}" if each in r"\`*_{}[]()<>#+-.!|~&" else each for each in text)

@@ -1,0 +1,1 @@
+"""Recordings: written, summarised, repeated and exported."""

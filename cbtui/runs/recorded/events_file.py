@@ -1,0 +1,48 @@
+"""The events of a run in a file, a line of JSON each, for programs that read them."""
+
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from sim.export.jsonl import JsonLines
+from sim.recording.growing_file import GrowingFile
+from sim.trace.events import AnyEvent
+
+
+class EventsFile:
+    """Takes events as they come. Where it cannot, it keeps the whole lines it has, and ``failure`` says why.
+
+    A file that is there keeps its content until ``begin``.
+
+    Raises OSError if it cannot be opened, BrokenPipeError if it is a pipe and who read it has read enough.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self._new = None if path.exists() else path
+        self._file = GrowingFile(path.open("ab", buffering=0), end=b"\n")
+        self._lines = JsonLines()
+        self.failure: str | None = None
+
+    def begin(self) -> None:
+        """Empty the file."""
+        self._file.clear()
+
+    def take(self, events: Sequence[AnyEvent]) -> None:
+        """Write events."""
+        if self.failure is None:
+            self._try(lambda: self._file.write(b"".join(self._lines.lines(events))))
+
+    def close(self) -> None:
+        """Write what is left, once. A new file that got nothing is not left behind."""
+        self._try(self._file.close)
+        if self._new is not None and self._file.tell() == 0:
+            with suppress(OSError):
+                self._new.unlink()
+
+    def _try(self, write: Callable[[], object]) -> None:
+        try:
+            write()
+        except BrokenPipeError:
+            raise
+        except OSError as error:
+            self.failure = self.failure or str(error.strerror)

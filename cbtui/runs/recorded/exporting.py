@@ -1,0 +1,183 @@
+"""Takes the events of a run to trace viewers, spreadsheets and paper: files in the formats that there are."""
+
+import os
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass
+from io import TextIOWrapper
+from itertools import chain
+from pathlib import Path
+from types import TracebackType
+from typing import TYPE_CHECKING, Protocol, Self
+
+from sim.units import nearest_ns
+from sim.whole_file import whole_file
+
+if TYPE_CHECKING:
+    from sim.export import CallTable, Narrator
+    from sim.trace.events import AnyEvent
+    from sim.trace.model import Nanoseconds, Window
+    from sim.trace.timeline import Timeline
+
+FORMATS = {
+    "perfetto": ("OUT.pftrace", "a trace for ui.perfetto.dev"),
+    "chrome": ("OUT.json", "a trace for chrome://tracing and Speedscope"),
+    "svg": ("OUT.svg", "a picture of the lanes, for paper; see --from, --to and --width"),
+    "csv": ("OUT.csv", "a table of the calls"),
+    "markdown": ("OUT.md", "a report: set-up, statistics, waits, notices; with the --svg picture, if any"),
+}
+WIDTH = 1100
+_SECOND = 1_000_000_000
+
+
+class Source(Protocol):
+    """Where events come from: an open recording, or the tape of a run."""
+
+    def batches(self) -> "Iterator[list[AnyEvent]]":
+        """The events, batch after batch."""
+
+
+class ExportError(Exception):
+    """What stands in the way of an export, in one sentence for the person."""
+
+
+@dataclass(frozen=True)
+class Wish:
+    """What is to be written: paths by format, and the part (seconds) and width (pixels) of the picture.
+
+    Files that exist are only replaced with ``replace``, and each when it is whole.
+    """
+
+    outputs: dict[str, Path]
+    start: float = 0.0
+    end: float | None = None
+    width: int = WIDTH
+    replace: bool = True
+
+
+def _go_on(_: "Nanoseconds") -> None:
+    """Know how far an export has come, and do nothing about it."""
+
+
+def export(source: Source, wish: Wish, reached: "Callable[[Nanoseconds], None]" = _go_on) -> None:
+    """Write what is wished for, in one pass over the events; ``reached`` is told how far that has come.
+
+    What ``reached`` raises ends the export.
+
+    Raises:
+        ExportError: an output cannot be written, the source cannot be read, or the picture cannot be drawn.
+    """
+    from sim.trace.timeline import Timeline
+
+    batches = _read(source)
+    first = next(batches, None)
+    if first is None:
+        raise ExportError("there are no events to export")
+    timeline = Timeline(until_ending=True) if {"svg", "markdown"} & wish.outputs.keys() else None
+    with ExitStack() as open_files:
+        outputs = [
+            open_files.enter_context(_Output(name, path, wish.replace)) for name, path in wish.outputs.items()
+        ]
+        for output in outputs:
+            output.begin()
+        for batch in chain([first], batches):
+            if timeline is not None:
+                timeline.extend(batch)
+            for output in outputs:
+                output.take(batch)
+            if batch:
+                reached(batch[-1].t)
+        for output in outputs:
+            output.finish(timeline, wish)
+
+
+class _Output:
+    """One file that is written."""
+
+    def __init__(self, name: str, path: Path, replace: bool) -> None:
+        self._name = name
+        self._path = path
+        self._writer: Narrator | CallTable | None = None
+        self._whole = whole_file(path, replace=replace)
+        with self._trouble():
+            self._file = self._whole.__enter__()
+        self._text = TextIOWrapper(self._file, "utf-8", newline="", write_through=True)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        with self._trouble():
+            self._whole.__exit__(kind, error, trace)
+
+    def begin(self) -> None:
+        """Write what comes before any event, if the format is written as events go by."""
+        from sim.export import CallTable, ChromeFile, Narrator, PerfettoFile
+
+        with self._trouble():
+            if self._name == "perfetto":
+                self._writer = Narrator(PerfettoFile(self._file))
+            elif self._name == "chrome":
+                self._writer = Narrator(ChromeFile(self._file))
+            elif self._name == "csv":
+                self._writer = CallTable(self._text)
+
+    def take(self, batch: "list[AnyEvent]") -> None:
+        """Write a batch, if the format is one that is written as events go by."""
+        if self._writer is not None:
+            with self._trouble():
+                self._writer.take(batch)
+
+    def finish(self, timeline: "Timeline | None", wish: Wish) -> None:
+        """Write the rest, or the page that is made of the whole run."""
+        page = _page(self._name, timeline, wish) if timeline is not None else ""
+        with self._trouble():
+            if self._writer is not None:
+                self._writer.finish()
+            else:
+                self._text.write(page)
+
+    @contextmanager
+    def _trouble(self) -> Iterator[None]:
+        try:
+            yield
+        except OSError as error:
+            raise ExportError(f"cannot write {self._path}: {error.strerror}") from None
+
+
+def _page(name: str, timeline: "Timeline", wish: Wish) -> str:
+    """The text of a picture or a report; nothing for other formats."""
+    from sim.export import report, svg
+
+    if name == "markdown":
+        return report(timeline, _picture_beside(wish))
+    if name == "svg":
+        return svg(timeline, _window(timeline, wish), wish.width)
+    return ""
+
+
+def _window(timeline: "Timeline", wish: Wish) -> "Window":
+    from sim.trace.model import Window
+
+    start = nearest_ns(wish.start)
+    end = timeline.end if wish.end is None else nearest_ns(wish.end)
+    if wish.start and start >= timeline.end:
+        raise ExportError(f"the run is over at {timeline.end / _SECOND:g} s, before --from {wish.start:g}")
+    return Window(start, max(end, start + 1))
+
+
+def _picture_beside(wish: Wish) -> str | None:
+    """Where the picture is, seen from the report."""
+    picture = wish.outputs.get("svg")
+    if picture is None:
+        return None
+    return Path(os.path.relpath(picture.resolve(), wish.outputs["markdown"].resolve().parent)).as_posix()
+
+
+def _read(source: Source) -> "Iterator[list[AnyEvent]]":
+    try:
+        yield from source.batches()
+    except OSError as error:
+        raise ExportError(f"the recording cannot be read: {error.strerror}") from None

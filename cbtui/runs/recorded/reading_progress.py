@@ -1,0 +1,38 @@
+"""Tells how far the reading of a recording has come, to whoever waits for it in front of a terminal."""
+
+import sys
+import time
+from collections.abc import Iterator
+
+from sim.recording import Recording
+from sim.trace.events import AnyEvent
+
+_SOON = 1.0
+"""Seconds that nobody minds to wait without a word."""
+_PERIOD = 0.2
+
+
+class ReadingProgress:
+    """The batches of a recording; going through them is told of on standard error, if that is a terminal."""
+
+    def __init__(self, recording: Recording) -> None:
+        self._recording = recording
+
+    def batches(self) -> Iterator[list[AnyEvent]]:
+        """The events, batch after batch. Raises what the recording's own do."""
+        due = time.monotonic() + _SOON
+        shown = False
+        try:
+            for events in self._recording.batches():
+                if time.monotonic() > due and sys.stderr.isatty():
+                    due, shown = time.monotonic() + _PERIOD, True
+                    _show(f"reading {self._recording.path.name}: {self._recording.share:.0%}")
+                yield events
+        finally:
+            if shown:
+                _show("")
+
+
+def _show(text: str) -> None:
+    sys.stderr.write(f"\r\x1b[K{text}")
+    sys.stderr.flush()

@@ -1,0 +1,65 @@
+"""Recordings of runs: where one is written, and what it tells of its run."""
+
+import time
+from importlib.metadata import version
+from pathlib import Path
+
+import msgspec
+
+from sim.engine.setup import RunSetup
+from sim.recording import About, Recorder
+
+
+class CannotRecordError(Exception):
+    """A recording that cannot be begun; the text is a sentence that says why and what to do."""
+
+
+class NameTakenError(CannotRecordError):
+    """A recording that would have to replace a file."""
+
+
+def start_recording(path: Path, setup: RunSetup, *, replace: bool = False) -> Recorder:
+    """Begin to record a run of ``setup``; an existing file is only overwritten with ``replace``.
+
+    Raises:
+        NameTakenError: there is such a file.
+        CannotRecordError: it cannot be made.
+    """
+    try:
+        if path.is_dir():
+            raise CannotRecordError(f"cannot record to {path}: it is a folder; name a file in it")
+        is_new = not path.exists()
+        recorder = Recorder(path, about(setup), replace=replace)
+    except FileExistsError:
+        sentence = f"there is a file {path} already; give another name, or --force to replace it"
+        raise NameTakenError(sentence) from None
+    except OSError as error:
+        raise CannotRecordError(f"cannot record to {path}: {error.strerror}") from None
+    if recorder.failure is not None:
+        recorder.close()
+        if is_new:
+            path.unlink(missing_ok=True)
+        raise CannotRecordError(f"cannot record to {path}: {recorder.failure}")
+    return recorder
+
+
+def about(setup: RunSetup) -> About:
+    """What a recording tells of the run."""
+    return About(
+        title=setup.title,
+        clock=setup.clock,
+        threads=setup.threads,
+        programs=tuple(program.path for program in setup.programs),
+        arguments=next((program.arguments for program in setup.programs), ()),
+        setup=msgspec.json.encode(setup).decode(),
+        version=version("cbtui"),
+        recorded=time.time_ns(),
+    )
+
+
+def setup_of(recorded: About) -> RunSetup | None:
+    """The set-up that a recording was made with; None if it holds none that this version knows."""
+    try:
+        return msgspec.json.decode(recorded.setup.encode(), type=RunSetup)
+    except (msgspec.DecodeError, RecursionError, UnicodeEncodeError):
+        return None

@@ -1,0 +1,122 @@
+"""Repeating a recorded run: its set-up, or another program's, with the inputs that the recording holds."""
+
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from itertools import chain
+from pathlib import Path
+
+import msgspec
+
+from cbtui.runs.recorded.reading_progress import ReadingProgress
+from cbtui.runs.recorded.recording_file import setup_of
+from sim.engine.inputs import UnknownInputError, inputs_of, stops
+from sim.engine.setup import Keyboard, RunSetup
+from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
+from sim.recording import Recording, RecordingError, read
+from sim.trace.events import AnyEvent, Notice, RunEnded
+from sim.units import nearest_ns
+
+_SECOND = 1_000_000_000
+
+
+def why_unrepeatable(events: Iterable[AnyEvent]) -> str | None:
+    """What a run did that no other will do exactly so, in the engine's words; None: nothing is known."""
+    return next((each.text for each in events if isinstance(each, Notice) and each.unrepeatable), None)
+
+
+class CannotRepeatError(Exception):
+    """A recording that cannot be repeated; the text is a sentence that says why."""
+
+
+def repeated(
+    path: Path,
+    program: RunSetup | None,
+    *,
+    seconds: float | None,
+    threads: int | None,
+    tell: Callable[[str], None],
+) -> RunSetup:
+    """The set-up of a run that gets the inputs of a recorded one.
+
+    ``program`` runs instead of the recorded one (None: that one again). ``seconds`` None: as long as the
+    recording; ``threads`` None: as many as it had. ``tell`` gets a sentence if inputs may be missing, or
+    if the repetition will not be exact.
+
+    Raises:
+        CannotRepeatError: the recording cannot be read, was made on the real clock, lacks its set-up, or its
+            program is not there any more, or not as it was.
+    """
+    try:
+        recording = read(path)
+        known = _Known()
+        inputs = inputs_of(map(known.seen, chain.from_iterable(ReadingProgress(recording).batches())))
+    except (RecordingError, UnknownInputError) as error:
+        raise CannotRepeatError(str(error)) from None
+    except OSError as error:
+        raise CannotRepeatError(f"{path} cannot be read to its end: {error.strerror}") from None
+    if recording.damage is not None:
+        tell(f"{path}: {recording.damage}")
+    recorded = setup_of(recording.about)
+    if recorded is None:
+        raise CannotRepeatError(f"{path} does not tell how its run was set up, so it cannot be repeated")
+    if recorded.clock != "virtual":
+        raise CannotRepeatError(f"{path} is of a real-clock run; only virtual runs can be repeated exactly")
+    if program is None:
+        _check_programs(recorded, recording)
+        if known.unrepeatable:
+            why = known.unrepeatable
+            tell(f"{path} is of a program that is not repeatable ({why}); it is run again all the same")
+    if seconds is None:
+        until = recorded.until if recorded.until is not None or known.ended else known.last
+    else:
+        until = nearest_ns(seconds)
+        inputs = tuple(each for each in inputs if not stops(each))
+    setup = msgspec.structs.replace(
+        program or recorded,
+        clock="virtual",
+        until=until,
+        calls=recorded.calls,
+        lines=recorded.lines,
+        typed=recorded.typed,
+        keyboard=Keyboard.NOBODY if recorded.keyboard is Keyboard.NOBODY else Keyboard.REPEATED,
+        inputs=inputs,
+        contents=recorded.contents,
+    )
+    return setup if threads is None else msgspec.structs.replace(setup, threads=threads)
+
+
+@dataclass
+class _Known:
+    """What its events tell of a recorded run."""
+
+    last: int = 0
+    """Nanoseconds of the run that are on record."""
+    ended: bool = False
+    """Whether it came to its end by then."""
+    unrepeatable: str | None = None
+    """What no other run of its program will do exactly so."""
+
+    def seen(self, event: AnyEvent) -> AnyEvent:
+        """Take note of an event."""
+        self.last = max(self.last, event.t)
+        self.ended = self.ended or isinstance(event, RunEnded)
+        self.unrepeatable = self.unrepeatable or why_unrepeatable([event])
+        return event
+
+
+def _check_programs(recorded: RunSetup, recording: Recording) -> None:
+    for program in recorded.programs:
+        path = Path(program.path)
+        try:
+            content = read_bytes(path, MOST_OF_A_PROGRAM)
+        except OSError:
+            sentence = (
+                f"the recorded program {path} is not there any more; name the file that is to run instead"
+            )
+            raise CannotRepeatError(sentence) from None
+        known = recording.sources.get(program.path)
+        if known is not None and known.encode() != content:
+            sentence = (
+                f"{path} has changed since it was recorded; name it behind the options to run it as it is"
+            )
+            raise CannotRepeatError(sentence)

@@ -1,0 +1,1 @@
+"""What a run is set up with: a lesson or files, and what a person changed."""

@@ -1,0 +1,120 @@
+"""A learner's own programs and recordings: from a path that was typed to what is to be opened."""
+
+import os
+from collections.abc import Sequence
+from itertools import islice, takewhile
+from pathlib import Path
+from typing import TYPE_CHECKING, NamedTuple
+
+from cbtui.runs.setup.recent import Kind, Opened
+
+if TYPE_CHECKING:
+    from sim.recording import Recording
+
+PROGRAMS = (".py", ".xml", ".yaml", ".yml")
+"""What the names of node and launch files end with."""
+RECORDINGS = (".mcap",)
+_LOOKED_AT = 5000
+"""How many names of a folder are looked at for a completion."""
+
+
+class CannotOpenError(Exception):
+    """Something that cannot be opened; the text is a sentence."""
+
+
+class Completion(NamedTuple):
+    """The text with what all possible names begin with, and the names, folders with a stroke."""
+
+    text: str
+    names: Sequence[str]
+
+
+def entry_for(text: str, at: float) -> Opened:
+    """Return what the person means by a path; ``at`` is now, in seconds since 1970.
+
+    Raises:
+        CannotOpenError: there is no such file, or it is nothing that can be opened.
+    """
+    typed = text.strip()
+    if not typed:
+        raise CannotOpenError("Type the path of a program (.py, a launch file) or of a recording (.mcap).")
+    path = _expanded(typed)
+    kind = _kind_of(path)
+    check(path)
+    if kind is None:
+        raise CannotOpenError(
+            f"{typed} is neither a program (.py, a launch file) nor a recording (.mcap) by its name."
+        )
+    return Opened(kind, str(path.absolute()), int(at))
+
+
+def check(path: Path) -> None:
+    """See whether there is a file that can be read.
+
+    Raises:
+        CannotOpenError: there is not.
+    """
+    try:
+        if path.is_dir():
+            raise CannotOpenError(f"{path} is a folder; name the file in it that is to be opened.")
+        if not path.exists():
+            raise CannotOpenError(f"There is no file {path}.")
+        if not path.is_file():
+            raise CannotOpenError(f"{path} is not a file.")
+    except (OSError, ValueError) as error:
+        raise CannotOpenError(f"{path} cannot be opened: {getattr(error, 'strerror', error)}.") from None
+    if not os.access(path, os.R_OK):
+        raise CannotOpenError(f"You may not read {path}.")
+
+
+def read_recording(path: Path) -> "Recording":
+    """Return a recording to be read.
+
+    Raises:
+        CannotOpenError: it is none.
+    """
+    from sim.recording import RecordingError, read
+
+    try:
+        return read(path)
+    except (RecordingError, ValueError) as error:
+        raise CannotOpenError(f"{error}.") from None
+
+
+def completed(text: str) -> Completion:
+    """Complete a path as far as it has one way to go on; folders and what can be opened count."""
+    folder, beginning = os.path.split(text)
+    names = _names(_expanded(folder or "."), beginning)
+    if not names:
+        return Completion(text, ())
+    return Completion(os.path.join(folder, _common_beginning(names)), names)  # noqa: PTH118 - as typed
+
+
+def _common_beginning(names: Sequence[str]) -> str:
+    pairs = zip(min(names), max(names), strict=False)
+    return "".join(first for first, _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
+
+
+def _names(folder: Path, beginning: str) -> list[str]:
+    try:
+        with os.scandir(folder) as found:
+            every = [
+                f"{entry.name}/" if entry.is_dir() else entry.name for entry in islice(found, _LOOKED_AT)
+            ]
+    except (OSError, ValueError):
+        return []
+    wanted = [name for name in every if name.startswith(beginning) and (beginning or name[0] != ".")]
+    return sorted(name for name in wanted if name.endswith(("/", *PROGRAMS, *RECORDINGS)))
+
+
+def _kind_of(path: Path) -> Kind | None:
+    if path.suffix.lower() in RECORDINGS:
+        return Kind.RECORDING
+    return Kind.PROGRAM if path.suffix.lower() in PROGRAMS else None
+
+
+def _expanded(text: str) -> Path:
+    try:
+        return Path(text).expanduser()
+    except RuntimeError:  # a person nobody knows
+        return Path(text)

@@ -1,0 +1,92 @@
+"""How the console ends: whoever tells it to, not before it is whole, and not without a word on a fault."""
+
+import asyncio
+import platform
+import sys
+import traceback
+from functools import partial
+from time import monotonic
+from typing import Any
+
+from rich.console import RenderableType
+from textual.css.query import NoMatches
+from textual.widget import MountError
+from textual.worker import WorkerFailed
+
+from cbtui.terminal.garbage_collector import survivors_set_aside
+from cbtui.terminal.interrupts import Interruption, ending_heard, whole
+from cbtui.terminal.pending_keys import LONGEST, PatientApp
+from cbtui.text.output import shown
+from cbtui.version import own_version
+from lessons.personal import state_folder
+
+FAULT = "fault.txt"
+"""What a fault of the console's own is written to, in the folder for what cbtui remembers."""
+_MISSED = (NoMatches, MountError)
+"""What widgets come to that begin while an app ends: Textual gives them no children any more."""
+_AGAIN = 0.02
+"""Seconds after which it is looked again whether everything is mounted."""
+
+
+class EndingApp(PatientApp):
+    """An app that ends in order, whoever tells it to and whatever it is at."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._unheard = Interruption()
+        self._told_at: float | None = None
+        self.saved: list[str] = []
+        """Sentences on what was saved as screens were left."""
+        self._fault: str | None = None
+
+    def run(self, *args: Any, **options: Any) -> Any:
+        """Run to the end, and say then what was saved as screens were left, and what ended it, if a fault.
+
+        Raises KeyboardInterrupt where Ctrl-C came before the app hears it, or after.
+        """
+        with whole() as self._unheard:
+            result = super().run(*args, **options)
+            said = [*self.saved, *([] if self._fault is None else [self._fault])]
+            sys.stderr.writelines(shown(f"{sentence}\n") for sentence in said)
+        return result
+
+    async def run_async(self, *args: Any, **options: Any) -> Any:
+        """Run in a terminal, which gets back what it lent when the app is told to end.
+
+        It is by Ctrl-C from elsewhere, by ``kill``, and by the terminal itself when its window is closed.
+        """
+        with ending_heard(lambda number: self.exit(None, 128 + number)), survivors_set_aside():
+            return None if self._unheard.came else await super().run_async(*args, **options)
+
+    def exit(self, result: None = None, return_code: int = 0, message: RenderableType | None = None) -> None:
+        """End, as soon as all widgets that are there have their children."""
+        self._told_at = self._told_at or monotonic()
+        if self.is_mounting and monotonic() < self._told_at + LONGEST:
+            again = partial(self.exit, result, return_code, message)
+            asyncio.get_running_loop().call_later(_AGAIN, again)
+        else:
+            super().exit(result, return_code, message)
+
+    def _handle_exception(self, error: Exception) -> None:
+        cause = error.error if isinstance(error, WorkerFailed) else error
+        if not (self._exit and isinstance(cause, _MISSED)):
+            super()._handle_exception(error)
+
+    def _fatal_error(self) -> None:
+        # Of Textual: the exception that is being handled ends the app, which prints all of it.
+        self._fault = self._fault or _told_of_fault()
+        self._close_messages_no_wait()
+
+
+def _told_of_fault() -> str:
+    """Say what exception is being handled, and write what a developer wants to know of it into a file."""
+    kind, error, _ = sys.exc_info()
+    said = f"cbtui: a fault of its own ended the console ({getattr(kind, '__name__', kind)}: {error})."
+    details = f"cbtui {own_version()}, Python {platform.python_version()}\n{traceback.format_exc()}"
+    file = state_folder() / FAULT
+    try:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(details, encoding="utf-8")
+    except OSError:
+        return f"{said}\n{details}"
+    return f"{said} What a report of it needs is in {file}"

@@ -1,0 +1,1 @@
+"""Text for terminals: cells, durations, escaping, and the output of commands."""

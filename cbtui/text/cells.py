@@ -1,0 +1,119 @@
+"""Text as terminal cells: a row to paint on column by column, and strange text made safe to show."""
+
+import unicodedata
+from functools import lru_cache
+from itertools import groupby
+
+from rich.cells import cell_len
+
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, Run
+
+BLANK = Ink(Role.TEXT)
+
+_UNSHOWABLE = {"Cc", "Cf", "Cs", "Co", "Cn", "Zl", "Zp", "Zs"}
+_PICTURES = {chr(code): chr(0x2400 + code) for code in range(0x20)} | {"\x7f": "␡", "\xa0": " "}
+
+_TAB = 8
+
+
+def visible(text: str, charset: Charset) -> str:
+    """Return text that a terminal shows and never obeys.
+
+    Control characters become their pictures (␛ for escape), other invisible ones and lone surrogates a
+    replacement mark; in ASCII whatever is not plain becomes ``?``.
+    """
+    if text.isascii() and text.isprintable():
+        return text
+    return "".join(_shown(character, charset) for character in unicodedata.normalize("NFC", text))
+
+
+def without_tabs(text: str) -> str:
+    """Return text with blanks up to the next multiple of 8 columns for every tab, as a terminal shows it."""
+    first, *others = text.split("\t")
+    for part in others:
+        column = cell_len(first.rpartition("\n")[2])
+        first += " " * (_TAB - column % _TAB) + part
+    return first
+
+
+def _shown(character: str, charset: Charset) -> str:
+    if character.isascii() and character.isprintable():
+        return character
+    if charset is Charset.ASCII:
+        return "?"
+    if character in _PICTURES:
+        return _PICTURES[character]
+    unshowable = unicodedata.category(character) in _UNSHOWABLE or cell_len(character) == 0
+    return "�" if unshowable else character
+
+
+@lru_cache(maxsize=1024)
+def to_cells(text: str, charset: Charset) -> tuple[str, ...]:
+    """Return one string a column; a wide character is followed by an empty one."""
+    cells: list[str] = []
+    for character in visible(text, charset):
+        cells.append(character)
+        cells.extend([""] * (cell_len(character) - 1))
+    return tuple(cells)
+
+
+@lru_cache(maxsize=1024)
+def fit(text: str, width: int, charset: Charset) -> str:
+    """Return the text in exactly ``width`` columns: padded, or cut with an ellipsis."""
+    cells = to_cells(text, charset)
+    if len(cells) <= width:
+        return "".join(cells) + " " * (width - len(cells))
+    if width <= 0:
+        return ""
+    kept = list(cells[: width - 1])
+    if cells[width - 1] == "":
+        kept[-1:] = " "
+    return "".join(kept) + GLYPHS[charset].ellipsis
+
+
+class Row:
+    """One line of a picture while it is painted: a glyph and an ink for each column."""
+
+    __slots__ = ("cells", "charset", "inks")
+
+    def __init__(self, width: int, charset: Charset) -> None:
+        self.charset = charset
+        self.cells = [" "] * width
+        self.inks = [BLANK] * width
+
+    def put(self, column: int, glyph: str, ink: Ink) -> None:
+        """Put a glyph of one column's width at a column; outside the row nothing happens."""
+        if not 0 <= column < len(self.cells):
+            return
+        if self.cells[column] == "":
+            self.cells[column - 1] = " "
+        if column + 1 < len(self.cells) and self.cells[column + 1] == "":
+            self.cells[column + 1] = " "
+        self.cells[column] = glyph
+        self.inks[column] = ink
+
+    def fill(self, start: int, end: int, glyph: str, ink: Ink) -> None:
+        """Put the same glyph in the columns from ``start`` to before ``end``; both lie in the row."""
+        self.cells[start:end] = [glyph] * (end - start)
+        self.inks[start:end] = [ink] * (end - start)
+
+    def write(self, start: int, text: str, ink: Ink) -> None:
+        """Write text from a column on; what does not fit is lost at the row's end."""
+        room = max(0, len(self.cells) - start)
+        cells = to_cells(fit(text, room, self.charset).rstrip() if len(text) > room else text, self.charset)
+        self.cells[start : start + len(cells)] = cells
+        self.inks[start : start + len(cells)] = [ink] * len(cells)
+
+    def blank(self, start: int, end: int) -> bool:
+        """Tell whether the columns from ``start`` to before ``end`` lie in the row and are untouched."""
+        return start >= 0 and end <= len(self.cells) and all(ink is BLANK for ink in self.inks[start:end])
+
+    def runs(self) -> list[Run]:
+        """Return the row as runs of one ink each."""
+        runs: list[Run] = []
+        at = 0
+        for ink, same in groupby(self.inks):
+            end = at + sum(1 for _ in same)
+            runs.append(Run("".join(self.cells[at:end]), ink))
+            at = end
+        return runs

@@ -1,0 +1,91 @@
+"""How an exercise stands, in sentences: what the pane of its checks tells."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from cbtui.runs.judged.check_text import faults, verdict_line
+from cbtui.runs.judged.checking import Checked
+from cbtui.widgets.checks import Row, Sheet, Standing
+from lessons.checks import Check
+from lessons.judge import Judged
+from lessons.lesson import Lesson
+from sim.trace.model import Nanoseconds
+
+_SECOND: Nanoseconds = 1_000_000_000
+
+
+@dataclass(frozen=True)
+class Keys:
+    """The keys that sentences name, as people write them."""
+
+    editor: str
+    watch: str
+    lesson: str
+    next_lesson: str
+
+
+class ExerciseWords:
+    """Words on one lesson's exercise; ``name`` is the learner's file's, ``following`` the next lesson."""
+
+    def __init__(
+        self, lesson: Lesson, checks: Sequence[Check], name: str, following: Lesson | None, keys: Keys
+    ) -> None:
+        assert lesson.exercise is not None, "only exercises are told about here"
+        self._asks = " ".join(lesson.exercise.asks.split())
+        self._seconds = lesson.run.seconds
+        self._open = tuple(Row(check.asks) for check in checks)
+        self._name = name
+        self._following = following
+        self._keys = keys
+
+    def running(self, at: Nanoseconds) -> Sheet:
+        """Tell of a run that has come to a moment, and is not judged yet."""
+        news = f"{self._name} runs: {at / _SECOND:.1f} s of {self._seconds:g} s"
+        return Sheet(news, Standing.OPEN, self._open, asks=self._asks)
+
+    def judged(self, checked: Checked) -> Sheet:
+        """Tell what came of a run."""
+        if checked.run.trouble is not None:
+            news = f"{checked.run.trouble.rstrip('.')}. {self._way_on}"
+            return Sheet(news, Standing.FAILED, self._open, asks=self._asks)
+        rows = tuple(map(_row, checked.judged))
+        if checked.good:
+            return Sheet(self._done(checked.total), Standing.PASSED, rows, asks=self._asks)
+        failed = checked.total - checked.passed
+        news = f"{failed} of {_checks(checked.total)} {'fails' if failed == 1 else 'fail'}. {self._way_on}"
+        return Sheet(news, Standing.FAILED, rows, tuple(faults(checked.run.timeline)), self._asks)
+
+    def page(self, file: Path) -> str:
+        """Return what is asked, and how to go about it, as Markdown."""
+        keys = self._keys
+        return (
+            f"# Exercise\n\n{self._asks}\n\n"
+            f"Your file is `{file}`. `{keys.editor}` opens it in your editor; any other editor does as well. "
+            "Whenever it is saved, it is run as the exercise says, and checked. "
+            f"`{keys.watch}` runs it so slowly that you can watch. `{keys.lesson}` goes back to the lesson."
+        )
+
+    @property
+    def gone(self) -> str:
+        """Say that the file is not there."""
+        return f"{self._name} is gone; it is run and checked again when it is back."
+
+    @property
+    def _way_on(self) -> str:
+        return f"{self._keys.editor} opens {self._name}; saving it checks it again."
+
+    def _done(self, total: int) -> str:
+        done = f"All {_checks(total)} pass: the exercise is done."
+        if self._following is None:
+            return f"{done} It belongs to the last lesson."
+        return f"{done} {self._keys.next_lesson} opens the next lesson, {self._following.title}."
+
+
+def _row(judged: Judged) -> Row:
+    standing = Standing.PASSED if judged.verdict.passed else Standing.FAILED
+    return Row(judged.check.asks, standing, verdict_line(judged), judged.verdict.at)
+
+
+def _checks(count: int) -> str:
+    return f"{count} check{'s' * (count != 1)}"

@@ -1,0 +1,1 @@
+"""How a program failed, in the words a learner can act on."""

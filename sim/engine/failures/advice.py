@@ -1,0 +1,79 @@
+"""What a learner most likely has to do about a program that failed or did nothing, in half a sentence."""
+
+import ast
+import builtins
+import sys
+from collections.abc import Iterable
+from difflib import get_close_matches
+from types import FrameType
+
+from sim.ros.process import current_process
+
+
+def advice_on(error: BaseException, frame: FrameType | None) -> str:
+    """What to add to the text of an exception that came up in ``frame``; empty where that says it all."""
+    match error:
+        case ModuleNotFoundError(name=str(name)):
+            from sim.engine.failures.missing import on_missing
+
+            advice = on_missing(name)
+        case ImportError(name=str(module), msg=str(text)) if module in sys.modules:
+            advice = _nearest(text.split("'")[1], dir(sys.modules[module]))
+        case NameError(name=str(name)) if frame is not None:
+            advice = _misplaced_in(frame, name) or _nearest(name, _names_of(frame))
+        case AttributeError(name=str(name), obj=obj):
+            advice = _on_unready_node(name, obj) or _nearest(name, dir(obj))
+        case _ if type(error).__module__ == "_curses":
+            advice = "curses draws on a whole terminal, which no run has; print, and read keys with termios"
+        case _:
+            advice = ""
+    return f"; {advice}" if advice else ""
+
+
+def _on_unready_node(attribute: str, obj: object) -> str:
+    from sim.ros.node import Node
+
+    if attribute == "_agenda" and isinstance(obj, Node):
+        return f"{type(obj).__name__}.__init__ has to call super().__init__('name of the node') first"
+    return ""
+
+
+def _nearest(name: str, known: Iterable[str]) -> str:
+    close = get_close_matches(name, [each for each in known if not each.startswith("_")], n=1, cutoff=0.7)
+    return f"did you mean {close[0]!r}?" if close else ""
+
+
+def _names_of(frame: FrameType) -> list[str]:
+    return [*frame.f_locals, *frame.f_globals, *dir(builtins)]
+
+
+def _misplaced_in(frame: FrameType, name: str) -> str:
+    """What is to say of a function that a class of the frame's module holds instead of the module."""
+    for owner in frame.f_globals.values():
+        function = vars(owner).get(name) if isinstance(owner, type) else None
+        code = getattr(function, "__code__", None)
+        if code is not None and code.co_filename == frame.f_code.co_filename:
+            return _misplaced(name, code.co_firstlineno, owner.__name__)
+    return ""
+
+
+def misplaced(name: str, source: str) -> str:
+    """What is to say of a function that stands inside a class of a file; empty if none does."""
+    for owner in ast.parse(source).body:
+        if isinstance(owner, ast.ClassDef):
+            for each in owner.body:
+                if isinstance(each, ast.FunctionDef) and each.name == name:
+                    return _misplaced(name, each.lineno, owner.name)
+    return ""
+
+
+def _misplaced(name: str, line: int, owner: str) -> str:
+    return f"the {name}() of line {line} is indented into the class {owner}; move it to the left margin"
+
+
+def silence() -> str:
+    """How a program of the calling thread's process ended that made callbacks and never spun; else empty."""
+    process = current_process()
+    if process.callbacks == 0 or process.spins > 0:
+        return ""
+    return "the program returned without spinning, so none of its callbacks ran; call rclpy.spin(node) before"

@@ -1,0 +1,51 @@
+"""Tells of exceptions that Python itself only prints: those of threads, destructors and exit handlers."""
+
+import sys
+import threading
+import traceback
+from collections.abc import Callable
+from typing import Any
+
+from sim.clock import Stopped
+from sim.engine.failures.failure import place_of
+from sim.error_text import error_text
+
+Tell = Callable[[str], None]
+
+
+def tell_of_unheard(tell: Tell, path: str, folder: str) -> None:
+    """Have ``tell`` called with a sentence for each line they come from, and their tracebacks printed.
+
+    ``path`` is the program's file; files in ``folder`` count as the learner's own too. What came up in none
+    of these is only printed.
+    """
+    told: set[str] = set()
+
+    def say(error: BaseException, what_follows: str) -> None:
+        place = place_of(error, path, folder).strip(" ()")
+        if place and place not in told:
+            told.add(place)
+            text = f"{type(error).__name__}: {error_text(error)}".removesuffix(": ")
+            tell(f"{place}: {text}; {what_follows}")
+
+    def of_thread(failed: threading.ExceptHookArgs) -> None:
+        error = failed.exc_value
+        if isinstance(error, Stopped | SystemExit | None):
+            return
+        name = "a thread" if failed.thread is None else failed.thread.name
+        if not isinstance(error, KeyboardInterrupt):
+            say(error, f"{name} ended by it, and the rest goes on")
+        sys.stderr.write(f"Exception in thread {name}:\n")
+        traceback.print_exception(error)
+
+    def of_other(failed: Any) -> None:
+        error = failed.exc_value
+        if error is None:
+            return
+        where = getattr(failed.object, "__qualname__", None) or type(failed.object).__name__
+        say(error, f"Python drops what comes out of {where}")
+        sys.stderr.write(f"{failed.err_msg or 'Exception ignored in'}: {where}\n")
+        traceback.print_exception(error)
+
+    threading.excepthook = of_thread
+    sys.unraisablehook = of_other

@@ -1,0 +1,44 @@
+"""A ``ros2`` line that a launch file starts: one more process of the launch."""
+
+import shlex
+from collections.abc import Sequence
+
+from sim.engine.programs.line_tools import LineTools
+from sim.engine.programs.programs import Programs
+from sim.engine.programs.starting import Starter
+from sim.shell import Line, OnExit
+from sim.trace.events import Printed, ProcessEnded
+
+
+class LaunchedLine:
+    """Carries out the line from the moment of making on."""
+
+    def __init__(
+        self, programs: Programs, starter: Starter, label: str, words: Sequence[str], on_exit: OnExit
+    ) -> None:
+        self._programs = programs
+        self._on_exit = on_exit
+        self.number = programs.announce(label)
+        tools = LineTools(starter, self._take, self._end)
+        self._line = Line(programs.host, shlex.join(words), tools)
+        self._line.start()
+
+    def interrupt(self) -> None:
+        """End it as Ctrl-C would."""
+        self._line.interrupt()
+
+    def terminate(self) -> None:
+        """End it as SIGTERM would."""
+        self._line.interrupt()
+
+    def kill(self) -> None:
+        """End it as SIGKILL would."""
+        self._line.interrupt()
+
+    def _take(self, text: str, error: bool) -> None:
+        self._programs.record(Printed(self._programs.host.clock.now(), text, error, self.number))
+
+    def _end(self, status: int) -> None:
+        now = self._programs.host.clock.now()
+        self._programs.record(ProcessEnded(now, self.number, "the line is done", status))
+        self._on_exit(status)

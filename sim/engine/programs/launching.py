@@ -1,0 +1,121 @@
+"""A launch in an engine: its processes are programs of the run, its time is the run's."""
+
+import threading
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from sim.engine.programs.launched_line import LaunchedLine
+from sim.engine.programs.program import Outcome, Program
+from sim.engine.programs.programs import Programs, RunningProgram
+from sim.engine.programs.starting import Starter
+from sim.launch import LaunchRun, ProcessSpec, RunningProcess
+from sim.shell import OnExit
+from sim.trace.events import Printed
+from sim.units import wait_ns
+
+
+class Launching:
+    """Carries out one launch file. It counts as running until the launch is over.
+
+    Everything that the launch does, it does one thing at a time: on whatever thread, under one lock.
+    """
+
+    def __init__(
+        self,
+        programs: Programs,
+        starter: Starter,
+        path: Path,
+        arguments: Sequence[str],
+        on_exit: OnExit,
+    ) -> None:
+        self._programs = programs
+        self._host = programs.host
+        self._on_exit = on_exit
+        self._lock = threading.RLock()
+        self._starter = starter
+        packages = starter.packages()
+        self._run = LaunchRun(path, arguments, self, packages=packages, on_finish=self._over)
+
+    def start(self) -> "Launching":
+        """Begin.
+
+        Raises:
+            LaunchError: the launch file cannot be carried out.
+        """
+        self._programs.hold()
+        try:
+            with self._lock:
+                self._run.start()
+        except BaseException:  # whatever it is, nothing is held up by a launch that did not begin
+            self._programs.release()
+            raise
+        return self
+
+    def interrupt(self) -> None:
+        """End it as Ctrl-C would; does not wait."""
+        self._later(0, self._run.interrupt)
+
+    def _over(self, status: int) -> None:
+        if self._run.error is not None:
+            self._programs.failures.append(str(self._run.error))
+        self._on_exit(status)
+        self._programs.release()
+
+    def _later(self, seconds: float, action: Callable[[], None]) -> None:
+        """Have something done under the lock, on a thread of its own: it may wait for the lock."""
+
+        def begin() -> None:
+            self._host.clock.start_thread(self._locked(action), "launch")
+
+        self._host.clock.call_at(self._host.clock.now() + wait_ns(seconds), begin)
+
+    def _locked(self, action: Callable[[], None]) -> Callable[[], None]:
+        def run() -> None:
+            with self._lock:
+                action()
+
+        return run
+
+    def _under_lock(self, on_exit: OnExit) -> OnExit:
+        return lambda status: self._locked(lambda: on_exit(status))()
+
+    # What a launch needs of the machine
+
+    def start_process(self, spec: ProcessSpec, on_exit: OnExit) -> RunningProgram:
+        """Start a program."""
+        if spec.working_folder is not None:
+            raise NotImplementedError("cwd: all programs of a run share one working folder")
+        program = Program(
+            path=str(spec.path),
+            folder=str(spec.folder),
+            arguments=tuple(spec.arguments),
+            module=spec.module,
+            function=spec.function,
+        )
+
+        leave = self._under_lock(on_exit)
+
+        def ended(outcome: Outcome) -> None:
+            leave(outcome.status)
+
+        return self._programs.start(
+            program,
+            spec.label,
+            ended,
+            environment=spec.environment,
+            shows_stdout=spec.output != "log",
+            has_keyboard=False,
+        )
+
+    def run_line(self, label: str, words: Sequence[str], on_exit: OnExit) -> RunningProcess:
+        """Start a ``ros2 …`` line."""
+        return LaunchedLine(self._programs, self._starter, label, words, self._under_lock(on_exit))
+
+    def call_at(self, seconds_from_now: float, action: Callable[[], None]) -> None:
+        """Call ``action`` that many seconds from now."""
+        self._later(seconds_from_now, action)
+
+    def say(self, text: str, severity: str = "INFO", logger: str = "launch") -> None:
+        """Print a line of the launch's own log."""
+        now = self._host.clock.now()
+        self._programs.record(Printed(now, f"[{severity}] [{logger}]: {text}", error=False))

@@ -1,0 +1,210 @@
+"""Runs a learner's file as ``python FILE ARGS`` would, and tells in one sentence how it ended."""
+
+import ast
+import importlib.util
+import inspect
+import sys
+import threading
+import traceback
+import warnings
+from collections.abc import Callable
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from types import CodeType, ModuleType
+from typing import Any
+
+from sim.engine.failures.advice import misplaced, silence
+from sim.engine.failures.failure import failure, place_of
+from sim.engine.programs.ending import run_thread_exit_functions
+from sim.engine.programs.source import NothingToRunError, read_source
+from sim.engine.stdio.output import finish_lines
+from sim.ros.process import Process, current_process, process_of
+from sim.ros.signals import deliver_sigint
+
+_INTERRUPTED = 130
+
+
+@dataclass(frozen=True, slots=True)
+class Program:
+    """What to run: the file ``path`` as a script, or ``function`` of the module ``module``.
+
+    ``folder`` is where imports look first. ``arguments`` are those behind the program's own name.
+    """
+
+    path: str
+    folder: str
+    arguments: tuple[str, ...] = ()
+    module: str = ""
+    function: str = ""
+
+
+def script(path: str, arguments: tuple[str, ...] = ()) -> Program:
+    """The program that a file is, as Python runs it: what a link leads to imports from its own folder."""
+    return Program(path, str(Path(path).resolve().parent), arguments)
+
+
+@dataclass(frozen=True, slots=True)
+class Outcome:
+    """How a program ended: a sentence, whether that was a failure, and the exit code."""
+
+    sentence: str
+    failed: bool
+    status: int = 0
+
+
+def run_program(program: Program) -> Outcome:
+    """Run it in this thread, and wait for the threads that it leaves.
+
+    A file that defines ``main`` and does nothing with it, as one for an entry point may, has it called.
+    """
+    warnings.formatwarning = _as_short_warning
+    if program.folder not in sys.path:
+        sys.path.insert(0, program.folder)
+    outcome = _outcome_of(program)
+    if outcome.status == _INTERRUPTED:
+        deliver_sigint(current_process())  # what spins on threads ends
+    for _ in range(2):  # Ctrl-C while main waits for its threads does not end these
+        with suppress(KeyboardInterrupt):
+            _join_left_threads()
+            break
+    finish_lines()
+    return outcome
+
+
+def _outcome_of(program: Program) -> Outcome:
+    try:
+        status = _status(_load(program)())
+        _join_left_threads()
+    except SystemExit as exit_:
+        return _exited(exit_, program)
+    except NothingToRunError as error:
+        return Outcome(str(error), failed=True, status=1)
+    except KeyboardInterrupt:
+        return Outcome("it was stopped", failed=False, status=_INTERRUPTED)
+    except BaseException as error:  # noqa: BLE001 -- whatever a learner's program raises ends its run, not the engine
+        traceback.print_exception(error)
+        return Outcome(failure(error, program.path, program.folder), failed=True, status=1)
+    return Outcome(silence() or _returned(), failed=status != 0, status=status)
+
+
+def _returned() -> str:
+    at = current_process().shut_down_at
+    return f"the program returned, as rclpy was shut down ({at})" if at else "the program returned"
+
+
+def _load(program: Program) -> Callable[[], object]:
+    """What has to be called to run the program."""
+    if program.function:
+        source = read_source(Path(program.path))
+        names = _namespace(program, program.module)
+        exec(_code(program, source), names)
+        if not callable(names.get(program.function)):
+            missing = f"defines no {program.function}(), which its package names as its entry point"
+            raise NothingToRunError(_on_no_entry(program, source, program.function, missing))
+        return _entry(program, names[program.function])
+    return lambda: _run_script(program)
+
+
+def _run_script(program: Program) -> object:
+    source = read_source(Path(program.path))
+    names = _namespace(program, "__main__")
+    exec(_code(program, source), names)
+    if _starts_itself(source):
+        return None
+    if not callable(names.get("main")):
+        missing = "defines no main() and runs nothing at its top level; add a main(), and call it or not"
+        raise NothingToRunError(_on_no_entry(program, source, "main", missing))
+    return _entry(program, names["main"])()
+
+
+def _on_no_entry(program: Program, source: str, function: str, otherwise: str) -> str:
+    name = Path(program.path).name
+    found = misplaced(function, source)
+    return f"{name}: {found}" if found else f"{name} {otherwise}"
+
+
+def _entry(program: Program, function: Callable[..., object]) -> Callable[[], object]:
+    """The function, if it can be called as an entry point is."""
+    try:
+        inspect.signature(function).bind()
+    except TypeError as error:
+        line = getattr(getattr(function, "__code__", None), "co_firstlineno", 1)
+        raise NothingToRunError(
+            f"{Path(program.path).name}:{line}: an entry point is called without arguments ({error}); "
+            "give each a default, as in main(args=None)"
+        ) from None
+    return function
+
+
+def _code(program: Program, source: str) -> CodeType:
+    return compile(source, program.path, "exec", dont_inherit=True)
+
+
+def _namespace(program: Program, name: str) -> dict[str, Any]:
+    """The globals of a module of its own: two programs of one file share nothing."""
+    spec = importlib.util.spec_from_file_location(name, program.path)
+    assert spec is not None
+    module: ModuleType = importlib.util.module_from_spec(spec)
+    if name == "__main__":
+        module.__spec__ = None
+        sys.modules[name] = module
+    return vars(module)
+
+
+def _status(returned: object) -> int:
+    """The exit code of a program whose entry point returned that: ``sys.exit`` is called with it."""
+    return returned if isinstance(returned, int) else 0 if returned is None else 1
+
+
+def _starts_itself(source: str) -> bool:
+    """Whether the file does more at its top level than to import, define and assign."""
+    passive = (ast.Import, ast.ImportFrom, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Assign)
+    body = ast.parse(source).body
+    return any(not isinstance(each, (*passive, ast.AnnAssign)) and not _is_text(each) for each in body)
+
+
+def _is_text(statement: ast.stmt) -> bool:
+    return isinstance(statement, ast.Expr) and isinstance(statement.value, ast.Constant)
+
+
+def _as_short_warning(
+    message: Warning | str, category: type[Warning], filename: str, lineno: int, line: str | None = None
+) -> str:
+    """A warning as Python prints it, but with the file's name alone."""
+    source = f"\n  {line.strip()}" if line else ""
+    return f"{Path(filename).name}:{lineno}: {category.__name__}: {message}{source}\n"
+
+
+def _join_left_threads() -> None:
+    if current_process().number == 0:
+        run_thread_exit_functions()
+    for thread in threads_left_by(current_process()):
+        thread.join()
+
+
+def threads_left_by(process: Process) -> list[threading.Thread]:
+    """The threads of a process that Python waits for: neither daemons nor the calling one.
+
+    Those of a pool in a run of several programs end with the run, as they serve it until then.
+    """
+    pools = sys.modules.get("concurrent.futures.thread")
+    pooled = getattr(pools, "_threads_queues", ())
+    return [
+        each
+        for each in threading.enumerate()
+        if not each.daemon
+        and each is not threading.current_thread()
+        and process_of(each) is process
+        and (process.number == 0 or each not in pooled)
+    ]
+
+
+def _exited(exit_: SystemExit, program: Program) -> Outcome:
+    if exit_.code in {None, 0}:
+        return Outcome("the program returned", failed=False)
+    place = place_of(exit_, program.path, program.folder)
+    if isinstance(exit_.code, int):
+        sentence = f"the program ended with exit code {exit_.code}{place}"
+        return Outcome(sentence, failed=True, status=exit_.code)
+    return Outcome(f"the program ended: {exit_.code}{place}", failed=True, status=1)

@@ -1,0 +1,188 @@
+"""The programs of a run, each in a process of its own: its context, executor, loggers and arguments.
+
+A run's only program has the engine's main thread; several run on threads of their own, which stand for the
+main threads of their processes.
+"""
+
+import signal
+import threading
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from itertools import count
+
+from sim.clock import Signal
+from sim.engine.programs.program import Outcome, Program, run_program
+from sim.ros.context import end_contexts_by_signal
+from sim.ros.host import Host
+from sim.ros.process import Process
+from sim.ros.signals import deliver_sigint
+from sim.trace.events import AnyEvent, Notice, ProcessAppeared, ProcessEnded, Severity
+
+Ended = Callable[[Outcome], None]
+
+
+@dataclass(eq=False)
+class RunningProgram:
+    """A program that was started; ``number`` stands for the process id."""
+
+    programs: "Programs"
+    process: Process
+    program: Program
+    on_exit: Ended
+    thread: int | None = None
+    outcome: Outcome | None = None
+
+    @property
+    def number(self) -> int:
+        """What tells its process from others on the trace."""
+        return self.process.number
+
+    def interrupt(self) -> None:
+        """Have it end as Ctrl-C would; nothing happens once it has ended."""
+        deliver_sigint(self.process)
+        self.raise_interrupt()
+
+    def raise_interrupt(self) -> None:
+        """Have KeyboardInterrupt raised in its main thread, if it has begun and not ended."""
+        if self.outcome is None and self.thread is not None:
+            self.process.host.clock.interrupt(self.thread)
+
+    def terminate(self) -> None:
+        """Have it end as SIGTERM would: its contexts end, and nothing is raised."""
+        if self.outcome is None:
+            end_contexts_by_signal(self.process)
+
+    def kill(self) -> None:
+        """Have it be over whatever it does."""
+        self.programs.kill(self)
+
+
+@dataclass(eq=False)
+class Programs:
+    """Starts programs and knows which of them run. Thread-safe; ``record`` takes events."""
+
+    host: Host
+    record: Callable[[AnyEvent], None]
+    failures: list[str] = field(default_factory=list)
+    """Sentences on the programs, and on what started programs, that failed."""
+    _running: list[RunningProgram] = field(default_factory=list)
+    _only: list[Process] = field(default_factory=list)
+    _numbers: "count[int]" = field(default_factory=lambda: count(1))
+    _held: int = 0
+    _waiters: list[Signal] = field(default_factory=list)
+
+    def run_only(self, program: Program) -> Outcome:
+        """Run the run's only program on the calling thread."""
+        process = Process(self.host, arguments=[program.path, *program.arguments])
+        process.enter()
+        self._only.append(process)
+        return run_program(program)
+
+    def start(
+        self,
+        program: Program,
+        label: str,
+        on_exit: Ended,
+        environment: Mapping[str, str] | None = None,
+        shows_stdout: bool = True,
+        has_keyboard: bool = True,
+    ) -> RunningProgram:
+        """Start a program as one of several; ``on_exit`` is called on its thread when it has ended."""
+        process = Process(
+            self.host,
+            number=self.announce(label),
+            label=label,
+            arguments=[program.path, *program.arguments],
+            environment=dict(environment or {}),
+            shows_stdout=shows_stdout,
+            has_keyboard=has_keyboard,
+        )
+        running = RunningProgram(self, process, program, on_exit)
+        with self.host.lock:
+            self._running.append(running)
+        process.start_thread(lambda: self._run(running), "MainThread")
+        return running
+
+    def announce(self, label: str) -> int:
+        """Put one more process on the trace; returns its number."""
+        with self.host.lock:
+            number = next(self._numbers)
+            self.record(ProcessAppeared(self.host.clock.now(), number, label))
+        return number
+
+    def _run(self, running: RunningProgram) -> None:
+        running.thread = threading.get_ident()
+        self._end(running, run_program(running.program))
+
+    def kill(self, running: RunningProgram) -> None:
+        """Have a program be over whatever it does: it ends as far as it lets itself be ended."""
+        running.interrupt()
+        self._end(running, Outcome("it was killed", failed=True, status=-signal.SIGKILL))
+
+    def _end(self, running: RunningProgram, outcome: Outcome) -> None:
+        with self.host.lock:
+            if running.outcome is not None:
+                return  # it was killed, and its thread has ended only now
+            running.outcome = outcome
+            self._running.remove(running)
+            now = self.host.clock.now()
+            self.record(ProcessEnded(now, running.number, outcome.sentence, outcome.status))
+            if outcome.failed:
+                self.failures.append(f"{running.process.label}: {outcome.sentence}")
+                self.record(Notice(now, Severity.ERROR, self.failures[-1]))
+        running.on_exit(outcome)
+        self.look()
+
+    def wait_until(self, condition: Callable[[], bool]) -> None:
+        """Wait until ``condition`` holds; it is asked whenever a program has ended or ``look`` is called."""
+        while True:
+            signal = self.host.clock.signal()
+            with self.host.lock:
+                if condition():
+                    return
+                self._waiters.append(signal)
+            signal.wait(None)
+
+    def look(self) -> None:
+        """Have ``wait_until`` ask again."""
+        with self.host.lock:
+            waiters, self._waiters = self._waiters, []
+        for waiter in waiters:
+            waiter.set()
+
+    def joint_outcome(self) -> Outcome:
+        """How the programs that ended did, taken together: the first failure speaks for all."""
+        if self.failures:
+            return Outcome(self.failures[0], failed=True, status=1)
+        return Outcome("every program returned", failed=False)
+
+    def hold(self) -> None:
+        """Count something as running that starts programs, until ``release``."""
+        with self.host.lock:
+            self._held += 1
+
+    def release(self) -> None:
+        """End what ``hold`` began."""
+        with self.host.lock:
+            self._held -= 1
+        self.look()
+
+    @property
+    def any_run(self) -> bool:
+        """Whether a program runs, or something that starts programs."""
+        return bool(self._running) or self._held > 0
+
+    @property
+    def processes(self) -> list[Process]:
+        """Those of the programs that run; that of an only one also as it ends."""
+        return [*(running.process for running in self._running), *self._only]
+
+    def interrupt_all(self) -> None:
+        """Raise KeyboardInterrupt in every program that runs; its contexts go on: it may publish."""
+        for running in tuple(self._running):
+            running.raise_interrupt()
+
+    def end_contexts(self) -> None:
+        """End the contexts of every program as Ctrl-C does, so that what spins on their threads ends."""
+        for process in self.processes:
+            deliver_sigint(process)

@@ -1,0 +1,88 @@
+"""The ``ros2`` lines of a run: carried out by the shell model, told on the trace line by line."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+from sim.engine.programs.line_tools import LineTools
+from sim.engine.programs.starting import Starter
+from sim.engine.setup import TimedLine
+from sim.ros.host import Host
+from sim.trace.events import AnyEvent, LineCompleted, LineEnded, LineGiven, LineId, LineSaid
+
+if TYPE_CHECKING:
+    from sim.shell import Line
+
+
+class Lines:
+    """Every line that was given. Its methods need the run's time (see ``Clock.call_at``).
+
+    ``changed`` is called whenever a line has ended.
+    """
+
+    def __init__(
+        self, host: Host, record: Callable[[AnyEvent], None], starter: Starter, changed: Callable[[], None]
+    ) -> None:
+        self._host = host
+        self._record = record
+        self._starter = starter
+        self._changed = changed
+        self._running: dict[LineId, Line] = {}
+        self._scheduled = 0
+
+    def schedule(self, lines: Sequence[TimedLine]) -> None:
+        """Have lines carried out at their moments, numbered 1, 2, … in this order."""
+        for number, line in enumerate(lines, start=1):
+            self._scheduled += 1
+            self._host.clock.call_at(line.at, lambda n=number, t=line.text: self._begin_scheduled(n, t))  # type: ignore[misc]
+
+    @property
+    def any_left(self) -> bool:
+        """Whether a line is being carried out or has yet to be."""
+        return self._scheduled > 0 or bool(self._running)
+
+    def _begin_scheduled(self, number: LineId, text: str) -> None:
+        with self._host.lock:
+            self._scheduled -= 1
+            self.begin(number, text)
+
+    def begin(self, number: LineId, text: str) -> None:
+        """Carry out a line."""
+        from sim.shell import Line  # only for runs that are given lines
+
+        def take(said: str, error: bool) -> None:
+            self._record(LineSaid(self._host.clock.now(), number, said, error))
+
+        def end(status: int) -> None:
+            self._record(LineEnded(self._host.clock.now(), number, status))
+            self._end(number)
+
+        with self._host.lock:
+            self._record(LineGiven(self._host.clock.now(), number, text))
+            line = self._running[number] = Line(self._host, text, LineTools(self._starter, take, end))
+        line.start()
+
+    def _end(self, number: LineId) -> None:
+        with self._host.lock:
+            self._running.pop(number, None)
+        self._changed()
+
+    def interrupt(self, number: LineId) -> None:
+        """Have a line end as Ctrl-C would; nothing happens to one that has."""
+        line = self._running.get(number)
+        if line is not None:
+            line.interrupt()
+
+    def interrupt_all(self) -> None:
+        """Interrupt every line that is being carried out."""
+        for line in tuple(self._running.values()):
+            line.interrupt()
+
+    def complete(self, number: LineId, text: str, cursor: int) -> None:
+        """Put on the trace what could stand at ``cursor``."""
+        from sim.shell import complete, word_start
+
+        words = complete(self._host, self._starter.packages(), text, cursor)
+        start = word_start(text, cursor)
+        self._record(LineCompleted(self._host.clock.now(), number, start, tuple(words)))

@@ -1,0 +1,125 @@
+"""Starts what ``ros2`` lines and launch files name: executables of packages, and launch files themselves.
+
+What it needs for that is imported when it is first asked: most runs neither launch anything nor look for
+packages, and begin the sooner.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from itertools import count
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from sim.engine.programs.program import Outcome, Program
+from sim.engine.programs.programs import Programs
+from sim.engine.setup import RunSetup
+from sim.ros.interfaces import add_definitions, find_definition_folders
+
+if TYPE_CHECKING:
+    from sim.packages import Packages
+    from sim.shell import OnExit, Running
+
+
+class StartError(Exception):
+    """Something that cannot be started; the text is a sentence that says why, and where."""
+
+
+class Starter:
+    """Knows the packages around the run's programs, and starts what is in them. Thread-safe."""
+
+    def __init__(self, programs: Programs, setup: RunSetup) -> None:
+        self._programs = programs
+        self._folders = [*(Path(each.path) for each in setup.programs), *map(Path, setup.packages)]
+        self._found: Packages | None = None
+        self._numbers = count(1)
+
+    def add_own_interfaces(self) -> None:
+        """Make the ``.msg``, ``.srv`` and ``.action`` files around the programs importable."""
+        for start in self._folders:
+            for folder in find_definition_folders(start):
+                add_definitions(folder)
+
+    def packages(self) -> Packages:
+        """The packages at hand, looked for when first asked for."""
+        from sim.packages import find_packages, use_packages
+
+        if self._found is None:
+            self._found = find_packages(self._folders)
+            use_packages(self._found)
+        return self._found
+
+    def close(self) -> None:
+        """Remove what packages put into temporary folders."""
+        if self._found is not None:
+            self._found.close()
+
+    def start_executable(
+        self, package: str, executable: str, arguments: Sequence[str], on_exit: OnExit
+    ) -> Running:
+        """Start a program of a package.
+
+        Raises:
+            StartError: there is no such package or executable, or it cannot be read.
+        """
+        with _told():
+            found = self.packages().package(package).executable(executable)
+        program = Program(
+            path=str(found.path),
+            folder=str(found.folder),
+            arguments=tuple(arguments),
+            module=found.module,
+            function=found.function,
+        )
+
+        def ended(outcome: Outcome) -> None:
+            on_exit(outcome.status)
+
+        return self._programs.start(program, f"{executable}-{next(self._numbers)}", ended)
+
+    def launch(
+        self, package: str | None, launch_file: str, arguments: Sequence[str], on_exit: OnExit
+    ) -> Running:
+        """Start a launch file, of a package or (None) by its path, with ``name:=value`` arguments.
+
+        Raises:
+            StartError: there is no such file, or it cannot be carried out.
+        """
+        from sim.engine.programs.launching import Launching
+
+        with _told():
+            path = self._launch_path(package, launch_file)
+            return Launching(self._programs, self, path, arguments, on_exit).start()
+
+    def describe_launch(self, package: str | None, launch_file: str) -> str:
+        """What ``ros2 launch --show-args`` prints of a launch file.
+
+        Raises:
+            StartError: there is no such file, or it cannot be read.
+        """
+        from sim.launch import describe_arguments
+
+        with _told():
+            return describe_arguments(self._launch_path(package, launch_file))
+
+    def _launch_path(self, package: str | None, launch_file: str) -> Path:
+        known = self.packages()  # a launch file asks for packages even when it is named by its path
+        return Path(launch_file) if package is None else known.package(package).launch_file(launch_file)
+
+
+@contextmanager
+def _told() -> Iterator[None]:
+    """Turn what can be wrong with packages and launch files into StartError."""
+    from sim.launch import LaunchError
+    from sim.packages import PackageError
+
+    try:
+        yield
+    except (LaunchError, PackageError) as error:
+        raise StartError(str(error)) from error
+
+
+def is_launch_file(path: str) -> bool:
+    """Whether a file is one for ``ros2 launch``, by its name."""
+    return path.endswith(("launch.py", ".xml", ".yaml", ".yml"))

@@ -1,0 +1,1 @@
+"""What programs print and read: output, terminal and file descriptors."""

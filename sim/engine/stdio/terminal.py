@@ -1,0 +1,331 @@
+"""The terminal of a run's programs: a pseudo-terminal whose keys are inputs of the run.
+
+The kernel's line discipline does what it does for any terminal: it gathers lines, or hands on each key where
+a program has asked for that. What waits for keys, waits on the run's clock.
+"""
+
+import errno
+import fcntl
+import io
+import os
+import re
+import select
+import struct
+import sys
+import termios
+import threading
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from sim.clock import Clock, Signal, VirtualClock
+from sim.engine.commands import END_OF_INPUT, INTERRUPT
+from sim.engine.setup import Keyboard
+from sim.engine.stdio.output import ProcessStream
+from sim.ros.own_code import place_of_caller
+from sim.ros.process import Process, current_process
+from sim.trace.events import AnyEvent, EntityId, KeyboardAsked, Notice, Reading, Severity, Typed
+from sim.units import wait_ns
+
+if TYPE_CHECKING:
+    from typing_extensions import Buffer  # Python has it from 3.12 on
+
+# Kept from before a clock, or this module, puts its own in their place.
+_allocate_lock = threading.Lock
+_read = os.read
+_select = select.select
+
+_ROWS, _COLUMNS = 24, 80
+_LINE = re.compile(r"[^\n]*\n|[^\n]+")
+_KEY = re.compile(r"\x1b\[[0-9;]*[A-Za-z~]|\x1bO.|.", re.DOTALL)
+"""What one press of a key sends: a character, or a sequence such as that of an arrow key."""
+_LONGEST = 4000
+"""Characters of a line that the kernel is handed at once; it holds no more than 4,095 bytes."""
+_Files: TypeAlias = Iterable[Any]
+_Ready: TypeAlias = tuple[list[Any], list[Any], list[Any]]
+
+
+class Terminal:
+    """The near end is descriptor 0 and ``sys.stdin``; ``type`` is what happens at the far end. Thread-safe.
+
+    ``scheduled`` is how often the run's set-up is going to call ``type``.
+    """
+
+    def __init__(
+        self, clock: Clock, record: Callable[[AnyEvent], None], keyboard: Keyboard, scheduled: int
+    ) -> None:
+        self._clock = clock
+        self._record = record
+        self._far, self._near = os.openpty()
+        os.set_blocking(self._far, False)
+        fcntl.ioctl(self._near, termios.TIOCSWINSZ, struct.pack("HHHH", _ROWS, _COLUMNS, 0, 0))
+        self._device = os.fstat(self._near).st_rdev
+        os.dup2(self._near, 0)
+        self._keyboard = keyboard
+        self._scheduled = scheduled
+        self._is_silent = keyboard is Keyboard.NOBODY and not scheduled
+        self._text = ""
+        self._place = 0
+        self._line_begun = False
+        self._waiters: list[Signal] = []
+        self._asked = Reading.NOTHING
+        self._warned: set[str] = set()
+        self._lock = _allocate_lock()
+
+    def put_in_place(self) -> None:
+        """Have the programs of this process read from it: ``sys.stdin``, ``os.read`` and ``select.select``.
+
+        Call it once, when a clock has put its own functions in the place of Python's.
+        """
+        stream = io.TextIOWrapper(io.BufferedReader(_Keys(self)), encoding="utf-8")
+        sys.stdin = sys.__stdin__ = stream  # type: ignore[misc]
+        modules: Any = (os, select)
+        modules[0].read = self._reading(os.read)
+        modules[1].select = self._selecting(select.select)
+
+    def type(self, text: str, *, ends: bool = False, scheduled: bool = False) -> None:
+        """Type text, at a moment of the run; ``ends``: it is the last."""
+        with self._lock:
+            self._scheduled -= scheduled
+            if ends:
+                self._keyboard = Keyboard.NOBODY
+            if text:
+                hidden = self._mode() is Reading.SECRET
+                shown = re.sub(r"[^\n]", "•", text) if hidden else text
+                self._record(Typed(self._clock.now(), shown))
+            self._text = self._text[self._place :] + text
+            self._place = 0
+            waiters = tuple(self._waiters)
+        for waiter in waiters:
+            waiter.set()
+
+    def interrupts(self, text: str) -> bool:
+        """Whether text, typed now, would interrupt the program that has the terminal."""
+        return INTERRUPT in text and bool(termios.tcgetattr(self._near)[3] & termios.ISIG)
+
+    def wait(self, deadline: int | None) -> bool:
+        """Wait until there is something to be read, or until the clock shows ``deadline``.
+
+        Without a deadline that is also at the end of the input.
+        """
+        _show_prompt()
+        if deadline is not None and deadline <= self._clock.now():
+            self._clock.sleep(0)
+        waited = False
+        while True:
+            with self._lock:
+                if self._feed():
+                    break
+                self._ask(without_end=deadline is None)
+                over = self._is_over
+                if over and deadline is None:
+                    break
+                waited = True
+                signal = self._clock.signal()
+                self._waiters.append(signal)
+            try:
+                with self._awaited(not over):
+                    woken = signal.wait(deadline)
+            finally:
+                self._waiters.remove(signal)
+            if not woken:
+                return False
+        if waited and deadline is None:
+            self._note(Reading.NOTHING)
+        return True
+
+    def read(self, size: int) -> bytes | None:
+        """Read as from a terminal, waiting if its modes say so; None if there is nothing and it does not."""
+        while self.wait(self._deadline()):
+            with self._lock:
+                if self._feed():
+                    return _read(self._near, size)
+                if self._is_over:
+                    return b""
+        return b"" if os.get_blocking(self._near) else None
+
+    @property
+    def _is_over(self) -> bool:
+        """Whether nothing more will come for the calling thread's process than what has been typed."""
+        unread = self._place < len(self._text)
+        nobody = self._keyboard is Keyboard.NOBODY and not self._scheduled and not unread
+        return nobody or not current_process().has_keyboard
+
+    def _feed(self) -> bool:
+        """Hand on the next key or line, unless one has yet to be read; whether there is something to be read.
+
+        Keys that wait are handed on one by one, as nobody presses two at once: a program that reads one, and
+        then forgets what else it was sent, as ``tty.setraw`` does, would lose the others.
+        """
+        if not current_process().has_keyboard:
+            return False
+        while not (readable := bool(_select([self._near], [], [], 0)[0])) and self._place < len(self._text):
+            takes_keys = self._mode().takes_keys
+            found = (_KEY if takes_keys else _LINE).match(self._text, self._place, self._place + _LONGEST)
+            assert found is not None
+            self._place = found.end()
+            self._line_begun = not (takes_keys or found[0].endswith("\n"))
+            self._send(found[0])
+        if self._line_begun and not readable and self._is_over:
+            self._line_begun = False
+            self._send(END_OF_INPUT)
+            readable = bool(_select([self._near], [], [], 0)[0])
+        return readable
+
+    def _send(self, text: str) -> None:
+        os.write(self._far, text.encode(errors="replace"))
+        self._drop_echo()
+
+    def _drop_echo(self) -> None:
+        """Keep the far end from filling up: what it echoes, the trace tells as ``Typed``."""
+        try:
+            while _read(self._far, _LONGEST):
+                pass
+        except BlockingIOError:
+            return
+
+    def _mode(self) -> Reading:
+        local = termios.tcgetattr(self._near)[3]
+        if local & termios.ICANON:
+            return Reading.LINES if local & termios.ECHO else Reading.SECRET
+        return Reading.KEYS if local & termios.ISIG else Reading.RAW
+
+    def _deadline(self) -> int | None:
+        """How long a read waits by the modes of the terminal."""
+        if not os.get_blocking(self._near):
+            return self._clock.now()
+        modes: list[Any] = termios.tcgetattr(self._near)
+        local, control = modes[3], modes[6]
+        if local & termios.ICANON or control[termios.VMIN]:
+            return None
+        tenths: int = control[termios.VTIME]
+        return self._clock.now() + tenths * 100_000_000
+
+    def _ask(self, *, without_end: bool) -> None:
+        """Tell that the calling thread's program waits, and how, and what is wrong with that."""
+        process = current_process()
+        if process.has_keyboard:
+            self._note(self._mode())
+        entity = (process.probe or process.host.probe).callback_here()
+        if entity and without_end:
+            text = f"a callback waits for the keyboard ({place_of_caller()}): its thread serves nothing else"
+            self._warn_once(f"{text} meanwhile; read in a thread of its own", entity)
+        if not process.has_keyboard:
+            text = "which ros2 launch gives to no program; run this one by itself, with cbtui run or ros2 run"
+            self._warn_once(f"{_name(process)} reads from the keyboard, {text}")
+        elif self._is_silent:
+            text = "and nobody types; run it by cbtui run or cbtui open, or have text typed: --type 2 'text'"
+            self._warn_once(f"{_name(process)} reads from the keyboard, {text}")
+
+    def _note(self, reads: Reading) -> None:
+        if reads is not self._asked:
+            self._asked = reads
+            self._record(KeyboardAsked(self._clock.now(), reads, _name(current_process())))
+
+    def _warn_once(self, text: str, entity: EntityId = 0) -> None:
+        if text not in self._warned:
+            self._warned.add(text)
+            self._record(Notice(self._clock.now(), Severity.WARN, text, entity))
+
+    @contextmanager
+    def _awaited(self, live: bool) -> Iterator[None]:
+        """Meanwhile a run that goes as fast as it can waits for whoever types."""
+        if isinstance(self._clock, VirtualClock) and live and self._keyboard is Keyboard.LIVE:
+            self._clock.pace.awaits += 1
+            try:
+                yield
+            finally:
+                self._clock.pace.awaits -= 1
+        else:
+            yield
+
+    # What Python reads with
+
+    def _reading(self, read: Callable[[int, int], bytes]) -> Callable[[int, int], bytes]:
+        def read_here(descriptor: int, size: int, /) -> bytes:
+            if not self._is_read_by(descriptor):
+                return read(descriptor, size)
+            data = self.read(size)
+            if data is None:
+                raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
+            return data
+
+        return read_here
+
+    def _selecting(self, select: Callable[..., _Ready]) -> Callable[..., _Ready]:
+        def select_here(
+            rlist: _Files, wlist: _Files, xlist: _Files, timeout: float | None = None, /
+        ) -> _Ready:
+            reads, writes, errors = list(rlist), list(wlist), list(xlist)
+            ours = [each for each in reads if self._is_read_by(each)]
+            if not ours or (timeout is not None and timeout < 0):
+                return select(reads, writes, errors, timeout)
+            others = [each for each in reads if each not in ours]
+            deadline = None if timeout is None else self._clock.now() + wait_ns(timeout)
+
+            def look() -> _Ready:
+                return select(others, writes, errors, 0) if others or writes or errors else ([], [], [])
+
+            ready = look()
+            typed = self.wait(self._clock.now() if any(ready) else deadline)
+            found, writable, failed = ready if any(ready) else look()
+            readable = [each for each in reads if each in found or (typed and each in ours)]
+            return readable, writable, failed
+
+        return select_here
+
+    def _is_read_by(self, file: Any) -> bool:
+        """Whether the calling thread, which lives on the run's clock, means this terminal by ``file``."""
+        if isinstance(self._clock, VirtualClock) and not self._clock.owns_current_thread():
+            return False
+        try:
+            return os.fstat(file if isinstance(file, int) else file.fileno()).st_rdev == self._device
+        except (AttributeError, OSError, ValueError):
+            return False  # Python's own function says what is wrong with it
+
+
+KEYBOARD_WAITS = {Terminal.wait.__code__, Terminal.read.__code__}
+"""The functions in which a thread waits for the keyboard."""
+
+
+class _Keys(io.RawIOBase):
+    """What ``sys.stdin`` reads from."""
+
+    name = "<stdin>"
+    mode = "rb"
+
+    def __init__(self, terminal: Terminal) -> None:
+        self._terminal = terminal
+
+    def readable(self) -> bool:
+        """Whether it can be read from: always."""
+        return True
+
+    def isatty(self) -> bool:
+        """Whether it is a terminal: always."""
+        return True
+
+    def fileno(self) -> int:
+        """The descriptor of the terminal's near end."""
+        return 0
+
+    def readinto(self, buffer: "Buffer") -> int | None:
+        """Read what has been typed; waits for it."""
+        place = memoryview(buffer).cast("B")
+        data = self._terminal.read(len(place))
+        if data is None:
+            return None
+        place[: len(data)] = data
+        return len(data)
+
+
+def _show_prompt() -> None:
+    """Show what the program has written of a line."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, ProcessStream):
+            stream.show_rest()
+
+
+def _name(process: Process) -> str:
+    return process.label or Path(process.arguments[0]).name

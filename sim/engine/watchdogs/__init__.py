@@ -1,0 +1,1 @@
+"""What notices programs that wait, hang or spin, and names the places."""

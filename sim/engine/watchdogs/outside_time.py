@@ -1,0 +1,68 @@
+"""Notices a program that stands still outside virtual time, and names the place."""
+
+import sys
+import threading
+import time
+from collections.abc import Callable
+
+from sim.clock import VirtualClock
+from sim.engine.watchdogs.places import place_of
+from sim.ros.own_code import outwards
+from sim.trace.events import AnyEvent, Notice, Severity
+
+_RealThread = threading.Thread
+_real_sleep = time.sleep
+
+_LOOK = 0.5
+"""Real seconds between two looks."""
+_PATIENCE = 6
+"""Looks without a step after which the person is told."""
+_LAST_PATIENCE = 7
+"""Looks without a step after which ``give_up`` is called."""
+_PATIENCE_WITH_IMPORTS = 30
+"""The same for a thread that imports: large libraries take long, and nobody can mend that."""
+
+
+class Watchdog:
+    """Looks from outside, on a thread of its own, whether the threads of a virtual clock still take steps."""
+
+    def __init__(
+        self,
+        clock: VirtualClock,
+        record: Callable[[AnyEvent], None],
+        give_up: Callable[[str], None],
+        be_back_in: Callable[[float], None],
+    ) -> None:
+        """``be_back_in`` is told before how many real seconds this has to go on: code in C may prevent it."""
+        self._clock = clock
+        self._record = record
+        self._give_up = give_up
+        self._be_back_in = be_back_in
+
+    def start(self) -> None:
+        """Begin to look."""
+        _RealThread(target=self._watch, name="watchdog", daemon=True).start()
+
+    def _watch(self) -> None:
+        steps, still = self._clock.steps, 0
+        while True:
+            self._be_back_in(_LOOK * (_LAST_PATIENCE + 1))
+            _real_sleep(_LOOK)
+            still = still + 1 if self._clock.steps == steps and not self._clock.rests else 0
+            steps = self._clock.steps
+            if still == _PATIENCE:
+                self._record(Notice(self._clock.now(), Severity.WARN, self._sentence()))
+            elif still == (_PATIENCE_WITH_IMPORTS if self._imports() else _LAST_PATIENCE):
+                self._give_up(self._sentence())
+
+    def _imports(self) -> bool:
+        stack = outwards(sys._current_frames().get(self._clock.current.ident))
+        return any(frame.f_globals.get("__name__") == "_frozen_importlib" for frame in stack)
+
+    def _sentence(self) -> str:
+        thread = self._clock.current
+        return (
+            f"{thread.name} does not come to a wait ({place_of(thread)}): it computes without end, "
+            "or waits for something outside the virtual clock; mend it, "
+            "or run the file by itself with --clock real"
+        )

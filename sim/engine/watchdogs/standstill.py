@@ -1,0 +1,55 @@
+"""Notices a program whose threads go on and on in one moment of virtual time, and names the place."""
+
+import time
+from collections.abc import Callable
+
+from sim.clock import VirtualClock
+from sim.clock.virtual import WAITS_TO_RECESS
+from sim.engine.watchdogs.places import place_of
+from sim.trace.events import AnyEvent, Notice, Severity
+
+# Kept from before sim.clock.stdlib puts the virtual one in its place.
+_monotonic = time.monotonic
+
+_PATIENCE = 10
+"""Recesses after which the person is told."""
+_LAST_PATIENCE = 3.5
+"""Real seconds from then on after which ``give_up`` is called."""
+
+
+class Standstill:
+    """Counts the recesses of a moment; the person is told once a run.
+
+    Threads that hand something to each other, and so come to ever new waits, may still do so to an end: they
+    are told of only when they are given up.
+    """
+
+    def __init__(
+        self,
+        clock: VirtualClock,
+        record: Callable[[AnyEvent], None],
+        give_up: Callable[[str], None],
+    ) -> None:
+        self._clock = clock
+        self._record = record
+        self._give_up = give_up
+        self._told = False
+        self._began = 0.0
+
+    def look(self, recess: int) -> None:
+        """Take note of a recess; the clock calls this on the thread that waits."""
+        if recess == _PATIENCE:
+            self._began = _monotonic()
+            if not self._told and self._clock.idles:
+                self._told = True
+                self._record(Notice(self._clock.now(), Severity.WARN, self._sentence()))
+        elif recess > _PATIENCE and _monotonic() - self._began > _LAST_PATIENCE:
+            self._give_up(self._sentence())
+
+    def _sentence(self) -> str:
+        thread = self._clock.current
+        return (
+            f"time stands still: {thread.name} ({place_of(thread)}) and whatever else runs came to more than "
+            f"{_PATIENCE * WAITS_TO_RECESS:,} waits in one moment; a loop whose waits last 0 s never lets "
+            "time pass: let it sleep a little, or run the file by itself with --clock real"
+        )

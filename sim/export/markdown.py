@@ -1,0 +1,240 @@
+"""Writes a report of a run in Markdown: set-up, diagnosis, statistics, waits, what was said, a picture."""
+
+from collections import defaultdict
+from collections.abc import Iterable, Iterator, Sequence
+
+from sim.diagnosis import diagnose, sentence, whereabouts
+from sim.export.texts import markdown as plain
+from sim.export.texts import seconds
+from sim.trace.events import EntityId, EntityKind
+from sim.trace.figures.statistics import CallbackStatistics, Distribution, Statistics, ages_used, statistics
+from sim.trace.figures.summary import CallbackFigures, Summary, summarise
+from sim.trace.figures.summary_text import duration, robot_line, service_line
+from sim.trace.model import Mark, Nanoseconds, Window
+from sim.trace.timeline import Timeline
+from sim.trace.words import why_waiting
+
+_MARKS = 200
+"""Commands and errors that a report lists; there may be thousands."""
+
+_HEADS = (
+    "callback",
+    "group",
+    "calls",
+    "duration min",
+    "median",
+    "p95",
+    "max",
+    "wait min",
+    "median",
+    "p95",
+    "max",
+    "jitter median",
+    "max",
+    "drops",
+    "age or lateness median",
+    "max",
+    "errors",
+)
+
+
+def report(timeline: Timeline, picture: str | None = None) -> str:
+    """The report of all that a timeline knows; ``picture`` is where its picture is, as a link would say it.
+
+    Texts of the learner's program stand in it as they are, without effect on the page.
+    """
+    summary, figures = summarise(timeline), statistics(timeline)
+    parts = (
+        _setup(timeline, summary),
+        _diagnosis(timeline),
+        _callbacks(summary, figures),
+        _data(summary, figures, timeline),
+        _waits(summary, timeline),
+        _threads(timeline, summary, figures),
+        _calls_and_robot(summary),
+        _words(timeline),
+        _picture(picture),
+    )
+    return "\n".join(line for part in parts for line in part)
+
+
+def _setup(timeline: Timeline, summary: Summary) -> Iterator[str]:
+    yield f"# {plain(summary.target) or 'A run'}"
+    yield ""
+    clock = f" of {plain(summary.clock)} time" if summary.clock else ""
+    ending = f": {plain(summary.ending)}" if summary.ending else ""
+    yield f"{duration(summary.length)}{clock}{ending}"
+    yield ""
+    if summary.lost:
+        yield f"**The trace lost {summary.lost} events, so some figures below are too small.**"
+        yield ""
+    yield "## Set-up"
+    yield ""
+    for executor in timeline.executors.values():
+        threads = "1 thread" if executor.threads == 1 else f"{executor.threads} threads"
+        yield f"- {plain(executor.kind)}, {threads}"
+    yield ""
+    yield from _table(("group", "kind", "node", "callbacks"), _groups(timeline))
+
+
+def _groups(timeline: Timeline) -> Iterator[Sequence[str]]:
+    for group in timeline.groups.values():
+        members = (entity.spoken_name for entity in timeline.group_members(group.id))
+        yield (
+            group.letter,
+            plain(group.class_name),
+            plain(timeline.nodes.get(group.node, "")),
+            plain(", ".join(members)),
+        )
+
+
+def _diagnosis(timeline: Timeline) -> Iterator[str]:
+    yield "## Diagnosis"
+    yield ""
+    findings = diagnose(timeline)
+    if not findings:
+        yield "Nothing to complain about."
+    for found in findings:
+        told = found.rule.explain(found, timeline)
+        weight = found.rule.weigh(found, timeline) or found.rule.weight
+        where = whereabouts(found, told)
+        yield f"- **{weight.value.capitalize()}**{f' ({plain(where)})' if where else ''}: {plain(told.what)}."
+        yield f"  {plain(sentence(told.why))} What to do: {plain(told.cure)}."
+    yield ""
+
+
+def _callbacks(summary: Summary, figures: Statistics) -> Iterator[str]:
+    about = {each.entity.id: each for each in summary.callbacks}
+    yield "## Callbacks"
+    yield ""
+    yield from _table(_HEADS, (_row(each, about.get(each.entity.id)) for each in figures.callbacks))
+
+
+def _row(each: CallbackStatistics, about: CallbackFigures | None) -> Sequence[str]:
+    return (
+        plain(about.name if about else each.entity.spoken_name),
+        about.group if about else "",
+        str(each.calls),
+        *_four(each.duration),
+        *_four(each.wait),
+        *_two(each.jitter),
+        str(each.drops) if each.entity.depth else "-",
+        *_two(each.age or each.late),
+        str(each.errors),
+    )
+
+
+def _four(values: Distribution | None) -> Sequence[str]:
+    if values is None:
+        return ("-",) * 4
+    return tuple(map(duration, (values.least, values.median, values.p95, values.most)))
+
+
+def _two(values: Distribution | None) -> Sequence[str]:
+    return ("-", "-") if values is None else (duration(values.median), duration(values.most))
+
+
+def _data(summary: Summary, figures: Statistics, timeline: Timeline) -> Iterator[str]:
+    names = {each.entity.id: each.name for each in summary.callbacks}
+    rows = [
+        (plain(names.get(timer.entity.id, "")), plain(_name(used, names, timeline)), *_four(ages))
+        for timer in figures.callbacks
+        if timer.entity.kind is EntityKind.TIMER
+        for used, ages in ages_used(timeline, timer.entity, figures.window).items()
+    ]
+    if rows:
+        yield "How old the newest data of each subscription was when a timer's callback began:"
+        yield ""
+        yield from _table(("timer", "data from", "age min", "median", "p95", "max"), rows)
+
+
+def _name(entity: EntityId, names: dict[EntityId, str], timeline: Timeline) -> str:
+    return names.get(entity) or timeline.entities[entity].spoken_name
+
+
+def _waits(summary: Summary, timeline: Timeline) -> Iterator[str]:
+    yield "## Waits"
+    yield ""
+    rows = [row for each in summary.callbacks for row in _reasons(each, timeline)]
+    if rows:
+        yield from _table(("callback", "waited in all", "longest", "because"), rows)
+    else:
+        yield "None: every callback ran as soon as it was ready."
+        yield ""
+
+
+def _reasons(each: CallbackFigures, timeline: Timeline) -> Iterator[Sequence[str]]:
+    """For each reason for which a callback waited, how long, the weightiest first."""
+    total: defaultdict[str, Nanoseconds] = defaultdict(int)
+    longest: defaultdict[str, Nanoseconds] = defaultdict(int)
+    for wait in timeline.waits_of(each.entity.id, Window(0, timeline.end + 1)):
+        why = why_waiting(wait, timeline)
+        length = (timeline.end if wait.end is None else wait.end) - wait.start
+        total[why] += length
+        longest[why] = max(longest[why], length)
+    for why in sorted(total, key=lambda why: -total[why]):
+        yield plain(each.name), duration(total[why]), duration(longest[why]), plain(why)
+
+
+def _threads(timeline: Timeline, summary: Summary, figures: Statistics) -> Iterator[str]:
+    yield "## Threads"
+    yield ""
+    busy = ((plain(timeline.threads[thread].name), f"{share:.1%}") for thread, share in figures.busy.items())
+    yield from _table(("thread", "busy"), busy)
+    yield f"{summary.threads_used} ran callbacks, at most {figures.threads_at_once} at once."
+    yield ""
+
+
+def _calls_and_robot(summary: Summary) -> Iterator[str]:
+    lines = [service_line(service) for service in summary.services]
+    if summary.robot:
+        lines.append(f"robot: {robot_line(summary.robot)}")
+    if lines:
+        yield "## Services and robot"
+        yield ""
+        yield from (f"- {plain(line)}" for line in lines)
+        yield ""
+
+
+def _words(timeline: Timeline) -> Iterator[str]:
+    if timeline.notices:
+        yield "## Notices"
+        yield ""
+        for notice in timeline.notices:
+            yield f"- {seconds(notice.t)} s, {notice.severity.value}: {plain(notice.text)}"
+        yield ""
+    marks = [
+        mark for mark in timeline.marks(Window(0, timeline.end + 1)) if mark.kind in ("command", "error")
+    ]
+    if marks:
+        yield "## Commands and errors"
+        yield ""
+        yield from map(_mark, marks[:_MARKS])
+        if len(marks) > _MARKS:
+            yield f"- and {len(marks) - _MARKS} more"
+        yield ""
+
+
+def _mark(mark: Mark) -> str:
+    return f"- {seconds(mark.at)} s: {plain(mark.text)}"
+
+
+def _picture(picture: str | None) -> Iterator[str]:
+    if picture is not None:
+        yield "## Picture"
+        yield ""
+        yield f"![Threads, callback groups and waits over time](<{_link(picture)}>)"
+        yield ""
+
+
+def _link(path: str) -> str:
+    """A path as Markdown takes it between angle brackets."""
+    return path.replace("%", "%25").replace("<", "%3C").replace(">", "%3E").replace("\n", "%0A")
+
+
+def _table(heads: Sequence[str], rows: Iterable[Sequence[str]]) -> Iterator[str]:
+    yield f"| {' | '.join(heads)} |"
+    yield f"|{' --- |' * len(heads)}"
+    for row in rows:
+        yield f"| {' | '.join(row)} |"
+    yield ""

@@ -1,0 +1,400 @@
+"""Tells a stream of events as tracks, slices, instants, counters and arrows: what trace viewers show."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+from sim.export.flows import Flows
+from sim.export.ordering import InOrder, Parcel
+from sim.export.running import Running, Stretch
+from sim.export.sink import NO_FACTS, NO_LINKS, Facts, Links, Sink, TrackId
+from sim.export.stage import Stage
+from sim.export.texts import printable
+from sim.trace import events as ev
+from sim.trace.events import AnyEvent, EntityId, EntityKind, ThreadId
+from sim.trace.model import Nanoseconds, Wait
+from sim.trace.words import why_waiting
+
+_UNFINISHED: Facts = {"unfinished": "yes"}
+
+
+class Narrator:
+    """Feeds a sink from events; memory does not grow with the length of the run.
+
+    A thread's track holds its calls, nested where they are, and within them where a thread stands still in
+    ``Client.call``. A group's tracks hold its calls from beginning to end, suspensions included. An entity's
+    track, below its group, holds its waits with reason and culprit, and its losses. Not thread-safe.
+    """
+
+    def __init__(self, sink: Sink) -> None:
+        self._sink = sink
+        self._order = InOrder()
+        self._stage = Stage(sink)
+        self._flows = Flows()
+        self._running = Running()
+        self._waiting: dict[EntityId, Nanoseconds] = {}
+        self._waited: dict[EntityId, Nanoseconds] = {}
+        self._blocked: dict[ThreadId, ev.CallId] = {}
+        self._tell: dict[type, Callable[[Any], object]] = self._telling()
+
+    def take(self, events: Sequence[AnyEvent]) -> None:
+        """Tell a batch, in order of time; some of it may be told later."""
+        self._tell_all(self._order.take(events))
+
+    def finish(self) -> None:
+        """Tell the rest, and end what still goes on."""
+        self._tell_all(self._order.rest())
+        self._end_all(self._order.latest)
+        self._sink.close()
+
+    @property
+    def tells(self) -> set[type]:
+        """The kinds of events that it knows."""
+        return set(self._tell)
+
+    def _tell_all(self, events: Sequence[AnyEvent]) -> None:
+        tell = self._tell
+        for event in events:
+            tell[event.__class__](event)
+
+    def _telling(self) -> dict[type, Callable[[Any], object]]:
+        cast = self._stage.cast
+        return {
+            ev.RunStarted: self._run_started,
+            ev.RunEnded: self._run_ended,
+            ev.RunEnding: _leave_out,
+            ev.ProcessAppeared: cast.add_process,
+            ev.ProcessEnded: self._process_ended,
+            ev.ThreadAppeared: self._stage.add_thread,
+            ev.ExecutorAppeared: self._executor_appeared,
+            ev.NodeAppeared: cast.add_node,
+            ev.GroupAppeared: self._group_appeared,
+            ev.EntityAppeared: cast.add_entity,
+            ev.EntityGone: self._entity_gone,
+            ev.EntityReady: self._entity_ready,
+            ev.MessageDropped: self._message_dropped,
+            ev.WaitStarted: self._wait_started,
+            ev.WaitEnded: self._wait_ended,
+            ev.CallbackStarted: self._callback_started,
+            ev.CallbackEnded: self._callback_ended,
+            ev.CallbackSuspended: self._callback_suspended,
+            ev.CallbackResumed: self._callback_resumed,
+            ev.SpinClashed: self._spin_clashed,
+            ev.CallbackFailed: self._running.fail,
+            ev.Published: self._published,
+            ev.QosMismatched: self._qos_mismatched,
+            ev.TopicAppeared: _leave_out,
+            ev.MessageSent: _leave_out,
+            ev.ServiceCalled: self._service_called,
+            ev.ServiceReplied: self._service_replied,
+            ev.RequestLost: self._request_lost,
+            ev.CallBlocked: self._call_blocked,
+            ev.CallUnblocked: self._call_unblocked,
+            ev.Logged: self._logged,
+            ev.Printed: self._printed,
+            ev.ArenaShown: _leave_out,
+            ev.RobotMoved: self._robot_moved,
+            ev.Scanned: _leave_out,
+            ev.VelocityCommanded: self._velocity_commanded,
+            ev.CommandGiven: self._command_given,
+            ev.InputGiven: _leave_out,
+            ev.TimeHalted: self._command_given,
+            ev.TimePassed: _leave_out,
+            ev.KeyboardAsked: _leave_out,
+            ev.Typed: self._typed,
+            ev.LineGiven: self._command_given,
+            ev.LineSaid: self._line_said,
+            ev.LineEnded: _leave_out,
+            ev.LineCompleted: _leave_out,
+            ev.Notice: self._noticed,
+            ev.EventsLost: self._events_lost,
+            ev.ContentsLost: self._contents_lost,
+        }
+
+    # the run
+
+    def _run_started(self, event: ev.RunStarted) -> None:
+        self._stage.begin(event.target)
+        self._sink.begin_run(event.epoch)
+
+    def _run_ended(self, event: ev.RunEnded) -> None:
+        self._say("notices", event.t, f"the run ended: {event.reason}", {"failed": str(event.failed)})
+
+    def _process_ended(self, event: ev.ProcessEnded) -> None:
+        label = self._stage.cast.processes.get(event.process, "a program")
+        self._say("notices", event.t, f"{label} ended: {event.reason}", {"status": event.status})
+
+    def _executor_appeared(self, event: ev.ExecutorAppeared) -> None:
+        self._say("notices", event.t, event.kind, {"threads": event.threads})
+
+    def _group_appeared(self, event: ev.GroupAppeared) -> None:
+        self._stage.cast.add_group(event)
+        self._stage.add_group(event.group)
+
+    def _events_lost(self, event: ev.EventsLost) -> None:
+        self._running.doubt()
+        self._say("notices", event.t, f"{event.count} events lost so far", NO_FACTS)
+
+    def _contents_lost(self, event: ev.ContentsLost) -> None:
+        self._say("notices", event.t, f"contents of {event.count} messages lost so far", NO_FACTS)
+
+    # queues and waits
+
+    def _entity_ready(self, event: ev.EntityReady) -> None:
+        self._order.forget(event)
+        left = tuple(self._flows.arrive(event.message, event.entity, event.depth))
+        if left:
+            self._lose(event.entity, event.t, "left the queue", left)
+        self._show_depth(event.entity, event.t, event.depth)
+
+    def _message_dropped(self, event: ev.MessageDropped) -> None:
+        self._lose(event.entity, event.t, "dropped", self._flows.take(event.message, event.entity))
+        self._show_depth(event.entity, event.t, event.depth)
+
+    def _lose(self, entity: EntityId, t: Nanoseconds, what: str, flows: tuple[int, ...]) -> None:
+        track = self._stage.waits(self._stage.actor(entity))
+        self._sink.instant(track, t, what, "queue", NO_FACTS, Links(end=flows))
+
+    def _show_depth(self, entity: EntityId, t: Nanoseconds, depth: int) -> None:
+        actor = self._stage.actor(entity)
+        if actor.shown_depth == depth or not actor.depth:
+            return
+        actor.shown_depth = depth
+        self._sink.count(self._stage.queue(actor), t, depth)
+
+    def _entity_gone(self, event: ev.EntityGone) -> None:
+        self._stop_waiting(event.entity, event.t)
+        flows = self._flows.empty(event.entity)
+        if flows:
+            self._lose(event.entity, event.t, "destroyed", flows)
+
+    def _wait_started(self, event: ev.WaitStarted) -> None:
+        self._stop_waiting(event.entity, event.t)
+        self._waiting[event.entity] = event.since
+        actor = self._stage.actor(event.entity)
+        wait = Wait(event.t, None, event.since, event.entity, event.reason, event.holder, event.workers_busy)
+        facts: dict[str, str | int | float] = {
+            "reason": event.reason.value,
+            "ready_since_s": event.since / 1e9,
+            "workers_busy": "yes" if event.workers_busy else "no",
+        }
+        if event.holder:
+            facts["culprit"] = self._stage.actor(event.holder).name
+        name = printable(why_waiting(wait, self._stage.cast))
+        self._sink.begin(self._stage.waits(actor), event.t, name, "wait", facts)
+
+    def _wait_ended(self, event: ev.WaitEnded) -> None:
+        since = self._waiting.get(event.entity)
+        if since is not None:
+            self._waited[event.entity] = event.t - since
+            self._stop_waiting(event.entity, event.t)
+
+    def _stop_waiting(self, entity: EntityId, t: Nanoseconds) -> None:
+        if self._waiting.pop(entity, None) is not None:
+            self._sink.end(self._stage.waits(self._stage.actor(entity)), t)
+
+    # calls
+
+    def _callback_started(self, event: ev.CallbackStarted) -> None:
+        for stretch in self._running.outdated(event.thread):
+            self._leave(stretch, event.t)
+            self._end_call(stretch, event.t)
+        self._unblock(event.thread, event.t)
+        stretch = self._running.start(event, self._waited.pop(event.entity, 0))
+        actor = self._stage.actor(event.entity)
+        facts = {
+            **actor.facts,
+            "late_ms" if actor.kind is EntityKind.TIMER else "message_age_ms": event.age / 1e6,
+            "waited_ms": stretch.wait / 1e6,
+            "queue_depth": event.depth,
+        }
+        through = self._flows.served(event.message) if actor.kind is EntityKind.SERVICE else ()
+        taken = self._flows.take(event.message, event.entity)
+        links = Links((), through, taken) if through or taken else NO_LINKS
+        self._sink.begin(self._stage.thread(event.thread), event.t, actor.name, "callback", facts, links)
+        stretch.lane = self._stage.enter(actor.group)
+        on = {"thread": self._stage.thread_name(event.thread)}
+        self._sink.begin(self._stage.lane(actor.group, stretch.lane), event.t, actor.name, "group", on)
+        self._show_depth(event.entity, event.t, event.depth)
+
+    def _callback_ended(self, event: ev.CallbackEnded) -> None:
+        left = self._running.finish(event)
+        for stretch in left:
+            self._leave(stretch, event.t)
+            self._end_call(stretch, event.t)
+        suspended = None if left else self._running.finish_suspended(event.entity)
+        if suspended is not None:
+            self._sink.end(self._lane_of(suspended), event.t)
+            self._end_call(suspended, event.t)
+
+    def _callback_suspended(self, event: ev.CallbackSuspended) -> None:
+        left = self._running.suspend(event)
+        for stretch in left:
+            self._leave(stretch, event.t)
+        for lost in left[:-1]:
+            self._end_call(lost, event.t)
+        if left:
+            self._sink.begin(self._lane_of(left[-1]), event.t, "suspended", "group", NO_FACTS)
+
+    def _callback_resumed(self, event: ev.CallbackResumed) -> None:
+        self._unblock(event.thread, event.t)
+        stretch, before = self._running.resume(event)
+        actor = self._stage.actor(event.entity)
+        if before is None:
+            stretch.lane = self._stage.enter(actor.group)
+            self._sink.begin(self._lane_of(stretch), event.t, actor.name, "group", NO_FACTS)
+        else:
+            self._sink.end(self._lane_of(stretch), event.t)
+        facts = {**actor.facts, "resumed": "yes"}
+        self._sink.begin(self._stage.thread(event.thread), event.t, actor.name, "callback", facts)
+
+    def _leave(self, stretch: Stretch, t: Nanoseconds, facts: Facts = NO_FACTS) -> None:
+        """A call leaves its thread."""
+        self._unblock(stretch.thread, t)
+        if stretch.error:
+            facts = {**facts, "error": printable(stretch.error)}
+        self._sink.end(self._stage.thread(stretch.thread), t, facts)
+
+    def _end_call(self, stretch: Stretch, t: Nanoseconds, facts: Facts = NO_FACTS) -> None:
+        """A call lets its group go."""
+        self._sink.end(self._lane_of(stretch), t, facts)
+        self._stage.leave(self._stage.actor(stretch.entity).group, stretch.lane)
+
+    def _lane_of(self, stretch: Stretch) -> TrackId:
+        return self._stage.lane(self._stage.actor(stretch.entity).group, stretch.lane)
+
+    def _spin_clashed(self, event: ev.SpinClashed) -> None:
+        text = f"{event.function}() asks to spin what is being spun"
+        self._say("notices", event.t, text, {"line": event.line})
+
+    # messages and services
+
+    def _published(self, event: ev.Published) -> None:
+        flows = self._flows.send(event.message, self._order.receivers(Parcel.MESSAGE, event.message))
+        track = self._where(event.entity)
+        if track is None:
+            track = self._stage.node(event.node)
+        name = f"publish {printable(event.topic)}"
+        self._sink.instant(track, event.t, name, "publish", {"message": event.message}, Links(begin=flows))
+
+    def _qos_mismatched(self, event: ev.QosMismatched) -> None:
+        facts: Facts = {"topic": printable(event.topic), "policy": event.policy}
+        self._say("notices", event.t, f"{printable(event.topic)}: quality of service does not match", facts)
+
+    def _request_lost(self, event: ev.RequestLost) -> None:
+        track = self._stage.service(event.service)
+        name = f"nobody offers {printable(event.service)}"
+        self._sink.instant(track, event.t, name, "call", {"call": event.call})
+
+    def _service_called(self, event: ev.ServiceCalled) -> None:
+        to_service = self._flows.send(event.call, self._order.receivers(Parcel.REQUEST, event.call))
+        flows = self._flows.call(event.call) + to_service
+        track = self._where(event.entity)
+        if track is None:
+            track = self._stage.service(event.service)
+        facts: Facts = {"call": event.call, "request": printable(event.request)}
+        self._sink.instant(
+            track, event.t, f"call {printable(event.service)}", "call", facts, Links(begin=flows)
+        )
+
+    def _service_replied(self, event: ev.ServiceReplied) -> None:
+        to_client = self._flows.send(event.call, self._order.receivers(Parcel.REPLY, event.call))
+        track = self._serving(event.service)
+        facts: Facts = {"call": event.call, "response": printable(event.response)}
+        links = Links(begin=to_client, end=self._flows.reply(event.call))
+        self._sink.instant(track, event.t, f"reply {printable(event.service)}", "call", facts, links)
+
+    def _serving(self, service: str) -> TrackId:
+        """Where a service answers: on the thread that runs its callback, if one does."""
+        for entity in self._stage.cast.entities.values():
+            if entity.kind is EntityKind.SERVICE and entity.name == service:
+                track = self._where(entity.id)
+                if track is not None:
+                    return track
+        return self._stage.service(service)
+
+    def _where(self, entity: EntityId) -> TrackId | None:
+        thread = self._running.thread_of(entity) if entity else None
+        return None if thread is None else self._stage.thread(thread)
+
+    def _call_blocked(self, event: ev.CallBlocked) -> None:
+        self._unblock(event.thread, event.t)
+        self._blocked[event.thread] = event.call
+        name = f"blocked in a call of {printable(event.service)}"
+        self._sink.begin(self._stage.thread(event.thread), event.t, name, "call", {"call": event.call})
+
+    def _call_unblocked(self, event: ev.CallUnblocked) -> None:
+        if self._blocked.get(event.thread) == event.call:
+            self._unblock(event.thread, event.t)
+
+    def _unblock(self, thread: ThreadId, t: Nanoseconds) -> None:
+        if self._blocked.pop(thread, None) is not None:
+            self._sink.end(self._stage.thread(thread), t)
+
+    # words and the robot
+
+    def _logged(self, event: ev.Logged) -> None:
+        facts: dict[str, str | int | float] = {
+            "severity": event.severity.value,
+            "logger": printable(event.logger),
+        }
+        if event.thread:
+            facts["thread"] = self._stage.thread_name(event.thread)
+        if event.entity:
+            facts["callback"] = self._stage.actor(event.entity).name
+        self._say("log", event.t, event.text, facts)
+
+    def _printed(self, event: ev.Printed) -> None:
+        self._say("log", event.t, event.text, {"severity": "stderr" if event.error else "stdout"})
+
+    def _command_given(self, event: ev.CommandGiven | ev.LineGiven | ev.TimeHalted) -> None:
+        self._say("commands", event.t, event.text, NO_FACTS)
+
+    def _typed(self, event: ev.Typed) -> None:
+        self._say("commands", event.t, f"typed {event.text!r}", NO_FACTS)
+
+    def _line_said(self, event: ev.LineSaid) -> None:
+        self._say("commands", event.t, event.text, {"line": event.line})
+
+    def _noticed(self, event: ev.Notice) -> None:
+        self._say("notices", event.t, event.text, {"severity": event.severity.value})
+
+    def _say(self, track: str, t: Nanoseconds, text: str, facts: Facts) -> None:
+        self._sink.instant(self._stage.words(track), t, printable(text) or "(empty line)", track, facts)
+
+    def _robot_moved(self, event: ev.RobotMoved) -> None:
+        measure = self._stage.measure
+        measure("x", "m", event.t, event.x)
+        measure("y", "m", event.t, event.y)
+        measure("yaw", "rad", event.t, event.yaw)
+        measure("linear velocity", "m/s", event.t, event.linear)
+        measure("angular velocity", "rad/s", event.t, event.angular)
+
+    def _velocity_commanded(self, event: ev.VelocityCommanded) -> None:
+        self._stage.measure("commanded linear velocity", "m/s", event.t, event.linear)
+        self._stage.measure("commanded angular velocity", "rad/s", event.t, event.angular)
+
+    # the end
+
+    def _end_all(self, t: Nanoseconds) -> None:
+        for entity in list(self._waiting):
+            self._stop_waiting(entity, t)
+        for stretch in self._running.left_over():
+            self._leave(stretch, t, _UNFINISHED)
+            self._end_call(stretch, t, _UNFINISHED)
+        for stretch in self._running.left_suspended():
+            self._sink.end(self._lane_of(stretch), t)
+            self._end_call(stretch, t, _UNFINISHED)
+        for thread in list(self._blocked):
+            self._unblock(thread, t)
+        for entity in self._flows.receivers():
+            flows = self._flows.empty(entity)
+            if flows:
+                self._lose(entity, t, "still in the queue", flows)
+        unanswered = self._flows.unanswered()
+        if unanswered:
+            track = self._stage.words("notices")
+            self._sink.instant(track, t, "calls without a reply", "call", NO_FACTS, Links(end=unanswered))
+
+
+def _leave_out(_event: object) -> None:
+    """Trace viewers have no way to show such events."""

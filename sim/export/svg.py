@@ -1,0 +1,243 @@
+"""Draws a window of a run as lanes, for paper: threads, groups with their callbacks, and why they wait."""
+
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+
+from sim.export import paper
+from sim.export.lanes import Piece, Scale, losses, pieces, rows, ticks
+from sim.export.paper import Box
+from sim.export.texts import seconds, xml
+from sim.trace.events import GroupKind, Reason
+from sim.trace.figures.summary_text import duration
+from sim.trace.model import Entity, Group, Nanoseconds, Span, Thread, Wait, Window
+from sim.trace.timeline import Timeline
+from sim.trace.words import name_of, why_waiting
+
+LABELS = 210.0
+"""Pixels for the names at the left."""
+MARGIN = 14.0
+NARROWEST = 480
+WIDEST = 20_000
+_GAP = 3.0
+_TICK_EVERY = 80.0
+_LOSS_EVERY = 6.0
+_LEVELS = 4
+
+
+def svg(timeline: Timeline, window: Window, width: int = 1100, row_height: int = 22) -> str:
+    """The picture as the text of an SVG file, ``width`` pixels wide and as high as its rows need.
+
+    Raises:
+        ValueError: the window has no length, or the picture would be too narrow or too wide.
+    """
+    if window.length <= 0:
+        raise ValueError("the picture's end must come after its start")
+    if not NARROWEST <= width <= WIDEST or not 12 <= row_height <= 200:
+        raise ValueError(f"a picture is {NARROWEST} to {WIDEST} pixels wide, its rows 12 to 200 high")
+    return "\n".join(_Picture(timeline, window, width, row_height).lines()) + "\n"
+
+
+class _Picture:
+    def __init__(self, timeline: Timeline, window: Window, width: int, row_height: int) -> None:
+        self._timeline = timeline
+        self._window = window
+        self._width = width
+        self._height = float(row_height)
+        self._scale = Scale(window, LABELS + MARGIN, width - MARGIN)
+        self._numbers = {group: number for number, group in enumerate(timeline.groups)}
+
+    def lines(self) -> Iterator[str]:
+        """The lines of the file."""
+        body: list[str] = []
+        y = MARGIN + 16
+        body += self._title(y)
+        y += 18
+        top = y
+        for row in rows(self._timeline, self._window):
+            y += _GAP if isinstance(row, Entity) else 2.5 * _GAP
+            body += self._row(row, y)
+            y += self._height
+        body += self._marks(top, y)
+        axis, y = self._axis(top, y)
+        legend, y = self._legend(y + 18)
+        yield (
+            f'<svg xmlns="http://www.w3.org/2000/svg" width="{self._width}" height="{y:.0f}" '
+            f'viewBox="0 0 {self._width} {y:.0f}" font-family="{paper.FONT}" '
+            f'font-size="{paper.FONT_SIZE}">'
+        )
+        yield f"<title>{xml(self._heading())}</title>"
+        yield paper.definitions(len(self._numbers) + 1)
+        yield f'<rect width="{self._width}" height="{y:.0f}" fill="#FFFFFF"/>'
+        yield from axis
+        yield from body
+        yield from legend
+        yield "</svg>"
+
+    def _heading(self) -> str:
+        started = self._timeline.started
+        target = started.target if started else "run"
+        kinds = ", ".join(executor.kind for executor in self._timeline.executors.values())
+        at = f"{_short(self._window.start)} to {_short(self._window.end)} s"
+        return f"{target}: {at}" + (f", {kinds}" if kinds else "")
+
+    def _title(self, y: float) -> Iterator[str]:
+        room = self._width - 2 * MARGIN
+        yield paper.words(MARGIN, y, paper.shortened(self._heading(), room), weight="bold")
+
+    # rows
+
+    def _row(self, row: Thread | Group | Entity, y: float) -> Iterator[str]:
+        yield paper.ground(Box(self._scale.left, y, self._scale.right - self._scale.left, self._height))
+        indent = 14.0 if isinstance(row, Entity) else 0.0
+        label = paper.shortened(self._label(row), LABELS - indent - 6)
+        weight = "" if isinstance(row, Entity) else "bold"
+        yield paper.words(MARGIN + indent, y + self._height / 2 + 4, label, weight=weight)
+        if isinstance(row, Thread):
+            yield from self._thread(row, y)
+        elif isinstance(row, Group):
+            yield from self._group(row, y)
+        else:
+            yield from self._entity(row, y)
+
+    def _label(self, row: Thread | Group | Entity) -> str:
+        if isinstance(row, Thread):
+            return row.name
+        if isinstance(row, Group):
+            return f"{row.letter} {row.kind.value} {self._timeline.nodes.get(row.node, '')}"
+        return row.spoken_name
+
+    def _thread(self, thread: Thread, y: float) -> Iterator[str]:
+        spans = self._timeline.spans_on(thread.id, self._window)
+        for piece in self._pieces(spans):
+            inset = min(piece.level, _LEVELS) * self._height / 8
+            box = Box(piece.left, y + inset, piece.right - piece.left, self._height - 2 * inset)
+            yield from self._call(piece, box, self._names(piece))
+
+    def _group(self, group: Group, y: float) -> Iterator[str]:
+        found = list(self._pieces(self._timeline.spans_in(group.id, self._window)))
+        levels = 1 + min(_LEVELS - 1, max((piece.level for piece in found), default=0))
+        verb = "held by" if group.kind is GroupKind.EXCLUSIVE else "runs"
+        for piece in found:
+            level = min(piece.level, levels - 1)
+            part = self._height / levels
+            box = Box(piece.left, y + level * part + part / 4, piece.right - piece.left, part / 2)
+            name = name_of(piece.interval.entity, self._timeline)
+            yield from self._call(piece, box, (f"{verb} {name}", name) if levels == 1 else ())
+
+    def _entity(self, entity: Entity, y: float) -> Iterator[str]:
+        height = self._height
+        waits = self._timeline.waits_of(entity.id, self._window)
+        for wait in pieces(waits, self._scale, self._timeline.end):
+            yield from self._wait(wait.interval, Box(wait.left, y + 1, wait.right - wait.left, height - 2))
+        for piece in self._pieces(self._timeline.spans_of(entity.id, self._window)):
+            box = Box(piece.left, y + height / 5, piece.right - piece.left, height * 3 / 5)
+            took = self._took(piece.interval)
+            yield from self._call(piece, box, (f"runs {took}", took))
+        for x, lost in losses(self._timeline, entity, self._scale, _LOSS_EVERY):
+            yield (
+                f'<path d="M{x - 3:.2f},{y:.2f} h6 l-3,5 z" fill="{paper.WARN}">'
+                f"<title>{lost} dropped</title></path>"
+            )
+
+    def _pieces(self, spans: Sequence[Span]) -> Iterator[Piece[Span]]:
+        return pieces(spans, self._scale, self._timeline.end)
+
+    def _call(self, piece: Piece[Span], box: Box, texts: tuple[str, ...]) -> Iterator[str]:
+        span = piece.interval
+        yield paper.bar(box, self._number(span), self._about(span))
+        text = paper.fitting(texts, box.width - 8)
+        if text:
+            yield paper.words(box.x + 4, box.y + box.height / 2 + 4, text)
+        if span.error:
+            middle = box.y + box.height / 2 + 4
+            yield paper.words(box.x + box.width, middle, "✗", paper.WARN, anchor="middle", weight="bold")
+
+    def _wait(self, wait: Wait, box: Box) -> Iterator[str]:
+        why = why_waiting(wait, self._timeline)
+        took = self._took(wait)
+        yield paper.hatched(box, wait.reason, f"waits {took}: {why}")
+        text = paper.fitting((f"waits {took}: {why}", f"{took}: {why}", why, took), box.width - 8)
+        if text:
+            yield paper.words(box.x + 4, box.y + box.height / 2 + 4, text)
+
+    def _took(self, interval: Span | Wait) -> str:
+        end = self._timeline.end if interval.end is None else interval.end
+        return duration(end - interval.start)
+
+    def _names(self, piece: Piece[Span]) -> tuple[str, ...]:
+        entity = self._timeline.entities.get(piece.interval.entity)
+        if entity is None:
+            return ()
+        group = self._timeline.groups.get(entity.group)
+        letter = group.letter if group else ""
+        return (f"{letter} {entity.spoken_name}".strip(), letter)
+
+    def _about(self, span: Span) -> str:
+        name = name_of(span.entity, self._timeline)
+        error = f", raised {span.error}" if span.error else ""
+        return f"{name}: {seconds(span.start)} s, {self._took(span)}{error}"
+
+    def _number(self, span: Span) -> int:
+        entity = self._timeline.entities.get(span.entity)
+        unknown = len(self._numbers)
+        return unknown if entity is None else self._numbers.get(entity.group, unknown)
+
+    # around the rows
+
+    def _marks(self, top: float, bottom: float) -> Iterator[str]:
+        last = self._scale.left - _TICK_EVERY
+        for mark in self._timeline.marks(self._window):
+            x = self._scale.x(mark.at)
+            if mark.kind not in ("command", "call", "reply", "notice") or x < last + 2:
+                continue
+            yield paper.line(x, top, x, bottom, paper.FAINT, 0.7)
+            if x - last > _TICK_EVERY:
+                room = min(_TICK_EVERY * 3, self._scale.right - x)
+                yield paper.words(x + 2, top + 4, paper.shortened(mark.text, room), paper.FAINT)
+            last = x
+
+    def _axis(self, top: float, bottom: float) -> tuple[list[str], float]:
+        drawn = [paper.line(self._scale.left, bottom + 5, self._scale.right, bottom + 5, paper.FAINT)]
+        found = ticks(self._window, max(2, int((self._scale.right - self._scale.left) / _TICK_EVERY)))
+        places = _places([after - before for before, after in pairwise(found)])
+        for t in found:
+            x = self._scale.x(t)
+            drawn.append(paper.line(x, top, x, bottom + 9))
+            drawn.append(paper.words(x, bottom + 21, f"{t / 1e9:.{places}f}", paper.FAINT, "middle"))
+        drawn.append(paper.words(LABELS, bottom + 21, "s", paper.FAINT, "end"))
+        return drawn, bottom + 24
+
+    def _legend(self, y: float) -> tuple[list[str], float]:
+        entries: list[tuple[str, str]] = []
+        for group, number in self._numbers.items():
+            known = self._timeline.groups[group]
+            entries.append((paper.bar(Box(0, 0, 18, 11), number, ""), f"{known.letter} {known.class_name}"))
+        entries += [
+            (paper.hatched(Box(0, 0, 18, 11), reason, ""), f"waits: {reason.value}") for reason in Reason
+        ]
+        loss = f'<path d="M6,3 h6 l-3,5 z" fill="{paper.WARN}"/>'
+        entries.append((loss, "message dropped"))
+        entries.append((paper.words(9, 10, "✗", paper.WARN, "middle", "bold"), "raised an exception"))
+        return self._flowing(entries, y)
+
+    def _flowing(self, entries: Sequence[tuple[str, str]], y: float) -> tuple[list[str], float]:
+        """The entries one after another, as many in a line as fit."""
+        drawn: list[str] = []
+        x = MARGIN
+        for sign, text in entries:
+            room = 24 + len(text) * paper.CHARACTER + 16
+            if x > MARGIN and x + room > self._width - MARGIN:
+                x, y = MARGIN, y + 18
+            drawn.append(f'<g transform="translate({x:.2f},{y:.2f})">{sign}{paper.words(24, 10, text)}</g>')
+            x += room
+        return drawn, y + 18 + MARGIN
+
+
+def _short(t: Nanoseconds) -> str:
+    return seconds(t).rstrip("0").rstrip(".")
+
+
+def _places(steps: Sequence[Nanoseconds]) -> int:
+    """How many decimals of a second tell ticks apart."""
+    step = min(steps, default=1_000_000_000)
+    return next((places for places in range(9) if step % 10 ** (9 - places) == 0), 9)

@@ -1,0 +1,19 @@
+"""Recordings: a run's events and messages in one ``.mcap`` file, written while it goes on and read later."""
+
+from sim.recording.about import About
+from sim.recording.background import BackgroundRecorder
+from sim.recording.beginning import Beginning
+from sim.recording.recorder import Recorder
+from sim.recording.recording import RecordedMessage, Recording, RecordingError, Topic, read
+
+__all__ = [
+    "About",
+    "BackgroundRecorder",
+    "Beginning",
+    "RecordedMessage",
+    "Recorder",
+    "Recording",
+    "RecordingError",
+    "Topic",
+    "read",
+]

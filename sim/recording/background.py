@@ -1,0 +1,97 @@
+"""A recorder on a thread of its own, for whoever must not wait for a disk."""
+
+import atexit
+import threading
+from collections.abc import Sequence
+from queue import SimpleQueue
+from typing import TypeAlias
+
+from sim.recording.recorder import APPEARING, Recorder
+from sim.trace.events import AnyEvent, MessageSent, Notice, Severity, TimePassed
+
+_ROOM = 64_000_000
+"""Bytes, as far as can be told, that may wait to be recorded."""
+_EVENT = 200
+"""Bytes that an event takes, besides what a message holds."""
+
+_Batch: TypeAlias = Sequence[AnyEvent]
+
+
+class BackgroundRecorder:
+    """Hands what it takes to ``recorder`` on another thread, and ends it.
+
+    What comes while too much waits is left out and counted, but for what tells who takes part; the recording
+    says where. One thread may call ``take`` and, later, ``close``; an interpreter that exits closes it too.
+    """
+
+    def __init__(self, recorder: Recorder, room: int = _ROOM) -> None:
+        self.path = recorder.path
+        self.count = 0
+        """How many events are recorded, or will be."""
+        self.lost = 0
+        """How many events were left out."""
+        self._recorder = recorder
+        self._room = room
+        self._gap = 0
+        self._waiting: SimpleQueue[_Batch | None] = SimpleQueue()
+        # Two counters, each with a thread of its own that sets it.
+        self._taken = 0
+        self._written = 0
+        self._closed = False
+        self._worker = threading.Thread(target=self._write_for_ever, name="recording", daemon=True)
+        self._worker.start()
+        atexit.register(self.close)
+
+    @property
+    def failure(self) -> str | None:
+        """Why nothing is recorded any more; None as long as all goes well."""
+        return self._recorder.failure
+
+    @property
+    def size(self) -> int:
+        """Bytes in the file."""
+        return self._recorder.size
+
+    @property
+    def waiting(self) -> int:
+        """Bytes, as far as can be told, that wait to be recorded."""
+        return self._taken - self._written
+
+    def take(self, events: _Batch) -> None:
+        """Record a batch soon; this never waits."""
+        if self.waiting > self._room:
+            kept = [event for event in events if isinstance(event, APPEARING)]
+            self._gap += len(events) - len(kept)
+            self.lost += len(events) - len(kept)
+            events = kept
+        elif self._gap and events:
+            events = [_gap_notice(events[0].t, self._gap), *events]
+            self._gap = 0
+        if events:
+            self.count += sum(not isinstance(event, TimePassed) for event in events)
+            self._taken += _size(events)
+            self._waiting.put(events)
+
+    def close(self) -> None:
+        """Wait until all is written, and end the recording. May be called again, and from any thread."""
+        if not self._closed:
+            self._closed = True
+            atexit.unregister(self.close)
+            self._waiting.put(None)
+        self._worker.join()
+
+    def _write_for_ever(self) -> None:
+        while (events := self._waiting.get()) is not None:
+            self._recorder.take(events)
+            self._written += _size(events)
+        self._recorder.close()
+
+
+def _size(events: _Batch) -> int:
+    """Roughly the bytes that a batch takes."""
+    held = sum(len(event.data or b"") for event in events if isinstance(event, MessageSent))
+    return _EVENT * len(events) + held
+
+
+def _gap_notice(t: int, lost: int) -> Notice:
+    return Notice(t, Severity.WARN, f"{lost:,} events before this came faster than they could be recorded")

@@ -1,0 +1,262 @@
+"""Writes a recording: chunk by chunk, so that whoever is killed leaves all but the last moment behind."""
+
+import sys
+import threading
+from collections.abc import Callable, Iterable
+from functools import cache
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from mcap.writer import CompressionType, Writer
+
+from sim.recording import batch
+from sim.recording.about import NAME, About, to_metadata
+from sim.recording.growing_file import GrowingFile
+from sim.recording.sources import Sources
+from sim.trace.events import (
+    AnyEvent,
+    ArenaShown,
+    CallbackFailed,
+    EntityAppeared,
+    ExecutorAppeared,
+    GroupAppeared,
+    MessageSent,
+    NodeAppeared,
+    ProcessAppeared,
+    RunStarted,
+    ThreadAppeared,
+    TimePassed,
+    TopicAppeared,
+    TopicId,
+)
+
+LIBRARY = "cbtui"
+EVENTS_CHANNEL = 1
+"""The number that the channel of events has, since it is the first."""
+_CHUNK = 256_000
+"""Bytes after which a chunk is written, once there is some recording."""
+_FIRST_CHUNK = 8_000
+"""Bytes after which the first chunk is written: a disk that is nearly full has room for little."""
+_AT_STAKE = 0.25
+"""How much of what is in chunks may at most be lost with one more."""
+_PERIOD = 0.5
+"""Seconds after which whatever has come is written."""
+_CASTS = 10
+"""Times that the cast is told again, while it grows."""
+_ROSBAG = ("rosbag2", {"ROS_DISTRO": "jazzy"})
+"""The metadata record by which rosbag2 tells of which ROS 2 a file is."""
+APPEARING = (
+    RunStarted,
+    ProcessAppeared,
+    ThreadAppeared,
+    ExecutorAppeared,
+    NodeAppeared,
+    GroupAppeared,
+    EntityAppeared,
+    ArenaShown,
+    TopicAppeared,
+)
+"""Events that tell who takes part."""
+
+
+class Recorder:
+    """Records events, and messages with their topics, to a new ``.mcap`` file. Thread-safe.
+
+    Rosbag2, rosbags and Foxglove read the topics, which have the metadata that rosbag2 gives them; events are
+    on a channel of their own, and ``TimePassed`` is among these only as the end of all. What a full disk or
+    the like prevents does not end the run: ``failure`` then says it, and nothing more is recorded.
+
+    Raises:
+        FileExistsError: there is such a file, and ``replace`` is not wanted.
+        OSError: the file cannot be made.
+    """
+
+    def __init__(self, path: Path, about: About, *, replace: bool = False) -> None:
+        self.path = path
+        self.failure: str | None = None
+        self._epoch = 0
+        self._batches = 0
+        self._channels: dict[TopicId, int] = {}
+        self._sent: dict[TopicId, int] = {}
+        self._cast: list[AnyEvent] = []
+        self._cast_told = 0
+        self._latest = 0
+        self._passed: TimePassed | None = None
+        self._casts_left = _CASTS
+        self._lock = threading.Lock()
+        self._closing = threading.Event()
+        self._chunked = 0
+        self._waiting = 0
+        self._file = GrowingFile(path.open("wb" if replace else "xb", buffering=0))
+        # Of a stream, the library wants these few methods only.
+        stream: Any = self._file
+        self._writer: Any = Writer(stream, chunk_size=sys.maxsize, compression=CompressionType.LZ4)
+        self._sources = Sources()
+        self._flusher = threading.Thread(target=self._flush_for_ever, name="recorder", daemon=True)
+        self._guarded(lambda: self._begin(about))
+        self._flusher.start()
+
+    @property
+    def size(self) -> int:
+        """Bytes in the file."""
+        return self._file.tell()
+
+    def take(self, events: Iterable[AnyEvent]) -> None:
+        """Record a batch: the events as they are, and messages under their topics."""
+        self._guarded(lambda: self._take(events))
+
+    def flush(self) -> None:
+        """Write what has been taken, so that it is kept whatever happens to this process."""
+        self._guarded(self._flush)
+
+    def close(self) -> None:
+        """Write what is left, and the index that lets readers find their way. May be called again."""
+        if self._closing.is_set():
+            return
+        self._closing.set()
+        self._flusher.join()
+        self._casts_left = 1
+        self.flush()
+        self._guarded(lambda: self._sources.attach(self._attach))
+        self._guarded(self._tell_cast)
+        self._guarded(self._tell_end)
+        self._guarded(self._writer.finish)
+        try:
+            self._file.close()
+        except OSError as error:
+            self.failure = self.failure or error.strerror
+
+    def _guarded(self, step: Callable[[], object]) -> None:
+        """Do something to the file, unless an earlier step failed."""
+        with self._lock:
+            if self.failure is None:
+                try:
+                    step()
+                except OSError as error:
+                    self.failure = error.strerror or str(error)
+
+    def _begin(self, about: About) -> None:
+        self._writer.start(profile="ros2", library=f"{LIBRARY} {_version()}")
+        self._writer.add_metadata(NAME, to_metadata(about))
+        self._writer.add_metadata(*_ROSBAG)
+        schema = self._writer.register_schema(batch.TYPE, "ros2msg", batch.DEFINITION.encode())
+        self._writer.register_channel(batch.TOPIC, "cdr", schema)
+        for path in about.programs:
+            self._sources.want(path)
+
+    def _take(self, events: Iterable[AnyEvent]) -> None:
+        kept: list[AnyEvent] = []
+        for event in events:
+            look = _LOOKS.get(event.__class__)
+            if look is None or look(self, event):
+                kept.append(event)
+        if kept:
+            self._add_events(kept)
+
+    def _add_events(self, events: list[AnyEvent]) -> None:
+        """Add a batch, in halves if all of it were too much to lose at once."""
+        packed = batch.pack_batch(events)
+        if len(packed) > self._chunk_size and len(events) > 1:
+            half = len(events) // 2
+            self._add_events(events[:half])
+            self._add_events(events[half:])
+        else:
+            self._latest = max(self._latest, events[-1].t)
+            self._batches += 1
+            self._add(EVENTS_CHANNEL, self._epoch + events[0].t, packed, self._batches)
+
+    def _add(self, channel: int, time: int, data: bytes, number: int) -> None:
+        if self._waiting + len(data) > self._chunk_size:
+            self._flush()
+        self._writer.add_message(channel, time, data, time, number)
+        self._waiting += len(data)
+
+    @property
+    def _chunk_size(self) -> int:
+        """Bytes after which the next chunk is written: a share of those before it, since it may not fit."""
+        return min(_CHUNK, max(_FIRST_CHUNK, int(_AT_STAKE * self._chunked)))
+
+    def _flush(self) -> None:
+        """Write what waits as a chunk; the programs' files, which may be large, follow the first events."""
+        self._writer.flush()
+        self._chunked += self._waiting
+        self._waiting = 0
+        if self._chunked:
+            self._sources.attach(self._attach)
+
+    # What is looked at; whether it goes among the events too.
+
+    def _run_started(self, event: RunStarted) -> bool:
+        self._epoch = event.epoch
+        return self._appeared(event)
+
+    def _entity_appeared(self, event: EntityAppeared) -> bool:
+        self._sources.want(event.file)
+        return self._appeared(event)
+
+    def _callback_failed(self, event: CallbackFailed) -> bool:
+        self._sources.want(event.file)
+        return True
+
+    def _appeared(self, event: AnyEvent) -> bool:
+        self._cast.append(event)
+        return True
+
+    def _topic(self, event: TopicAppeared) -> bool:
+        if event.topic not in self._channels:
+            schema = self._writer.register_schema(event.message_type, "ros2msg", event.definition.encode())
+            told = {"offered_qos_profiles": event.offered_qos, "topic_type_hash": event.type_hash}
+            metadata = {name: text for name, text in told.items() if text}
+            self._channels[event.topic] = self._writer.register_channel(event.name, "cdr", schema, metadata)
+        return False
+
+    def _message(self, event: MessageSent) -> bool:
+        if event.data is None:
+            return True
+        channel = self._channels.get(event.topic)
+        if channel is not None:
+            time = self._epoch + event.t
+            number = self._sent[event.topic] = self._sent.get(event.topic, 0) + 1
+            self._add(channel, time, event.data, number)
+        return False
+
+    def _time_passed(self, event: TimePassed) -> bool:
+        self._passed = event
+        return False
+
+    def _tell_end(self) -> None:
+        """Write down how long a run went on of which nothing more was told."""
+        if self._passed is not None and self._passed.t > self._latest:
+            self._add_events([self._passed])
+
+    def _attach(self, path: str, text: bytes) -> None:
+        self._writer.add_attachment(0, self._epoch, path, "text/x-python", text)
+
+    def _flush_for_ever(self) -> None:
+        while not self._closing.wait(_PERIOD):
+            self._guarded(self._tell_cast)
+            self.flush()
+
+    def _tell_cast(self) -> None:
+        """Write down again who takes part: little could be read without, should its chunk be lost."""
+        if len(self._cast) > self._cast_told and self._casts_left > 0:
+            self._casts_left -= 1
+            self._cast_told = len(self._cast)
+            self._writer.add_attachment(0, self._epoch, "cast", batch.CAST, batch.pack_batch(self._cast))
+
+
+_LOOKS: dict[type, Callable[[Recorder, Any], bool]] = {
+    **dict.fromkeys(APPEARING, Recorder._appeared),
+    RunStarted: Recorder._run_started,
+    EntityAppeared: Recorder._entity_appeared,
+    CallbackFailed: Recorder._callback_failed,
+    TimePassed: Recorder._time_passed,
+    TopicAppeared: Recorder._topic,
+    MessageSent: Recorder._message,
+}
+
+
+@cache
+def _version() -> str:
+    return version("cbtui")

@@ -1,0 +1,313 @@
+"""Reads a recording: whatever of it is there, and one sentence on what is not."""
+
+import stat
+import struct
+import zlib
+from collections import Counter
+from collections.abc import Iterator
+from dataclasses import dataclass
+from io import BytesIO
+from pathlib import Path
+from typing import Any, TypeAlias, TypeVar
+
+from mcap.data_stream import ReadDataStream
+from mcap.exceptions import McapError
+from mcap.opcode import Opcode
+from mcap.records import Attachment, Channel, Header, Metadata, Schema
+
+from sim.recording import batch
+from sim.recording.about import NAME, About, from_metadata
+from sim.recording.chunk import ChunkError, records_in, unpack_chunk, unpacked_most
+from sim.recording.container import Container, Record
+from sim.recording.recorder import EVENTS_CHANNEL, LIBRARY
+from sim.trace.events import AnyEvent, RunStarted
+
+ReadableT = TypeVar("ReadableT", Attachment, Channel, Header, Metadata, Schema)
+_Message: TypeAlias = tuple[int, bytes, int, int]
+"""A piece of a recording's content: number of its channel, the bytes it is in, beginning and end."""
+
+_MESSAGE = struct.Struct("<HIQQ")
+"""Channel, number, time of recording and of publication: what stands before a message's data."""
+_CHECKSUM = struct.Struct("<I")
+_LONGEST = 64_000_000
+"""Bytes of a metadata record or an attachment; longer ones are left out."""
+
+
+class RecordingError(Exception):
+    """A file of which nothing can be read as a recording; the text is a sentence that says why."""
+
+
+@dataclass(frozen=True)
+class Topic:
+    """A topic of a recording: its name, the full name of its messages' type, and how many there are."""
+
+    name: str
+    type: str
+    definition: str
+    count: int
+
+
+@dataclass(frozen=True)
+class RecordedMessage:
+    """A message of a topic, as CDR; ``published`` is nanoseconds since 1970."""
+
+    topic: str
+    type: str
+    published: int
+    data: bytes
+
+
+def read(path: Path) -> "Recording":
+    """Open a recording: its outline is read at once, the rest when it is asked for.
+
+    Raises:
+        RecordingError: it is no recording, nothing of it is left, or a later version wrote it.
+    """
+    try:
+        if stat.S_ISFIFO(path.stat().st_mode):
+            raise RecordingError(f"{path} is a pipe, and a recording is read back and forth; give a file")
+        recording = Recording(path)
+        recording.check()
+    except OSError as error:
+        raise RecordingError(f"{path} cannot be read: {error.strerror}") from None
+    return recording
+
+
+class Recording:
+    """What a file holds of a run. Made by ``read``; every method may raise OSError, as any reading may.
+
+    Not thread-safe.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.about = About()
+        self.sources: dict[str, str] = {}
+        """The text of the programs' files, by their paths."""
+        self._library = ""
+        self._cast: list[AnyEvent] = []
+        self.share = 0.0
+        """How much of the file the latest reading has come through, from 0 to 1."""
+        self._chunks: list[Record] = []
+        self._damaged: set[int] = set()
+        self._unpacked_too_much = False
+        self._channels: dict[int, Channel] = {}
+        self._schemas: dict[int, Schema] = {}
+        self._counts: Counter[int] | None = None
+        with path.open("rb") as file:
+            container = Container(file)
+            for record in container.records():
+                self._outline(container, record)
+        self._size = container.size
+        self._gaps = container.gaps
+        self._whole = container.whole
+        self._indexed = container.indexed
+
+    def _outline(self, container: Container, record: Record) -> None:
+        """Take note of a record, and of what is small at once."""
+        if record.opcode == Opcode.CHUNK:
+            self._chunks.append(record)
+        elif record.opcode in _OUTLINED and record.length <= _LONGEST:
+            content = container.read(record)
+            try:
+                self._read_outline(record.opcode, content)
+            except _UNREADABLE:
+                self._damaged.add(record.offset)
+
+    def _read_outline(self, opcode: int, content: bytes) -> None:
+        match opcode:
+            case Opcode.HEADER:
+                self._library = _parsed(Header, content).library
+            case Opcode.SCHEMA | Opcode.CHANNEL:
+                self._introduce(opcode, content)
+            case Opcode.METADATA:
+                metadata = _parsed(Metadata, content)
+                if metadata.name == NAME:
+                    about = from_metadata(metadata.metadata)
+                    if about is None:
+                        raise ValueError("no metadata of a recording")
+                    self.about = about
+            case Opcode.ATTACHMENT:
+                attachment = _parsed(Attachment, content)
+                if _CHECKSUM.unpack(content[-4:]) != (zlib.crc32(content[:-4]),):
+                    raise ValueError("its checksum is wrong")
+                if attachment.media_type == batch.CAST:
+                    self._cast = batch.unpack_batch(attachment.data)
+                else:
+                    self.sources[attachment.name] = attachment.data.decode()
+
+    def _introduce(self, opcode: int, content: bytes) -> None:
+        """Learn of a schema or channel; the first of a number counts, since a later one may be damaged."""
+        if opcode == Opcode.SCHEMA:
+            schema = _parsed(Schema, content)
+            self._schemas.setdefault(schema.id, schema)
+        else:
+            channel = _parsed(Channel, content)
+            self._channels.setdefault(channel.id, channel)
+
+    def check(self) -> None:
+        """Make sure that there is something to read here.
+
+        Raises:
+            RecordingError: there is not.
+        """
+        if self._size == 0:
+            raise RecordingError(f"{self.path} is empty")
+        if not (self._chunks or self._library):
+            raise RecordingError(f"{self.path} is no recording: there is nothing in it as MCAP files have it")
+        first = next(self.batches(), None)
+        if first is None and not (self._library.startswith(LIBRARY) or self.about.title):
+            raise RecordingError(
+                f"{self.path} is an MCAP file, but no recording of cbtui: nothing is on {batch.TOPIC}"
+            )
+
+    # contents
+
+    def batches(self) -> Iterator[list[AnyEvent]]:
+        """The events as they were recorded, batch after batch.
+
+        Where the beginning is lost, what is known of who takes part comes first.
+
+        Raises:
+            RecordingError: a later version of cbtui wrote them.
+        """
+        begun = False
+        for channel, content, start, end in self._messages():
+            if self._is_events(channel):
+                try:
+                    events = batch.unpack_batch(content[start + _MESSAGE.size : end])
+                except batch.BatchError:
+                    self._damaged.add(start)
+                    continue
+                except batch.NewerFormatError as error:
+                    raise RecordingError(
+                        f"{self.path} is in {error}, and this cbtui knows formats up to {batch.FORMAT}; "
+                        "use the version that recorded it, or a later one"
+                    ) from None
+                if not begun:
+                    begun = True
+                    yield from self._lost_beginning(events)
+                yield events
+
+    def _lost_beginning(self, events: list[AnyEvent]) -> Iterator[list[AnyEvent]]:
+        """Who had appeared before the first events that are left, unless these tell it."""
+        if events and not any(isinstance(event, RunStarted) for event in events):
+            known = [event for event in self._cast if event.t <= events[0].t and event not in events]
+            if known:
+                yield known
+
+    def messages(self) -> Iterator[RecordedMessage]:
+        """The messages of all topics, in the order of recording."""
+        for number, content, start, end in self._messages():
+            channel = self._channels.get(number)
+            if channel is not None and not self._is_events(number):
+                _, _, _, published = _MESSAGE.unpack_from(content, start)
+                data = content[start + _MESSAGE.size : end]
+                yield RecordedMessage(channel.topic, self._type_of(channel), published, data)
+
+    def topics(self) -> list[Topic]:
+        """The topics in the order of their first messages, without the channel of events."""
+        if self._counts is None:
+            for _ in self._messages():
+                pass
+        counts = self._counts or Counter()
+        return [
+            Topic(channel.topic, self._type_of(channel), self._definition_of(channel), counts[number])
+            for number, channel in sorted(self._channels.items())
+            if not self._is_events(number)
+        ]
+
+    def _type_of(self, channel: Channel) -> str:
+        schema = self._schemas.get(channel.schema_id)
+        return "" if schema is None else schema.name
+
+    def _definition_of(self, channel: Channel) -> str:
+        schema = self._schemas.get(channel.schema_id)
+        return "" if schema is None else schema.data.decode(errors="replace")
+
+    def _is_events(self, channel: int) -> bool:
+        known = self._channels.get(channel)
+        # The chunk that introduces the first channel may be lost.
+        return known.topic == batch.TOPIC if known else channel == EVENTS_CHANNEL
+
+    def _messages(self) -> Iterator[_Message]:
+        """Every message of every chunk that is not damaged; counts them when all have been seen."""
+        counts: Counter[int] = Counter()
+        room = unpacked_most(self._size)
+        with self.path.open("rb") as file:
+            container = Container(file)
+            for chunk in self._chunks:
+                self.share = chunk.offset / self._size
+                try:
+                    content = unpack_chunk(container.read(chunk))
+                    if len(content) > room:
+                        self._unpacked_too_much = True
+                        break
+                    for message in self._messages_in(content):
+                        counts[message[0]] += 1
+                        yield message
+                    room -= len(content)
+                except (ChunkError, *_UNREADABLE):
+                    self._damaged.add(chunk.offset)
+        self._counts = counts
+
+    def _messages_in(self, content: bytes) -> Iterator[_Message]:
+        for opcode, start, end in records_in(content):
+            if opcode == Opcode.MESSAGE:
+                channel, _, _, _ = _MESSAGE.unpack_from(content, start)
+                yield channel, content, start, end
+            elif opcode in (Opcode.SCHEMA, Opcode.CHANNEL):
+                self._introduce(opcode, content[start:end])
+
+    # damage
+
+    @property
+    def damage(self) -> str | None:
+        """One sentence on what cannot be read; None if nothing is missing.
+
+        It tells of the outline at once, and of the contents once they have been read to their end.
+        """
+        troubles = []
+        parts = len(self._gaps) + len(self._damaged)
+        if parts:
+            first = min([*self._gaps, *self._damaged])
+            troubles.append(f"{_parts(parts)} damaged, the first at byte {first:,}, and left out")
+        if self._unpacked_too_much:
+            troubles.append(
+                f"it unpacks to more than {unpacked_most(self._size) // 1_000_000:,} MB, which no recording "
+                "of its size does, and the rest is left out"
+            )
+        if not self._whole:
+            troubles.append(f"it breaks off at byte {self._size:,}, since it was cut or its recorder killed")
+        elif not self._indexed:
+            troubles.append("all of it is there but its index, which only other programs need")
+        return "; ".join(troubles) or None
+
+
+_OUTLINED = frozenset(
+    {Opcode.HEADER, Opcode.SCHEMA, Opcode.CHANNEL, Opcode.METADATA, Opcode.ATTACHMENT},
+)
+_UNREADABLE = (
+    *(struct.error, OverflowError, ValueError, McapError, MemoryError),
+    *(batch.BatchError, batch.NewerFormatError),
+)
+"""What the mcap library raises where a record's content is not what it should be."""
+
+
+def _parsed(kind: type[ReadableT], content: bytes) -> ReadableT:
+    """A record by the mcap library, which reads past an end without noticing.
+
+    Raises:
+        ValueError, struct.error, McapError: it is damaged.
+    """
+    stream = ReadDataStream(BytesIO(content))
+    # The records' common base has no such method.
+    reader: Any = kind
+    record: ReadableT = reader.read(stream)
+    if stream.count > len(content):
+        raise ValueError("it is too short")
+    return record
+
+
+def _parts(count: int) -> str:
+    return "1 part of it is" if count == 1 else f"{count} parts of it are"

@@ -1,0 +1,1 @@
+"""The commands and verbs of ``ros2``, a module each."""

@@ -1,0 +1,201 @@
+"""``ros2 action``: which actions there are, and sending goals."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections.abc import Callable
+from typing import Any
+
+from sim.ros.action import ActionClient
+from sim.ros.action.graph import (
+    get_action_client_names_and_types_by_node,
+    get_action_names_and_types,
+    get_action_server_names_and_types_by_node,
+)
+from sim.ros.interfaces.rosidl_runtime_py import message_to_yaml
+from sim.ros.node import Node
+from sim.ros.node_graph import NamesAndTypes
+from sim.shell.graph import known_topics
+from sim.shell.messages import NO_DICTIONARY, Outgoing, action_class, given_values, prototype_word
+from sim.shell.parser import Parser, Surroundings
+from sim.shell.session import Failed, Interrupted, Session
+from sim.shell.verbs.interface import type_names
+from sim.shell.verbs.verb import Command, Verb, add_graph_options
+
+_FEEDBACK, _FEEDBACK_TYPE = "/_action/feedback", "_FeedbackMessage"
+_STATUS_WORDS = {
+    0: "UNKNOWN",
+    1: "ACCEPTED",
+    2: "EXECUTING",
+    3: "CANCELING",
+    4: "SUCCEEDED",
+    5: "CANCELED",
+    6: "ABORTED",
+}
+
+
+def _known_actions(surroundings: Surroundings) -> dict[str, list[str]]:
+    return {
+        name.removesuffix(_FEEDBACK): [each.removesuffix(_FEEDBACK_TYPE) for each in types]
+        for name, types in known_topics(surroundings).items()
+        if name.endswith(_FEEDBACK)
+    }
+
+
+def _types(surroundings: Surroundings) -> list[str]:
+    return _known_actions(surroundings).get(surroundings.given[0]) or type_names("action")
+
+
+def _goal_prototype(surroundings: Surroundings) -> list[str]:
+    return [prototype_word(action_class(surroundings.given[1]).Goal)]
+
+
+# list, type, info
+
+
+def _add_list(parser: Parser) -> None:
+    add_graph_options(parser)
+    parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the action type")
+    parser.add_argument(
+        "-c", "--count-actions", action="store_true", help="Only display the number of actions discovered"
+    )
+
+
+def _list(session: Session, arguments: Namespace) -> None:
+    actions = get_action_names_and_types(session.node)
+    if arguments.count_actions:
+        session.say(str(len(actions)))
+        return
+    for name, types in actions:
+        session.say(f"{name} [{', '.join(types)}]" if arguments.show_types else name)
+
+
+def _add_action(parser: Parser) -> None:
+    add_graph_options(parser)
+    parser.argument(
+        "action_name",
+        help="Name of the ROS action to get info (e.g. '/fibonacci')",
+        completer=_known_actions,
+    )
+
+
+def _type(session: Session, arguments: Namespace) -> None:
+    types = dict(get_action_names_and_types(session.node)).get(_full(session, arguments.action_name))
+    if types is None:
+        raise Failed(f"Unknown action '{arguments.action_name}'")
+    for each in types:
+        session.say(each)
+
+
+def _full(session: Session, name: str) -> str:
+    return session.node.resolve_topic_name(name)
+
+
+def _add_info(parser: Parser) -> None:
+    _add_action(parser)
+    parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the action type")
+    parser.add_argument(
+        "-c",
+        "--count",
+        action="store_true",
+        help="Only display the number of action clients and action servers",
+    )
+
+
+def _info(session: Session, arguments: Namespace) -> None:
+    session.say(f"Action: {arguments.action_name}")
+    full = _full(session, arguments.action_name)
+    for title, ask in (
+        ("Action clients", get_action_client_names_and_types_by_node),
+        ("Action servers", get_action_server_names_and_types_by_node),
+    ):
+        found = _nodes_with(session.node, full, ask)
+        session.say(f"{title}: {len(found)}")
+        for node, types in [] if arguments.count else found:
+            shown = f" [{', '.join(types)}]" if arguments.show_types else ""
+            session.say(f"    {node}{shown}")
+
+
+def _nodes_with(node: Node, action: str, ask: Callable[[Node, str, str], NamesAndTypes]) -> NamesAndTypes:
+    """The nodes that have a client or server of the action, with its types."""
+    found = []
+    for name, namespace in node.get_node_names_and_namespaces():
+        types = dict(ask(node, name, namespace)).get(action)
+        if types is not None:
+            found.append((f"{namespace.rstrip('/')}/{name}", types))
+    return found
+
+
+# send_goal
+
+
+def _add_send_goal(parser: Parser) -> None:
+    parser.argument(
+        "action_name", help="Name of the ROS action (e.g. '/fibonacci')", completer=_known_actions
+    )
+    parser.argument(
+        "action_type",
+        help="Type of the ROS action (e.g. 'example_interfaces/action/Fibonacci')",
+        completer=_types,
+    )
+    parser.argument(
+        "goal",
+        help="Goal request values in YAML format (e.g. '{order: 10}')",
+        completer=_goal_prototype,
+    )
+    parser.add_argument("-f", "--feedback", action="store_true", help="Echo feedback messages for the goal")
+
+
+def _send_goal(session: Session, arguments: Namespace) -> None:
+    action_type = action_class(arguments.action_type)
+    values = given_values(arguments.goal)
+    if not isinstance(values, dict):
+        raise Failed(NO_DICTIONARY)
+    outgoing = Outgoing(action_type.Goal, values)
+    client = ActionClient(session.node, action_type, arguments.action_name)
+    session.say("Waiting for an action server to become available...")
+    session.wait_until(client.server_is_ready)
+    outgoing.stamp(session.node.get_clock().now().to_msg())
+    session.say(f"Sending goal:\n     {message_to_yaml(outgoing.message)}")
+
+    def show_feedback(feedback: Any) -> None:
+        session.say(f"Feedback:\n    {message_to_yaml(feedback.feedback)}")
+
+    sent = client.send_goal_async(outgoing.message, show_feedback if arguments.feedback else None)
+    session.spin(sent)
+    goal_handle: Any = sent.result()
+    if not goal_handle.accepted:
+        session.say("Goal was rejected.")
+        return
+    session.say(f"Goal accepted with ID: {bytes(goal_handle.goal_id.uuid).hex()}\n")
+    _await_result(session, goal_handle)
+
+
+def _await_result(session: Session, goal_handle: Any) -> None:
+    asked = goal_handle.get_result_async()
+    try:
+        session.spin(asked)
+    except Interrupted:
+        _cancel(session, goal_handle)
+        raise
+    response = asked.result()
+    session.say(f"Result:\n    {message_to_yaml(response.result)}")
+    session.say(f"Goal finished with status: {_STATUS_WORDS.get(response.status, 'UNKNOWN')}")
+
+
+def _cancel(session: Session, goal_handle: Any) -> None:
+    """Ask for the end of the goal, as ros2 does after Ctrl-C; the answer is not waited for."""
+    session.say("Canceling goal...")
+    goal_handle.cancel_goal_async()
+
+
+ACTION = Command(
+    "action",
+    "Various action related sub-commands",
+    (
+        Verb("info", "Print information about an action", _add_info, _info),
+        Verb("list", "Output a list of action names", _add_list, _list),
+        Verb("send_goal", "Send an action goal", _add_send_goal, _send_goal),
+        Verb("type", "Print a action's type", _add_action, _type),
+    ),
+)

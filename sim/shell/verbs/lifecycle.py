@@ -1,0 +1,156 @@
+"""``ros2 lifecycle``: the states of managed nodes, and what moves them from one to another."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from typing import Any
+
+from sim.ros.interfaces import service
+from sim.shell.graph import absolute, is_hidden, known_nodes
+from sim.shell.parser import Parser, Surroundings
+from sim.shell.session import Failed, Session
+from sim.shell.verbs.verb import Command, Verb, add_graph_options
+
+_STATE = "lifecycle_msgs/srv/GetState"
+_NOT_FOUND = "Node not found"
+
+
+def _managed(session: Session) -> list[str]:
+    """The full names of all nodes that have a lifecycle."""
+    return sorted(
+        name.removesuffix("/get_state")
+        for name, types in session.node.get_service_names_and_types()
+        if name.endswith("/get_state") and _STATE in types
+    )
+
+
+def _add_nodes(parser: Parser) -> None:
+    add_graph_options(parser)
+    parser.add_argument("-a", "--all", action="store_true", help="Display all nodes even hidden ones")
+    parser.add_argument("-c", "--count-nodes", action="store_true", help="Only display the number of nodes")
+
+
+def _nodes(session: Session, arguments: Namespace) -> None:
+    names = [name for name in _managed(session) if arguments.all or not is_hidden(name)]
+    if arguments.count_nodes:
+        session.say(str(len(names)))
+        return
+    for name in names:
+        session.say(name)
+
+
+def _add_hidden(parser: Parser) -> None:
+    add_graph_options(parser)
+    parser.add_argument("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
+
+
+def _add_get(parser: Parser) -> None:
+    _add_hidden(parser)
+    parser.argument("node_name", nargs="?", help="Name of the ROS node to query", completer=known_nodes)
+    parser.add_argument("--transitions", action="store_true", help="Output possible transitions")
+
+
+def _get(session: Session, arguments: Namespace) -> None:
+    if arguments.node_name is not None:
+        node = _chosen(session, arguments)
+        session.say(_described(_state(session, node)))
+        if arguments.transitions:
+            _say_transitions(session, node, "get_available_transitions")
+        return
+    for name in _managed(session):
+        if arguments.include_hidden_nodes or not is_hidden(name):
+            session.say(f"{name}: {_described(_state(session, name))}")
+
+
+def _add_list(parser: Parser) -> None:
+    _add_hidden(parser)
+    parser.argument("node_name", help="Name of the ROS node to query", completer=known_nodes)
+    parser.add_argument(
+        "-a", "--all", action="store_true", help="Display all existing transitions, not only available ones"
+    )
+
+
+def _list(session: Session, arguments: Namespace) -> None:
+    kind = "get_transition_graph" if arguments.all else "get_available_transitions"
+    _say_transitions(session, _chosen(session, arguments), kind)
+
+
+def _say_transitions(session: Session, node: str, kind: str) -> None:
+    found = _call(session, node, kind, service("lifecycle_msgs", "GetAvailableTransitions").Request())
+    for each in found.available_transitions:
+        session.say(
+            f"- {each.transition.label} [{each.transition.id}]\n"
+            f"\tStart: {each.start_state.label}\n\tGoal: {each.goal_state.label}"
+        )
+
+
+def _transitions(_surroundings: Surroundings) -> list[str]:
+    return ["activate", "cleanup", "configure", "deactivate", "shutdown"]
+
+
+def _add_set(parser: Parser) -> None:
+    _add_hidden(parser)
+    parser.argument("node_name", help="Name of the ROS node", completer=known_nodes)
+    parser.argument("transition", help="The lifecycle transition", completer=_transitions)
+
+
+def _set(session: Session, arguments: Namespace) -> None:
+    node = _chosen(session, arguments)
+    request_type = service("lifecycle_msgs", "GetAvailableTransitions").Request
+    found = _call(session, node, "get_available_transitions", request_type())
+    known = {each.transition.label: each.transition for each in found.available_transitions}
+    by_number = {str(each.id): each for each in known.values()}
+    chosen = known.get(arguments.transition) or by_number.get(arguments.transition)
+    if chosen is None:
+        lines = "".join(f"\n- {each.label} [{each.id}]" for each in known.values())
+        raise Failed(f"Unknown transition requested, available ones are:{lines}")
+    answer = _call(
+        session, node, "change_state", service("lifecycle_msgs", "ChangeState").Request(transition=chosen)
+    )
+    if not answer.success:
+        raise Failed("Transitioning failed")
+    session.say("Transitioning successful")
+
+
+def _chosen(session: Session, arguments: Namespace) -> str:
+    name = absolute(arguments.node_name)
+    if name not in _managed(session) or (is_hidden(name) and not arguments.include_hidden_nodes):
+        raise Failed(_NOT_FOUND)
+    return name
+
+
+def _state(session: Session, node: str) -> Any:
+    return _call(session, node, "get_state", service("lifecycle_msgs", "GetState").Request()).current_state
+
+
+def _described(state: Any) -> str:
+    return f"{state.label} [{state.id}]"
+
+
+_TYPES = {
+    "change_state": "ChangeState",
+    "get_available_transitions": "GetAvailableTransitions",
+    "get_state": "GetState",
+    "get_transition_graph": "GetAvailableTransitions",
+}
+
+
+def _call(session: Session, node: str, name: str, request: Any) -> Any:
+    client = session.node.create_client(service("lifecycle_msgs", _TYPES[name]), f"{node}/{name}")
+    future = client.call_async(request)
+    session.spin(future)
+    if (error := future.exception()) is not None:
+        raise Failed(f"Exception while calling service of node '{node}': {error}")
+    return future.result()
+
+
+LIFECYCLE = Command(
+    "lifecycle",
+    "Various lifecycle related sub-commands",
+    (
+        Verb("get", "Get lifecycle state for one or more nodes", _add_get, _get),
+        Verb("list", "Output a list of available transitions", _add_list, _list),
+        Verb("nodes", "Output a list of nodes with lifecycle", _add_nodes, _nodes),
+        Verb("set", "Trigger lifecycle state transition", _add_set, _set),
+    ),
+)

@@ -1,0 +1,82 @@
+"""``ros2 node``: which nodes there are, and what each has."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from collections import Counter
+
+from sim.ros.action.graph import (
+    get_action_client_names_and_types_by_node,
+    get_action_server_names_and_types_by_node,
+)
+from sim.shell.graph import absolute, is_hidden, known_nodes, without_hidden
+from sim.shell.parser import Parser
+from sim.shell.session import Failed, Session
+from sim.shell.verbs.verb import Command, Verb, add_graph_options
+
+
+def _add_list(parser: Parser) -> None:
+    add_graph_options(parser)
+    parser.add_argument("-a", "--all", action="store_true", help="Display all nodes even hidden ones")
+    parser.add_argument(
+        "-c", "--count-nodes", action="store_true", help="Only display the number of nodes discovered"
+    )
+
+
+def _list(session: Session, arguments: Namespace) -> None:
+    every = sorted(session.node.get_fully_qualified_node_names())
+    names = [name for name in every if arguments.all or not is_hidden(name)]
+    if arguments.count_nodes:
+        session.say(str(len(names)))
+        return
+    if any(count > 1 for count in Counter(names).values()):
+        session.complain(
+            "WARNING: Be aware that there are nodes in the graph that share an exact name, "
+            "which can have unintended side effects."
+        )
+    for name in names:
+        session.say(name)
+
+
+def _add_info(parser: Parser) -> None:
+    add_graph_options(parser)
+    parser.argument("node_name", help="Node name to request information", completer=known_nodes)
+    parser.add_argument(
+        "--include-hidden", action="store_true", help="Display hidden topics, services, and actions as well"
+    )
+
+
+def _info(session: Session, arguments: Namespace) -> None:
+    node, full = session.node, absolute(arguments.node_name)
+    count = node.get_fully_qualified_node_names().count(full)
+    if count == 0:
+        raise Failed(f"Unable to find node '{arguments.node_name}'")
+    if count > 1:
+        session.say(
+            f'There are {count} nodes in the graph with the exact name "{arguments.node_name}". '
+            "You are seeing information about only one of them."
+        )
+    namespace, _, name = full.rpartition("/")
+    own = (name, namespace or "/")
+    session.say(arguments.node_name)
+    hidden = arguments.include_hidden
+    for title, found in (
+        ("Subscribers", without_hidden(node.get_subscriber_names_and_types_by_node(*own), hidden)),
+        ("Publishers", without_hidden(node.get_publisher_names_and_types_by_node(*own), hidden)),
+        ("Service Servers", without_hidden(node.get_service_names_and_types_by_node(*own), hidden)),
+        ("Service Clients", without_hidden(node.get_client_names_and_types_by_node(*own), hidden)),
+        ("Action Servers", get_action_server_names_and_types_by_node(node, *own)),
+        ("Action Clients", get_action_client_names_and_types_by_node(node, *own)),
+    ):
+        session.say(f"  {title}:")
+        session.say("\n".join(f"    {each}: {', '.join(types)}" for each, types in found))
+
+
+NODE = Command(
+    "node",
+    "Various node related sub-commands",
+    (
+        Verb("info", "Output information about a node", _add_info, _info),
+        Verb("list", "Output a list of available nodes", _add_list, _list),
+    ),
+)

@@ -1,0 +1,201 @@
+"""``ros2 service``: calls services, and tells which there are."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+from typing import Any
+
+from sim import plain_yaml
+from sim.ros.client import Client
+from sim.ros.interfaces.rosidl_runtime_py import message_to_csv, message_to_ordereddict
+from sim.ros.qos import qos_profile_services_default
+from sim.shell.graph import known_services, type_of_given, without_hidden
+from sim.shell.messages import Outgoing, given_values, service_class
+from sim.shell.parser import Parser, Surroundings, positive_float
+from sim.shell.session import Failed, Session
+from sim.shell.verbs.interface import known_service_types, service_prototype
+from sim.shell.verbs.verb import Command, Verb, add_graph_options
+
+_EVENTS = "/_service_event"
+_EVENT_NAMES = ("REQUEST_SENT", "REQUEST_RECEIVED", "RESPONSE_SENT", "RESPONSE_RECEIVED")
+"""The kinds of service_msgs/msg/ServiceEventInfo by their numbers."""
+
+
+def _types(surroundings: Surroundings) -> list[str]:
+    return list(type_of_given(known_services)(surroundings)) or known_service_types(surroundings)
+
+
+def _add_call(parser: Parser) -> None:
+    parser.argument(
+        "service_name",
+        help="Name of the ROS service to call to (e.g. '/add_two_ints')",
+        completer=known_services,
+    )
+    parser.argument(
+        "service_type", help="Type of the ROS service (e.g. 'std_srvs/srv/Empty')", completer=_types
+    )
+    parser.argument(
+        "values",
+        nargs="?",
+        default="{}",
+        help='Values to fill the service request with in YAML format (e.g. "{a: 1, b: 2}"), otherwise the '
+        "service request will be published with default values",
+        completer=service_prototype,
+    )
+    parser.add_argument(
+        "-r", "--rate", metavar="N", type=positive_float, help="Repeat the call at a specific rate in Hz"
+    )
+
+
+def _call(session: Session, arguments: Namespace) -> None:
+    srv_type = service_class(arguments.service_type)
+    values = given_values(arguments.values)
+    client = session.node.create_client(srv_type, arguments.service_name)
+    outgoing = Outgoing(srv_type.Request, values)
+    if not client.service_is_ready():
+        session.say("waiting for service to become available...")
+        session.wait_until(client.service_is_ready)
+    clock = session.host.clock
+    while True:
+        began = clock.now()
+        outgoing.stamp(session.node.get_clock().now().to_msg())
+        _request(session, client, outgoing.message)
+        if arguments.rate is None:
+            return
+        session.sleep(1.0 / arguments.rate - (clock.now() - began) / 1e9)
+
+
+def _request(session: Session, client: Client, request: Any) -> None:
+    session.say(f"requester: making request: {request!r}\n")
+    future = client.call_async(request)
+    session.spin(future)
+    session.say(f"response:\n{future.result()!r}\n")
+
+
+def _add_service(parser: Parser) -> None:
+    parser.argument(
+        "service_name", help="Name of the ROS service (e.g. '/add_two_ints')", completer=known_services
+    )
+    add_graph_options(parser)
+
+
+def _add_hidden(parser: Parser) -> None:
+    parser.add_argument(
+        "--include-hidden-services", action="store_true", help="Consider hidden services as well"
+    )
+
+
+def _add_count(parser: Parser) -> None:
+    parser.add_argument(
+        "-c", "--count-services", action="store_true", help="Only display the number of services discovered"
+    )
+
+
+def _add_list(parser: Parser) -> None:
+    add_graph_options(parser)
+    parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the service type")
+    _add_count(parser)
+    _add_hidden(parser)
+
+
+def _list(session: Session, arguments: Namespace) -> None:
+    services = without_hidden(session.node.get_service_names_and_types(), arguments.include_hidden_services)
+    if arguments.count_services:
+        session.say(str(len(services)))
+        return
+    for name, types in services:
+        session.say(f"{name} [{', '.join(types)}]" if arguments.show_types else name)
+
+
+def _types_of(session: Session, service: str) -> list[str]:
+    full = session.node.resolve_service_name(service)
+    session.want(full)
+    types = dict(session.node.get_service_names_and_types()).get(full)
+    if types is None:
+        raise Failed(f"Unknown service '{service}'")
+    return types
+
+
+def _type(session: Session, arguments: Namespace) -> None:
+    for each in _types_of(session, arguments.service_name):
+        session.say(each)
+
+
+def _info(session: Session, arguments: Namespace) -> None:
+    types = _types_of(session, arguments.service_name)
+    session.say(f"Type: {types[0] if len(types) == 1 else types}")
+    session.say(f"Clients count: {session.node.count_clients(arguments.service_name)}")
+    session.say(f"Services count: {session.node.count_services(arguments.service_name)}")
+
+
+def _add_find(parser: Parser) -> None:
+    parser.argument(
+        "service_type",
+        help="Name of the ROS service type to filter for (e.g. 'rcl_interfaces/srv/ListParameters')",
+        completer=known_service_types,
+    )
+    add_graph_options(parser)
+    _add_count(parser)
+    _add_hidden(parser)
+
+
+def _find(session: Session, arguments: Namespace) -> None:
+    services = without_hidden(session.node.get_service_names_and_types(), arguments.include_hidden_services)
+    found = [name for name, types in services if arguments.service_type in types]
+    if arguments.count_services:
+        session.say(str(len(found)))
+        return
+    for name in found:
+        session.say(name)
+
+
+def _add_echo(parser: Parser) -> None:
+    _add_service(parser)
+    parser.argument(
+        "service_type",
+        nargs="?",
+        help="Type of the ROS service (e.g. 'example_interfaces/srv/AddTwoInts')",
+        completer=_types,
+    )
+    parser.add_argument("--csv", action="store_true", help="Output all recursive fields separated by commas")
+    parser.add_argument("--flow-style", action="store_true", help="Print collections in the block style")
+
+
+def _echo(session: Session, arguments: Namespace) -> None:
+    """Print what clients and services tell of their calls, if they were configured to."""
+    topic = f"{session.node.resolve_service_name(arguments.service_name)}{_EVENTS}"
+    if arguments.service_type is None:
+        (kind, *_) = _types_of(session, arguments.service_name)
+    else:
+        kind = arguments.service_type
+    event_type = service_class(kind).Event
+
+    def show(event: Any) -> None:
+        if arguments.csv:
+            session.say(message_to_csv(event))
+        else:
+            values = message_to_ordereddict(event)
+            values["info"]["event_type"] = _EVENT_NAMES[event.info.event_type]
+            session.say(f"{plain_yaml.dump(values, flow_style=arguments.flow_style)}---")
+
+    session.node.create_subscription(event_type, topic, show, qos_profile_services_default)
+    if not session.node.get_publishers_info_by_topic(topic):
+        session.complain(
+            f"WARNING: nobody tells of calls of '{arguments.service_name}' yet: "
+            "its service or client has to call configure_introspection"
+        )
+    session.spin()
+
+
+SERVICE = Command(
+    "service",
+    "Various service related sub-commands",
+    (
+        Verb("call", "Call a service", _add_call, _call),
+        Verb("echo", "Echo a service", _add_echo, _echo),
+        Verb("find", "Output a list of available services of a given type", _add_find, _find),
+        Verb("info", "Print information about a service", _add_service, _info),
+        Verb("list", "Output a list of available services", _add_list, _list),
+        Verb("type", "Output a service's type", _add_service, _type),
+    ),
+)

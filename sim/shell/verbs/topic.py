@@ -1,0 +1,135 @@
+"""``ros2 topic``: its verbs, and those that only look at the graph."""
+
+from __future__ import annotations
+
+from argparse import Namespace
+
+from sim.ros.node_graph import NamesAndTypes
+from sim.shell.graph import full_topic_name, known_topics, topic_types, without_hidden
+from sim.shell.parser import Parser
+from sim.shell.session import Failed, Session
+from sim.shell.verbs.interface import known_messages
+from sim.shell.verbs.topic_echo import ECHO
+from sim.shell.verbs.topic_pub import PUB
+from sim.shell.verbs.topic_statistics import BW, DELAY, HZ
+from sim.shell.verbs.verb import Command, Verb, add_graph_options
+
+_UNKNOWN = "Unknown topic '{}'"
+
+
+def _add_topic(parser: Parser) -> None:
+    parser.argument("topic_name", help="Name of the ROS topic (e.g. '/chatter')", completer=known_topics)
+    add_graph_options(parser)
+
+
+def _add_hidden(parser: Parser) -> None:
+    parser.add_argument("--include-hidden-topics", action="store_true", help="Consider hidden topics as well")
+
+
+def _add_list(parser: Parser) -> None:
+    add_graph_options(parser)
+    parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the topic type")
+    parser.add_argument(
+        "-c", "--count-topics", action="store_true", help="Only display the number of topics discovered"
+    )
+    _add_hidden(parser)
+    parser.add_argument("-v", "--verbose", action="store_true", help="List full details about each topic")
+
+
+def _list(session: Session, arguments: Namespace) -> None:
+    topics = without_hidden(session.node.get_topic_names_and_types(), arguments.include_hidden_topics)
+    if arguments.count_topics:
+        session.say(str(len(topics)))
+    elif arguments.verbose and topics:
+        publishers = {name: session.node.count_publishers(name) for name, _ in topics}
+        subscribers = {name: session.node.count_subscribers(name) for name, _ in topics}
+        session.say(_details("Published", "publisher", topics, publishers))
+        session.say(_details("Subscribed", "subscriber", topics, subscribers))
+    else:
+        for name, types in topics:
+            session.say(f"{name} [{', '.join(types)}]" if arguments.show_types else name)
+
+
+def _details(what: str, who: str, topics: NamesAndTypes, counts: dict[str, int]) -> str:
+    lines = [
+        f" * {name} [{', '.join(types)}] {counts[name]} {who}{'s' if counts[name] > 1 else ''}\n"
+        for name, types in topics
+        if counts[name]
+    ]
+    return f"{what} topics:\n{''.join(lines)}"
+
+
+def _add_info(parser: Parser) -> None:
+    _add_topic(parser)
+    parser.add_argument(
+        "-v",
+        "--verbose",
+        action="store_true",
+        help="Prints detailed information like the node name, node namespace, topic type, topic type hash, "
+        "GUID and QoS Profile of the publishers and subscribers to this topic",
+    )
+
+
+def _info(session: Session, arguments: Namespace) -> None:
+    node, topic = session.node, arguments.topic_name
+    full, types = full_topic_name(session, topic), topic_types(session, topic)
+    if types is None:
+        raise Failed(_UNKNOWN.format(topic))
+    end = "\n" if arguments.verbose else ""
+    session.say(f"Type: {types[0] if len(types) == 1 else types}{end}")
+    session.say(f"Publisher count: {node.count_publishers(full)}{end}")
+    if arguments.verbose:
+        for publisher in node.get_publishers_info_by_topic(full):
+            session.say(f"{publisher}{end}")
+    session.say(f"Subscription count: {node.count_subscribers(full)}{end}")
+    if arguments.verbose:
+        for subscription in node.get_subscriptions_info_by_topic(full):
+            session.say(f"{subscription}{end}")
+
+
+def _type(session: Session, arguments: Namespace) -> None:
+    types = topic_types(session, arguments.topic_name)
+    if types is None:
+        raise Failed(_UNKNOWN.format(arguments.topic_name))
+    for each in types:
+        session.say(each)
+
+
+def _add_find(parser: Parser) -> None:
+    parser.argument(
+        "topic_type",
+        help="Name of the ROS topic type to filter for (e.g. 'std_msgs/msg/String')",
+        completer=known_messages,
+    )
+    add_graph_options(parser)
+    parser.add_argument(
+        "-c", "--count-topics", action="store_true", help="Only display the number of topics discovered"
+    )
+    _add_hidden(parser)
+
+
+def _find(session: Session, arguments: Namespace) -> None:
+    topics = without_hidden(session.node.get_topic_names_and_types(), arguments.include_hidden_topics)
+    found = [name for name, types in topics if arguments.topic_type in types]
+    if arguments.count_topics:
+        session.say(str(len(found)))
+    else:
+        for name in found:
+            session.say(name)
+
+
+TOPIC = Command(
+    "topic",
+    "Various topic related sub-commands",
+    (
+        BW,
+        DELAY,
+        ECHO,
+        Verb("find", "Output a list of available topics of a given type", _add_find, _find),
+        HZ,
+        Verb("info", "Print information about a topic", _add_info, _info),
+        Verb("list", "Output a list of available topics", _add_list, _list),
+        PUB,
+        Verb("type", "Print a topic's type", _add_topic, _type),
+    ),
+)

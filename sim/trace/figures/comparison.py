@@ -1,0 +1,191 @@
+"""Two runs side by side: the figures of the same window of both, callback by callback."""
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
+from typing import TypeAlias
+
+from sim.trace.figures.concurrency import threads_in_slices
+from sim.trace.figures.statistics import CallbackStatistics, statistics_in_slices
+from sim.trace.figures.summary import RobotFigures, robot_in_slices, trail_in_parts
+from sim.trace.model import Entity, Nanoseconds, Wait, Window
+from sim.trace.slices import PIECE, Slices, at_once, listed
+from sim.trace.timeline import Timeline
+from sim.trace.words import why_waiting
+
+Key: TypeAlias = tuple[str, str, str, str, int]
+"""What a callback is in any run: node, kind, callback, topic or service, and its number among equals."""
+
+
+@dataclass(frozen=True, slots=True)
+class WaitFigures:
+    """How a ready callback was kept waiting in a window; ``why`` is what kept it most of that time."""
+
+    longest: Nanoseconds
+    total: Nanoseconds
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """What one of the runs says of a callback; ``waits`` None: it ran as soon as it was ready."""
+
+    figures: CallbackStatistics
+    waits: WaitFigures | None
+
+    @property
+    def longest_wait(self) -> Nanoseconds:
+        """The longest that a call had waited, or that the callback waited in the window without one."""
+        of_calls = self.figures.wait.most if self.figures.wait else 0
+        return max(of_calls, self.waits.longest if self.waits else 0)
+
+    @property
+    def idle(self) -> bool:
+        """Whether nothing became of the callback in the window."""
+        return not (self.figures.calls or self.figures.drops or self.waits)
+
+
+@dataclass(frozen=True, slots=True)
+class Pair:
+    """A callback in both runs; None where a run has no such callback."""
+
+    name: str
+    first: Side | None
+    second: Side | None
+
+
+@dataclass(frozen=True, slots=True)
+class RunFigures:
+    """A run in the window: threads that ran callbacks, the most at one moment, and what the robot did.
+
+    ``end`` is how far the whole run is known; ``collisions`` are the times that the robot touched something,
+    one that had begun before the window included.
+    """
+
+    end: Nanoseconds
+    threads_used: int
+    threads_at_once: int
+    robot: RobotFigures | None
+    collisions: int
+
+
+@dataclass(frozen=True, slots=True)
+class Comparison:
+    """The same window of two runs.
+
+    Callbacks are in the order of appearance, the first run's first; what neither run used in the window is
+    left out.
+    """
+
+    window: Window
+    first: RunFigures
+    second: RunFigures
+    callbacks: tuple[Pair, ...]
+
+
+def compare(first: Timeline, second: Timeline, window: Window) -> Comparison:
+    """Compare a window of two runs; callbacks match by node, kind, function and topic or service.
+
+    Those that have no such partner match without their node, if that leaves no doubt. Takes time in
+    proportion to the calls and waits in the window.
+    """
+    return at_once(compare_in_slices(first, second, window))
+
+
+def compare_in_slices(first: Timeline, second: Timeline, window: Window) -> Slices[Comparison]:
+    """The same in small pieces. The runs may go on in between: what comes after the window plays no part."""
+    of_first = yield from _sides(first, window)
+    of_second = yield from _sides(second, window)
+    partners = _partners(of_first, of_second)
+    pairs: list[tuple[Key, Side | None, Side | None]] = [
+        (key, side, of_second.get(partners.get(key, key))) for key, side in of_first.items()
+    ]
+    taken = {*of_first, *partners.values()}
+    pairs += [(key, None, side) for key, side in of_second.items() if key not in taken]
+    used = [pair for pair in pairs if any(side and not side.idle for side in pair[1:])]
+    short = Counter(_short_name(key) for key, *_ in used)
+    return Comparison(
+        window,
+        (yield from _run_figures(first, window)),
+        (yield from _run_figures(second, window)),
+        tuple(
+            Pair(_short_name(key) if short[_short_name(key)] == 1 else _long_name(key), one, other)
+            for key, one, other in used
+        ),
+    )
+
+
+def _partners(first: Iterable[Key], second: Iterable[Key]) -> dict[Key, Key]:
+    """Which callbacks of the first run are the second's with another node's name."""
+    alone, others = set(first) - set(second), set(second) - set(first)
+    nodeless = Counter(key[1:] for key in alone), Counter(key[1:] for key in others)
+    found = {key[1:]: key for key in others if nodeless[1][key[1:]] == 1}
+    return {key: found[key[1:]] for key in alone if nodeless[0][key[1:]] == 1 and key[1:] in found}
+
+
+def _short_name(key: Key) -> str:
+    _, kind, callback, name, _ = key
+    return callback or name or kind
+
+
+def _long_name(key: Key) -> str:
+    node, _, _, name, number = key
+    place = " ".join(part for part in (node, name) if part)
+    return f"{_short_name(key)} ({place}{f' #{number}' if number > 1 else ''})"
+
+
+def _sides(timeline: Timeline, window: Window) -> Slices[dict[Key, Side]]:
+    equals: Counter[tuple[str, str, str, str]] = Counter()
+    sides: dict[Key, Side] = {}
+    for entity in tuple(timeline.entities.values()):
+        alike = _description(entity, timeline)
+        equals[alike] += 1
+        waits = yield from _wait_figures(timeline.waits_of(entity.id, window), timeline, window)
+        figures = yield from statistics_in_slices(timeline, entity.id, window)
+        sides[*alike, equals[alike]] = Side(figures, waits)
+    return sides
+
+
+def _description(entity: Entity, timeline: Timeline) -> tuple[str, str, str, str]:
+    return timeline.nodes.get(entity.node, ""), entity.kind.value, entity.callback, entity.name
+
+
+def _wait_figures(waits: Sequence[Wait], timeline: Timeline, window: Window) -> Slices[WaitFigures | None]:
+    """Lengths are of what lies in the window; the waits of one series share the time since when they are."""
+    shares: defaultdict[str, int] = defaultdict(int)
+    lengths = yield from listed(
+        (wait.since, why_waiting(wait, timeline), _part(wait, timeline, window)) for wait in waits
+    )
+    longest = length = latest = 0
+    for number, (since, why, part) in enumerate(lengths):
+        shares[why] += part
+        length = length + part if since == latest else part
+        latest = since
+        longest = max(longest, length)
+        if number % PIECE == 0:
+            yield
+    if not longest:
+        return None
+    return WaitFigures(longest, sum(shares.values()), max(shares, key=shares.__getitem__))
+
+
+def _part(wait: Wait, timeline: Timeline, window: Window) -> Nanoseconds:
+    """How long a wait lasted in the window."""
+    end = timeline.end if wait.end is None else wait.end
+    return max(0, min(end, window.end) - max(wait.start, window.start))
+
+
+def _run_figures(timeline: Timeline, window: Window) -> Slices[RunFigures]:
+    used = 0
+    for thread in tuple(timeline.threads):
+        used += bool(timeline.spans_on(thread, window))
+        yield
+    robot = yield from robot_in_slices(timeline, window)
+    before = timeline.robot(window.start)
+    if robot is not None and before is not None:
+        robot = replace(robot, travelled=robot.travelled - before.travelled)
+    touching = yield from listed(pose.touching for pose in trail_in_parts(timeline, window))
+    collisions = sum(touches for touches, _ in groupby(touching))
+    most = yield from threads_in_slices(timeline, window)
+    return RunFigures(timeline.end, used, most, robot, collisions)

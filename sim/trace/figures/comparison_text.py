@@ -1,0 +1,43 @@
+"""A comparison of two runs as plain text: a column for each and one for what differs."""
+
+from collections.abc import Iterator
+
+from sim.trace.figures.comparison import Comparison
+from sim.trace.figures.comparison_rows import DIFFERENCE, RUNS, Row, Section, extent, sections
+
+_GAP = "  "
+
+
+def comparison_text(comparison: Comparison, first: str, second: str) -> str:
+    """The whole comparison, ending in a newline; ``first`` and ``second`` are what the runs are called."""
+    shown = sections(comparison)
+    head = Row("", RUNS, DIFFERENCE)
+    rows = [head, *(row for section in shown for row in section.rows)]
+    widths = (
+        max(len(row.label) for row in rows) + len(_GAP),
+        max(len(row.figures[0]) for row in rows),
+        max(len(row.figures[1]) for row in rows),
+    )
+    lines = [f"{RUNS[0]}  {first}", f"{RUNS[1]}  {second}", extent(comparison), "", _line(head, widths)]
+    for section in shown:
+        lines += ["", *_lines(section, widths)]
+    return "".join(f"{line}\n" for line in lines)
+
+
+def _lines(section: Section, widths: tuple[int, int, int]) -> Iterator[str]:
+    yield section.title
+    for row in section.rows:
+        yield _line(row, widths)
+    for note in section.notes:
+        yield f"{_GAP}{note}"
+
+
+def _line(row: Row, widths: tuple[int, int, int]) -> str:
+    label, first, second = widths
+    cells = (
+        f"{_GAP if row.label else ''}{row.label}".ljust(label),
+        row.figures[0].ljust(first),
+        row.figures[1].ljust(second),
+        row.difference,
+    )
+    return _GAP.join(cells).rstrip()

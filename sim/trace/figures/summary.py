@@ -1,0 +1,208 @@
+"""What a run comes to in figures: its callbacks, threads, service calls and the robot."""
+
+from collections import Counter, defaultdict
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from itertools import groupby, pairwise
+
+from sim.trace.events import EntityId, RobotMoved
+from sim.trace.figures.concurrency import threads_at_once
+from sim.trace.model import Call, Entity, Nanoseconds, Wait, Window
+from sim.trace.slices import PIECE, Slices, at_once, listed, parts
+from sim.trace.timeline import Timeline
+from sim.trace.words import why_waiting
+
+TURNING = 0.02
+"""From how many rad/s on the robot counts as turning, and not as drifting while it drives straight."""
+TURN = 0.5
+"""From how many radians in one direction on it counts as a turn."""
+
+_BETWEEN_POSES: Nanoseconds = 20_000_000
+"""About how long it is from one pose of the robot to the next."""
+
+
+@dataclass(frozen=True, slots=True)
+class LongestWait:
+    """The longest that a ready callback was kept from running; ``why`` is what kept it most of that time."""
+
+    length: Nanoseconds
+    why: str
+
+
+@dataclass(frozen=True, slots=True)
+class CallbackFigures:
+    """What became of one callback.
+
+    ``running`` is the share (0 upwards; above 1 if calls overlap) of the run that its calls took;
+    ``late`` the age of the oldest message it took, or how late a timer was at worst.
+    """
+
+    entity: Entity
+    name: str
+    group: str
+    calls: int
+    running: float
+    longest_wait: LongestWait | None
+    late: Nanoseconds
+    drops: int
+    errors: int
+
+
+@dataclass(frozen=True, slots=True)
+class ServiceFigures:
+    """Calls of one service; ``round_trips`` are the times from request to reply of those answered."""
+
+    service: str
+    calls: int
+    round_trips: tuple[Nanoseconds, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RobotFigures:
+    """How the robot got about: turns with their radians in all, metres travelled, and where it is now."""
+
+    turns: int
+    turned: float
+    travelled: float
+    x: float
+    y: float
+    yaw: float
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """A run in figures; ``robot`` is None for a run without one."""
+
+    target: str
+    clock: str
+    length: Nanoseconds
+    ending: str
+    lost: int
+    callbacks: tuple[CallbackFigures, ...]
+    threads_used: int
+    threads_at_once: int
+    services: tuple[ServiceFigures, ...]
+    robot: RobotFigures | None
+
+
+def summarise(timeline: Timeline) -> Summary:
+    """The figures of a run as far as its timeline goes."""
+    whole = Window(0, timeline.end + 1)
+    spans = [timeline.spans_on(thread, whole) for thread in timeline.threads]
+    return Summary(
+        target=timeline.started.target if timeline.started else "",
+        clock=timeline.started.clock if timeline.started else "",
+        length=timeline.end,
+        ending=timeline.ended.reason if timeline.ended else "",
+        lost=timeline.lost,
+        callbacks=tuple(_callbacks(timeline, whole)),
+        threads_used=sum(bool(of_thread) for of_thread in spans),
+        threads_at_once=threads_at_once(timeline, whole),
+        services=tuple(_services(timeline.calls)),
+        robot=robot_in(timeline, whole),
+    )
+
+
+def _callbacks(timeline: Timeline, whole: Window) -> Iterator[CallbackFigures]:
+    names = _names(timeline)
+    for entity in timeline.entities.values():
+        spans = timeline.spans_of(entity.id, whole)
+        waits = timeline.waits_of(entity.id, whole)
+        drops = timeline.drops_of(entity.id, whole)
+        if not (entity.callback or spans or waits or drops):
+            continue
+        group = timeline.groups.get(entity.group)
+        running = sum(span.end_at(timeline.end) - span.start for span in spans)
+        yield CallbackFigures(
+            entity=entity,
+            name=names[entity.id],
+            group=group.letter if group else "",
+            calls=timeline.calls_of(entity.id, whole),
+            running=running / timeline.end if timeline.end else 0.0,
+            longest_wait=_longest(waits, timeline),
+            late=max((span.age for span in spans), default=0),
+            drops=drops,
+            errors=sum(bool(span.error) for span in spans),
+        )
+
+
+def _names(timeline: Timeline) -> dict[EntityId, str]:
+    """What each entity is called: its callback, with its topic, service or node where others share that."""
+    spoken = {entity.id: entity.spoken_name for entity in timeline.entities.values()}
+    shared = Counter(spoken.values())
+    return {
+        entity.id: spoken[entity.id]
+        if shared[spoken[entity.id]] == 1
+        else f"{spoken[entity.id]} ({entity.name or timeline.nodes.get(entity.node, '')})"
+        for entity in timeline.entities.values()
+    }
+
+
+def _longest(waits: Iterable[Wait], timeline: Timeline) -> LongestWait | None:
+    """The longest series of waits; those of one series share the time since when they are ready."""
+    longest: LongestWait | None = None
+    for _, each in groupby(waits, key=lambda wait: wait.since):
+        series = list(each)
+        ends = [timeline.end if wait.end is None else wait.end for wait in series]
+        length = max(ends) - series[0].start
+        if length > (longest.length if longest else 0):
+            shares: defaultdict[str, int] = defaultdict(int)
+            for wait, end in zip(series, ends, strict=True):
+                shares[why_waiting(wait, timeline)] += end - wait.start
+            longest = LongestWait(length, max(shares, key=shares.__getitem__))
+    return longest
+
+
+def _services(calls: Iterable[Call]) -> Iterator[ServiceFigures]:
+    by_service: defaultdict[str, list[Call]] = defaultdict(list)
+    for call in calls:
+        by_service[call.service].append(call)
+    for service, made in by_service.items():
+        answered = tuple(call.replied - call.sent for call in made if call.replied is not None)
+        yield ServiceFigures(service, len(made), answered)
+
+
+def robot_in(timeline: Timeline, window: Window) -> RobotFigures | None:
+    """What the robot did in a window; ``travelled`` counts from the run's beginning."""
+    return at_once(robot_in_slices(timeline, window))
+
+
+def robot_in_slices(timeline: Timeline, window: Window) -> Slices[RobotFigures | None]:
+    """The same in small pieces."""
+    last = timeline.robot(window.end - 1)
+    if last is None or last.t < window.start:
+        return None
+    timed = (step for step in pairwise(trail_in_parts(timeline, window)) if step[0].t < step[1].t)
+    steps = yield from listed((_direction(*step), step[1].turned - step[0].turned) for step in timed)
+    angles = yield from _angles(steps)
+    turns = [abs(angle) for angle in angles if abs(angle) > TURN]
+    return RobotFigures(len(turns), sum(turns), last.travelled, last.x, last.y, last.yaw)
+
+
+def _angles(steps: Iterable[tuple[int, float]]) -> Slices[list[float]]:
+    """The signed angles, in radians, of the stretches in which the robot turned in one direction."""
+    found: list[float] = []
+    latest = 0
+    for number, (direction, angle) in enumerate(steps):
+        if direction and direction == latest:
+            found[-1] += angle
+        elif direction:
+            found.append(angle)
+        latest = direction
+        if number % PIECE == 0:
+            yield
+    return found
+
+
+def trail_in_parts(timeline: Timeline, window: Window) -> Iterator[RobotMoved]:
+    """Where the robot was in a window, looked up bit by bit."""
+    for part in parts(window, window.length // _BETWEEN_POSES):
+        yield from timeline.trail(part)
+
+
+def _direction(before: RobotMoved, after: RobotMoved) -> int:
+    """1 for turning left, -1 for turning right, 0 for neither."""
+    angle = after.turned - before.turned
+    if abs(angle) < TURNING * (after.t - before.t) / 1e9:
+        return 0
+    return 1 if angle > 0 else -1

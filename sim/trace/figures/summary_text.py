@@ -1,0 +1,116 @@
+"""A summary as plain text for a terminal: aligned columns, 79 wide where names allow."""
+
+import math
+from collections.abc import Iterator, Sequence
+
+from sim.trace.figures.summary import CallbackFigures, RobotFigures, ServiceFigures, Summary
+from sim.trace.model import Nanoseconds
+
+HEADS = ("callback", "group", "calls", "running", "late by", "drops", "errors")
+LATE_BY = "late by: the oldest message it took, or how late its timer was at worst"
+
+
+def plain_text(summary: Summary) -> str:
+    """The whole summary, ending in a newline. What a run did not have, it leaves out."""
+    parts = [
+        list(_heading(summary)),
+        list(_callback_table(summary.callbacks)),
+        list(_waits(summary.callbacks)),
+        list(_rest(summary)),
+    ]
+    return "\n".join("\n".join([*part, ""]) for part in parts if part)
+
+
+def duration(length: Nanoseconds) -> str:
+    """A length of time with the unit that suits it: ``9.9 s``, ``498 ms``, ``0.8 ms``, ``12 µs``."""
+    if length == 0:
+        return "0 s"
+    if length < 99_500:
+        return f"{length / 1e3:.0f} µs"
+    if length < 9_950_000:
+        return f"{length / 1e6:.1f} ms"
+    if length < 999_500_000:
+        return f"{length / 1e6:.0f} ms"
+    return f"{length / 1e9:.1f} s"
+
+
+def _heading(summary: Summary) -> Iterator[str]:
+    clock = f" of {summary.clock} time" if summary.clock else ""
+    ending = f": {summary.ending}" if summary.ending else ""
+    yield f"{summary.target or 'run'}, {duration(summary.length)}{clock}{ending}"
+    if summary.lost:
+        yield f"The trace lost {summary.lost} events, so some figures below are too small."
+
+
+def _callback_table(callbacks: Sequence[CallbackFigures]) -> Iterator[str]:
+    if not callbacks:
+        return
+    rows = [HEADS, *(_cells(figures) for figures in callbacks)]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    for name, group, *figures in rows:
+        right = (cell.rjust(width) for cell, width in zip(figures, widths[2:], strict=True))
+        yield "  ".join((name.ljust(widths[0]), group.ljust(widths[1]), *right))
+    yield LATE_BY
+
+
+def _cells(figures: CallbackFigures) -> tuple[str, ...]:
+    return (
+        figures.name,
+        figures.group,
+        str(figures.calls),
+        f"{figures.running:.1%}",
+        duration(figures.late) if figures.calls else "-",
+        str(figures.drops) if figures.entity.depth else "-",
+        str(figures.errors),
+    )
+
+
+def _waits(callbacks: Sequence[CallbackFigures]) -> Iterator[str]:
+    waited = [(figures.name, figures.longest_wait) for figures in callbacks if figures.longest_wait]
+    if not callbacks:
+        return
+    if not waited:
+        yield "longest waits: none, every callback ran as soon as it was ready"
+        return
+    yield "longest waits"
+    widest = max(len(name) for name, _ in waited)
+    for name, wait in waited:
+        yield f"  {name.ljust(widest)}  {duration(wait.length)}: {wait.why}"
+
+
+def _rest(summary: Summary) -> Iterator[str]:
+    yield f"threads  {summary.threads_used} ran callbacks, at most {summary.threads_at_once} at once"
+    label = "calls"
+    for service in summary.services:
+        yield f"{label:<7}  {service_line(service)}"
+        label = ""
+    if summary.robot:
+        yield f"robot    {robot_line(summary.robot)}"
+
+
+def service_line(figures: ServiceFigures) -> str:
+    """The calls of a service in words: ``/motor_power  2 calls, answered after 5.0 s``."""
+    trips = figures.round_trips
+    if not trips:
+        return f"{figures.service}  {_counted(figures.calls, 'call')}, no reply"
+    shortest, longest = duration(min(trips)), duration(max(trips))
+    span = shortest if shortest == longest else f"{shortest} to {longest}"
+    answered = "answered" if len(trips) == figures.calls else f"{len(trips)} answered"
+    return f"{figures.service}  {_counted(figures.calls, 'call')}, {answered} after {span}"
+
+
+def robot_line(figures: RobotFigures) -> str:
+    """What the robot did, in words: ``2 turns (3.1 rad), 0.85 m travelled, at x 0.85 y 0.00 heading 0°``."""
+    turns = _counted(figures.turns, "turn") + (f" ({figures.turned:.1f} rad)" if figures.turns else "")
+    x, y, heading = _rounded(figures.x, 2), _rounded(figures.y, 2), _rounded(math.degrees(figures.yaw), 0)
+    pose = f"at x {x:.2f} y {y:.2f} heading {heading:.0f}°"
+    return f"{turns}, {figures.travelled:.2f} m travelled, {pose}"
+
+
+def _rounded(value: float, places: int) -> float:
+    """Rounded, and never minus zero."""
+    return round(value, places) + 0.0
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}" + ("" if count == 1 else "s")

@@ -1,0 +1,143 @@
+"""Things that happened, kept in order of time and found by bisection, the older ones spilled."""
+
+from bisect import bisect_left, bisect_right, insort_right
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, Generic, TypeVar, overload
+
+import msgspec
+
+from sim.trace.model import Nanoseconds, Window
+from sim.trace.storage.blocks import Blocks
+from sim.trace.storage.intervals import Answer
+from sim.trace.storage.spill import Spill
+
+Item = TypeVar("Item")
+
+ITEMS_IN_BLOCK = 256
+
+_SWELLING = 4
+"""About how many times the memory of their encoding objects take."""
+
+_encoder = msgspec.msgpack.Encoder()
+
+
+class History(Sequence[Item], Generic[Item]):
+    """Items in order of the time that ``when`` reads from them; of one time, in order of arrival.
+
+    ``kind`` is the type of the items, one that msgspec can encode, of values that never change. Adding the
+    newest is an append; one that comes late finds its place. The newest one or two blocks stay in memory,
+    more after one that came very late; the others are spilled, and made anew when they are asked for.
+    """
+
+    __slots__ = ("_blocks", "_full", "_items_in_block", "_spilled", "_tail", "_when")
+
+    def __init__(
+        self,
+        when: Callable[[Item], Nanoseconds],
+        kind: Any,
+        spill: Spill,
+        items_in_block: int = ITEMS_IN_BLOCK,
+    ) -> None:
+        self._when = when
+        self._items_in_block = min(items_in_block, spill.entries)
+        self._full = 2 * self._items_in_block
+        self._spilled = 0
+        self._tail: list[Item] = []
+        self._blocks: Blocks[list[Item]] = Blocks(
+            spill, _encoder.encode, msgspec.msgpack.Decoder(list[kind]).decode, _SWELLING
+        )
+
+    def add(self, item: Item) -> None:
+        """Take in an item."""
+        tail = self._tail
+        if tail and self._when(item) < self._when(tail[-1]):
+            self._add_late(item)
+            return
+        tail.append(item)
+        if len(tail) >= self._full:
+            self._put_by()
+
+    def until(self, at: Nanoseconds) -> int:
+        """How many items there are at or before ``at``."""
+        if not self._spilled or at >= self._when(self._tail[0]):
+            return self._spilled + bisect_right(self._tail, at, key=self._when)
+        number = bisect_right(self._blocks.firsts, at) - 1
+        if number < 0:
+            return 0
+        return number * self._items_in_block + bisect_right(self._blocks[number], at, key=self._when)
+
+    def before(self, at: Nanoseconds) -> int:
+        """How many items there are before ``at``."""
+        if not self._spilled or at > self._when(self._tail[0]):
+            return self._spilled + bisect_left(self._tail, at, key=self._when)
+        number = bisect_left(self._blocks.firsts, at) - 1
+        if number < 0:
+            return 0
+        return number * self._items_in_block + bisect_left(self._blocks[number], at, key=self._when)
+
+    def latest(self, at: Nanoseconds) -> Item | None:
+        """The last item at or before ``at``."""
+        place = self.until(at)
+        return self[place - 1] if place else None
+
+    def within(self, window: Window) -> Sequence[Item]:
+        """The items in the window."""
+        return self._from(range(self.before(window.start), self.before(window.end)))
+
+    def __len__(self) -> int:
+        return self._spilled + len(self._tail)
+
+    @overload
+    def __getitem__(self, place: int) -> Item: ...
+    @overload
+    def __getitem__(self, place: slice) -> Sequence[Item]: ...
+    def __getitem__(self, place: int | slice) -> Item | Sequence[Item]:
+        numbers = range(len(self))
+        return Answer(numbers[place], self._item) if isinstance(place, slice) else self._item(numbers[place])
+
+    def __iter__(self) -> Iterator[Item]:
+        for start in range(0, self._spilled, self._items_in_block):
+            yield from self._from(range(start, start + self._items_in_block))
+        yield from self._tail
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, Sequence):
+            return len(self) == len(other) and all(mine == its for mine, its in zip(self, other, strict=True))
+        return NotImplemented
+
+    __hash__ = None  # type: ignore[assignment]  # like a list
+
+    def __repr__(self) -> str:
+        return repr(list(self))
+
+    def _item(self, number: int) -> Item:
+        if number >= self._spilled:
+            return self._tail[number - self._spilled]
+        block, within = divmod(number, self._items_in_block)
+        return self._blocks[block][within]
+
+    def _from(self, numbers: range) -> list[Item]:
+        found: list[Item] = []
+        start = numbers.start
+        while start < min(numbers.stop, self._spilled):
+            block, first = divmod(start, self._items_in_block)
+            part = self._blocks[block][first : first + numbers.stop - start]
+            found += part
+            start += len(part)
+        if start < numbers.stop:
+            found += self._tail[start - self._spilled : numbers.stop - self._spilled]
+        return found
+
+    def _add_late(self, item: Item) -> None:
+        at = self._when(item)
+        while self._spilled and at < self._when(self._tail[0]):
+            self._tail[0:0] = self._blocks.pop()
+            self._spilled -= self._items_in_block
+        # What was taken back stays until newer items come: the next is often as late.
+        insort_right(self._tail, item, key=self._when)
+
+    def _put_by(self) -> None:
+        block = self._tail[: self._items_in_block]
+        del self._tail[: self._items_in_block]
+        self._blocks.push(self._when(block[0]), block)
+        self._spilled += self._items_in_block
