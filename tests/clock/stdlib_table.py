@@ -381,7 +381,7 @@ ROWS = (
                     time.sleep(0.2)
                     connection.sendall(b"x" * 500_000)
             thread(serve)
-            with socket.create_connection(server.getsockname(), timeout=5) as client:
+            with socket.create_connection(server.getsockname(), timeout=60) as client:
                 assert len(client.makefile("rb").read()) == 500_000
             server.settimeout(0.1)
             with contextlib.suppress(TimeoutError):

@@ -7,7 +7,7 @@ from sim.clock import VirtualClock
 from sim.clock.virtual import RECESS, WAITS_TO_RECESS
 from tests.support.simulation import no_thread_left, wind_up
 
-PATIENCE = 10.0
+PATIENCE = 60.0
 
 
 def on_virtual_time(program: Callable[[VirtualClock], object]) -> None:

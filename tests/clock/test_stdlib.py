@@ -39,7 +39,7 @@ def run(program: str) -> None:
         [sys.executable, "-c", _PRELUDE + textwrap.dedent(program) + "\nprint('to the end')"],
         capture_output=True,
         text=True,
-        timeout=10,
+        timeout=60,
         cwd=Path(__file__).parents[2],
         check=False,
     )
@@ -56,22 +56,24 @@ PROGRAMS = {
                 time.sleep(0.1)
                 ticks.append(time.monotonic())
         ticking = thread(tick)
+        began = real_monotonic()
         subprocess.run(["sleep", "0.35"])
-        assert ticks == [0.1, 0.2, 0.3] and 0.35 <= now() < 1, (ticks, now())
+        assert ticks == [0.1, 0.2, 0.3] and 0.35 <= now() <= real_monotonic() - began, (ticks, now())
     """,
     "time_jumps_again_once_a_process_has_ended": """
         import subprocess
         process = subprocess.Popen(["sleep", "0.2"])
         began = real_monotonic()
         time.sleep(3600)
-        assert real_monotonic() - began < 3 and process.poll() == 0
+        assert real_monotonic() - began < 60 and process.poll() == 0
     """,
     "looking_for_a_process_again_and_again_comes_to_its_end": """
         import subprocess
+        began = real_monotonic()
         process = subprocess.Popen(["sleep", "0.2"])
         while process.poll() is None:
             pass
-        assert 0.15 < now() < 1, now()
+        assert 0.15 < now() <= real_monotonic() - began, now()
     """,
     "a_handler_that_raises_ends_the_wait_that_its_alarm_rang_in": """
         import signal

@@ -10,7 +10,7 @@ from sim.clock.schedule import Seeded
 from tests.support.simulation import no_thread_left, wind_up
 
 SEEDS = range(1, 9)
-_PATIENCE = 20.0
+_PATIENCE = 60.0
 
 
 def run(seed: int, program: Callable[[VirtualClock], object]) -> None:

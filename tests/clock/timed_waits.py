@@ -47,7 +47,7 @@ _BEHIND = "behind"
 """How the names of those end that wait until their deadline is behind them, and not only reached."""
 _RECESS = 1_000
 """Nanoseconds that such a wait may take beyond its deadline."""
-_TIMEOUT = 30.0
+_TIMEOUT = 60.0
 
 
 class Step(NamedTuple):

@@ -11,6 +11,7 @@ from sim.ros.host_lock import HostLock
 from sim.ros.interfaces import message
 from sim.ros.node import Node
 from sim.ros.task import Future
+from tests.support.real_threads import LIMIT
 from tests.support.simulation import Simulation, Trace, installed, no_thread_left, simulate
 
 Int32 = message("std_msgs", "Int32")
@@ -28,7 +29,7 @@ class LateClock(RealClock):
 
         def run() -> None:
             if name.endswith("_1"):
-                self.gate.wait(5.0)
+                self.gate.wait(LIMIT)
             target()
 
         super().start_thread(run, name)
@@ -71,7 +72,7 @@ def test_what_a_callback_sends_and_waits_for_is_heard_by_an_idle_worker() -> Non
         def send() -> None:
             for number in range(300):
                 publisher.publish(Int32(data=number))
-                if not heard.acquire(timeout=5.0):
+                if not heard.acquire(timeout=LIMIT):
                     missed.append(number)
                     break
             rclpy.shutdown()

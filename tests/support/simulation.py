@@ -31,7 +31,7 @@ from tests.support.builder import ns
 
 EventT = TypeVar("EventT", bound=AnyEvent)
 
-_PATIENCE = 30.0
+_PATIENCE = 60.0
 """Real seconds after which a simulation counts as stuck: a hundred times what the longest one takes."""
 
 

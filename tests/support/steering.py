@@ -13,7 +13,7 @@ from sim.trace.events import AnyEvent, CommandGiven, TimeHalted
 from tests.support.builder import ns
 from tests.support.simulation import Program, Simulation, installed, no_thread_left, wind_up
 
-_PATIENCE = 30.0
+_PATIENCE = 60.0
 
 Steering = Callable[["Helm"], object]
 
