@@ -44,6 +44,13 @@ def files_of_at_most(size: int) -> Iterator[None]:
             resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
+def run_node(seconds: int, option: str, file: Path | str) -> "subprocess.CompletedProcess[str]":
+    """Run the folder's node without a console, written to a file; what it said when it has ended."""
+    words = ["run", "node.py", "--no-robot", "--clock", "virtual", "--for", str(seconds), option, str(file)]
+    command = [sys.executable, "-m", "cbtui", *words]
+    return subprocess.run(command, check=False, capture_output=True, text=True, timeout=PATIENCE)
+
+
 def events_in(path: Path) -> int:
     return sum(map(len, read(path).batches()))
 
@@ -81,15 +88,8 @@ def test_a_disk_that_fills_up_does_not_end_a_run_without_a_console(
     folder: Path, option: str, file: str, what: str
 ) -> None:
     node_with(folder, LONG, again=True)
-    words = ["run", "node.py", "--no-robot", "--clock", "virtual", "--for", "20", option, file]
     with nothing_left(), files_of_at_most(ROOM):
-        ended = subprocess.run(
-            [sys.executable, "-m", "cbtui", *words],
-            check=False,
-            capture_output=True,
-            text=True,
-            timeout=3 * PATIENCE,
-        )
+        ended = run_node(20, option, file)
     assert ended.returncode == 1
     assert ended.stderr.splitlines()[-1] == f"cbtui: {what} not whole: File too large"
     assert "tick" in ended.stdout
@@ -118,15 +118,7 @@ def test_a_small_disk_that_fills_up_keeps_what_fits(
     node_with(folder, LONG, again=True)
     (small_disk / "other").write_bytes(bytes(taken))
     path = small_disk / file
-    option = "--record" if file == "run.mcap" else "--events"
-    words = ["run", "node.py", "--no-robot", "--clock", "virtual", "--for", "2", option, str(path)]
-    ended = subprocess.run(
-        [sys.executable, "-m", "cbtui", *words],
-        check=False,
-        capture_output=True,
-        text=True,
-        timeout=3 * PATIENCE,
-    )
+    ended = run_node(2, "--record" if file == "run.mcap" else "--events", path)
     assert ended.returncode == 1
     assert ended.stderr.splitlines()[-1].endswith("not whole: No space left on device")
     assert told_in(path) > 0

@@ -95,7 +95,7 @@ class Command:
 
     def ended(self) -> int:
         """Wait for its end; its exit code."""
-        self.said, self.complained = self.process.communicate(timeout=3 * PATIENCE)
+        self.said, self.complained = self.process.communicate(timeout=PATIENCE)
         return self.process.returncode
 
 
