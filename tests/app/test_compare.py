@@ -30,19 +30,20 @@ from sim.trace.timeline import Timeline
 from tests.app.pictures import lines_of, text_of
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.exercises import until
 from tests.support.runs import shared_group_run, split_groups_run
 
 
-def timeline_of(events: list[AnyEvent], until: float) -> Timeline:
+def timeline_of(events: list[AnyEvent], end: float) -> Timeline:
     timeline = Timeline()
-    timeline.extend([event for event in events if event.t <= ns(until)])
+    timeline.extend([event for event in events if event.t <= ns(end)])
     return timeline
 
 
-def sides(until: tuple[float, float] = (14.0, 9.4)) -> tuple[Side, Side]:
+def sides(ends: tuple[float, float] = (14.0, 9.4)) -> tuple[Side, Side]:
     return (
-        Side("shared-group", timeline_of(shared_group_run().events, until[0]), "/motor_power"),
-        Side("split-groups", timeline_of(split_groups_run().events, until[1]), "/motor_power"),
+        Side("shared-group", timeline_of(shared_group_run().events, ends[0]), "/motor_power"),
+        Side("split-groups", timeline_of(split_groups_run().events, ends[1]), "/motor_power"),
     )
 
 
@@ -307,7 +308,7 @@ async def test_a_lesson_offers_a_comparison_once_there_is_a_run_before() -> None
         assert app.lesson_screen.check_action("compare", ()) is True
         lesson = app.lesson_screen
         await pilot.press("C")
-        await pilot.pause(0.1)
+        await until(pilot, lambda: isinstance(app.screen, CompareScreen))
         comparison = app.screen
         assert isinstance(comparison, CompareScreen)
         first, second = comparison._sides
@@ -316,7 +317,7 @@ async def test_a_lesson_offers_a_comparison_once_there_is_a_run_before() -> None
         assert second.timeline is lesson.live_run.timeline
         assert (first.alive(), second.alive()) == (False, True)
         app.engines.latest.play(ns(15))
-        await pilot.pause(0.1)
+        await until(pilot, lambda: lesson.live_run.timeline.end > ns(14))
         comparison.draw()
         assert comparison.query(Lanes).last(Lanes).now == lesson.live_run.timeline.end > ns(14)
         await pilot.press("q")
@@ -349,10 +350,9 @@ async def test_two_lessons_are_run_and_then_compared() -> None:
         while isinstance(app.screen, GatheringScreen):
             await asyncio.sleep(0.02)
         assert isinstance(app.screen, CompareScreen)
-        await pilot.pause(0.1)
+        await until(pilot, lambda: "As asked, 0 to 3 s" in text_of(app))
         assert [side.timeline.end for side in app.screen._sides] == [ns(3.0)] * 2
         picture = text_of(app)
-        assert "As asked, 0 to 3 s" in picture
         assert "SetBool_callback" in picture
         assert "MultiThreadedExecutor(2)" in picture
 

@@ -83,7 +83,6 @@ async def test_a_pane_without_news_is_not_asked_to_draw(monkeypatch: pytest.Monk
     app = RecordedConsole("shared-group", EVENTS, 2.0)
     async with app.run_test(size=WIDE) as pilot:
         await settle(pilot)
-        await pilot.pause(0.5)  # The guide's Markdown is laid out some time after the rest.
         monkeypatch.setattr(Widget, "render_lines", spy)
         app.lesson_screen.query_one("Lanes").refresh()
         await settle(pilot)

@@ -13,7 +13,7 @@ from watchfiles import awatch
 from cbtui.runs.live import file_watch
 from cbtui.runs.live.file_watch import content_of, contents
 
-_LIMIT = 20.0
+_LIMIT = 60.0
 
 
 @pytest.fixture(autouse=True)

@@ -209,7 +209,7 @@ class SlowDisk:
             events = [event for batch in batches(tape) for event in batch]
             yield events[:-10]
             self.held.set()
-            assert self.go_on.wait(10), "nobody but the test waits for the disk"
+            assert self.go_on.wait(60), "nobody but the test waits for the disk"
             yield events[-10:]
 
         monkeypatch.setattr(Tape, "batches", held_back)

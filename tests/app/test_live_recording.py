@@ -95,7 +95,7 @@ class SlowDisk:
         close = BackgroundRecorder.close
 
         def held_back(recorder: BackgroundRecorder) -> None:
-            assert self.go_on.wait(10), "nobody but the test waits for the disk"
+            assert self.go_on.wait(60), "nobody but the test waits for the disk"
             close(recorder)
 
         monkeypatch.setattr(BackgroundRecorder, "close", held_back)

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import msgspec
 import pytest
+from textual.command import CommandList, CommandPalette
 
 from cbtui.app import CbtuiApp
 from cbtui.screens.help import HelpScreen
@@ -17,6 +18,7 @@ from lessons.lesson import Lesson
 from lessons.progress import Progress
 from tests.app.pictures import lines_of, text_of
 from tests.support.console import NARROW, TALL, WIDE
+from tests.support.exercises import until
 from tests.support.fake_session import FakeEngines
 
 HEAVY = {"numpy", "pybullet", "rosbags", "pygments", "markdown_it", "multiprocessing", "cbtui.screens.lesson"}
@@ -138,12 +140,24 @@ async def test_the_palette_finds_a_command_of_the_screen() -> None:
     app = menu()
     async with app.run_test(size=WIDE) as pilot:
         await pilot.press("ctrl+p", *"lesson 5")
-        while "Open lesson 5" not in text_of(app):
-            await pilot.pause(0.02)
+        await until(pilot, lambda: is_the_palettes_first(app, "Open lesson 5"))
         await pilot.press("enter", "enter")
         while opened(app) is None:
             await pilot.pause(0.02)
         assert opened(app) == lessons()[4].id
+
+
+def is_the_palettes_first(app: CbtuiApp, command: str) -> bool:
+    """Whether the palette, once it has found what it looked for, has this command first."""
+    palette = app.screen
+    assert isinstance(palette, CommandPalette)
+    commands = palette.query_one(CommandList)
+    searches = [each for each in palette.workers if each.group == CommandPalette._GATHER_COMMANDS_GROUP]
+    return (
+        bool(commands.option_count)
+        and all(each.is_finished for each in searches)
+        and command in str(commands.get_option_at_index(0).prompt)
+    )
 
 
 def many_lessons() -> tuple[Lesson, ...]:

@@ -24,7 +24,7 @@ from tests.support.runs import dummy_server_run, ns, shared_group_run
 ODOM_OWN = GroupChange("/sub_node", "odom_callback", "own")
 TO_ODOM = ("enter", "down", "down")
 """Keys that select odom_callback on the lanes."""
-_PATIENCE = 30.0
+_PATIENCE = 60.0
 
 
 @asynccontextmanager

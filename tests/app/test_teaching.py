@@ -34,7 +34,7 @@ EVENTS = shared_group_run().events
 LESSON = find("shared-group")
 FIRST, SECOND = LESSON.predictions
 WITH_EXERCISE = find("split-groups")
-_PATIENCE = 20.0
+_PATIENCE = 60.0
 
 
 class Console(CbtuiApp):

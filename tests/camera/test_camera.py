@@ -17,7 +17,7 @@ from sim.camera.process import serve
 from sim.camera.wire import Shot
 from tests.camera.shots import shot
 
-PATIENCE = 30.0
+PATIENCE = 60.0
 
 
 def echo(pipe: Connection) -> None:

@@ -23,7 +23,7 @@ from cbtui.engines.control_socket import (
 from sim.engine.commands import Command, InterruptLine, RunLine
 from sim.trace.events import LineEnded, LineSaid
 
-PATIENCE = 10
+PATIENCE = 60
 
 
 @pytest.fixture
@@ -34,15 +34,14 @@ def sent(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> "Queue[Command]":
 
 @pytest.fixture
 def server(sent: "Queue[Command]") -> Iterator[ControlServer]:
-    before = threading.active_count()
+    before = set(threading.enumerate())
     server = ControlServer(sent.put)
     server.start()
     yield server
     server.stop()
-    for thread in threading.enumerate():
-        if thread.name == "control":
-            thread.join(PATIENCE)
-    assert threading.active_count() == before
+    for thread in set(threading.enumerate()) - before:
+        thread.join(PATIENCE)
+        assert not thread.is_alive()
 
 
 def given(sent: "Queue[Command]") -> RunLine:

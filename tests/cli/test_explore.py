@@ -139,16 +139,16 @@ def test_ctrl_c_ends_it_and_every_process(file: Path) -> None:
         start_new_session=True,
     )
     family = Family(explore.pid, "")
-    give_up = time.monotonic() + 30
+    give_up = time.monotonic() + 60
     while len(children := family.descendants()) < 4:  # itself, what tracks resources, what forks, an engine
         assert time.monotonic() < give_up
         time.sleep(0.05)
     os.killpg(explore.pid, signal.SIGINT)  # as a terminal does
-    said, complained = explore.communicate(timeout=20)
+    said, complained = explore.communicate(timeout=60)
     assert (explore.returncode, said) == (130, b"")
     assert complained == b"cbtui: interrupted: 0 of 100 schedules were tried\n"
     for pid in children:
-        assert Family(pid, "").wait_for_end(10)
+        assert Family(pid, "").wait_for_end(60)
 
 
 def test_who_has_read_enough_of_it_is_no_trouble(file: Path) -> None:

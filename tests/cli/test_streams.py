@@ -1,15 +1,23 @@
 """Standard streams that are closed, full, or know few signs: the program works, or says one sentence."""
 
+import io
+import os
 import subprocess
 import sys
 from pathlib import Path
+from queue import Queue
+from typing import TextIO
 
 import pytest
 
+from cbtui.cli import main
 from cbtui.commands.options.targets import need_terminal
 from cbtui.runs.headless.program_log import write_line
+from cbtui.runs.headless.standard_input import StandardInput
 from cbtui.terminal.capabilities import charset_of
 from cbtui.text.output import CannotSayError
+from sim.engine.commands import Type
+from sim.trace.events import KeyboardAsked, Reading
 
 _CBTUI = f"{sys.executable} -m cbtui"
 
@@ -26,6 +34,37 @@ def test_streams_that_are_closed_are_as_if_nobody_read_them(closed: str, tmp_pat
     done = _shell(f"{_CBTUI} run single-thread --for 0.2 --events {events} {closed}")
     assert done.returncode == 0, done.stderr
     assert events.read_text().endswith('"failed":false}\n')
+
+
+def closed_file() -> TextIO:
+    with Path(os.devnull).open() as file:
+        return file
+
+
+@pytest.fixture(
+    params=[lambda: None, closed_file, lambda: io.StringIO("typed")], ids=["none", "closed", "text"]
+)
+def nobodys_input(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A standard input that has no descriptor."""
+    monkeypatch.setattr(sys, "stdin", request.param())
+
+
+@pytest.mark.usefixtures("nobodys_input")
+def test_where_standard_input_has_no_descriptor_a_program_that_reads_gets_its_end() -> None:
+    given: Queue[Type] = Queue()
+    keyboard = StandardInput(given.put)
+    assert not keyboard.is_terminal
+    keyboard.follow([KeyboardAsked(0, Reading.LINES, "node.py")])
+    assert given.get(timeout=60) == Type("", ends=True)
+    keyboard.close()
+
+
+@pytest.mark.usefixtures("nobodys_input")
+def test_a_run_whose_standard_input_has_no_descriptor_comes_to_its_end(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    assert main(["run", "single-thread", "--for", "0.2"]) == 0
+    assert "cut short" not in capsys.readouterr().err
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no device that is always full")

@@ -374,7 +374,7 @@ def test_a_loop_without_end_is_named_with_its_line_and_the_run_can_be_stopped(tm
     try:
         notices: list[Notice] = []
         while not notices:
-            batch = news.get(timeout=30)
+            batch = news.get(timeout=60)
             assert isinstance(batch, list)
             notices += [event for event in batch if isinstance(event, Notice)]
     finally:

@@ -82,7 +82,7 @@ def test_contents_can_be_asked_for_while_a_run_goes_on(tmp_path: Path) -> None:
         """What comes up to the next event of a kind, and with it."""
         events: list[AnyEvent] = []
         while not any(isinstance(event, kind) for event in events):
-            batch = news.get(timeout=30)
+            batch = news.get(timeout=60)
             assert isinstance(batch, list), batch
             events += batch
         return events

@@ -178,7 +178,7 @@ class _Console:
         """Take news until an event of a kind has come ``count`` times; that event."""
         found = [event for event in self.events if isinstance(event, kind)]
         while len(found) < count:
-            batch = self._news.get(timeout=30)
+            batch = self._news.get(timeout=60)
             assert isinstance(batch, list), batch
             self.events += batch
             found += [event for event in batch if isinstance(event, kind)]
@@ -186,7 +186,7 @@ class _Console:
 
     def end(self) -> str | None:
         """Take news until the engine is gone; what was said of it."""
-        while isinstance(batch := self._news.get(timeout=30), list):
+        while isinstance(batch := self._news.get(timeout=60), list):
             self.events += batch
         return batch
 

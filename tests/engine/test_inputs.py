@@ -100,7 +100,7 @@ def told(system: System, tellings: list[Telling | Given], speed: float | None) -
 
     def steering(helm: Helm) -> None:
         sinks.append(helm.record)
-        assert ready.wait(10)
+        assert ready.wait(60)
         for telling in tellings:
             time.sleep(telling.after / 1e6)
             if isinstance(telling, Given):
@@ -198,7 +198,7 @@ def test_an_input_comes_while_time_stands_at_the_end_of_the_moment() -> None:
         helm.give(RunUntil(ns(0.5)))
         helm.until_halted()
         helm.clock.give(take)
-        assert came.wait(10)
+        assert came.wait(60)
 
     steered(program, steering, until=1.0, speed=0.001)
     assert moments == [ns(0.5)]

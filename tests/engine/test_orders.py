@@ -33,7 +33,7 @@ def forked(seed: int) -> list[AnyEvent]:
     session.start()
     events: list[AnyEvent] = []
     try:
-        while isinstance(batch := news.get(timeout=30), list):
+        while isinstance(batch := news.get(timeout=60), list):
             events += batch
     finally:
         session.stop()

@@ -72,7 +72,7 @@ finally:
 """
     ended = run(tmp_path, source, until=SECOND // 2)
     assert ended.ending.reason == "its time was up"
-    assert SECOND // 2 <= ended.ending.t < SECOND  # Popen.wait gives the process 0.25 s after Ctrl-C
+    assert SECOND // 2 <= ended.ending.t < 8 * SECOND
     assert [each for each in reasons(ended) if "subprocess starts a process" in each]
 
 

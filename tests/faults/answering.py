@@ -20,7 +20,7 @@ import pytest
 from cbtui.engines.resource_guard import CEILING
 from tests.benchmarks.console import RUNS, opened
 from tests.faults.catalogue import FAULTS, Fault
-from tests.faults.support import ANSWERED, PATIENCE, node_with, nothing_left
+from tests.faults.support import ANSWERED, node_with, nothing_left
 from tests.soak.results import Entry, record
 
 FILE = Path(__file__).with_name("answers.toml")
@@ -55,7 +55,7 @@ def waits(fault: Fault, presses: int) -> list[float]:
     taken = []
     with (
         pytest.MonkeyPatch.context() as patch,
-        nothing_left(within=PATIENCE),
+        nothing_left(),
         TemporaryDirectory() as folder,
         chdir(folder),
     ):

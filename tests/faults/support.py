@@ -158,17 +158,17 @@ def still_here(live: LiveRun) -> bool:
 
 
 @contextmanager
-def nothing_left(within: float = 2.0) -> Iterator[None]:
+def nothing_left() -> Iterator[None]:
     """Check that every process started inside has ended, in whatever group or session it is.
 
-    ``within`` so many seconds: whoever watches over an engine ends by itself a moment after it.
+    Whoever watches over an engine ends by itself a moment after it.
     """
     mark = f"CBTUI_FAULT={uuid4().hex}"
     name, _, value = mark.partition("=")
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv(name, value)
         yield
-    deadline = time.monotonic() + within
+    deadline = time.monotonic() + PATIENCE
     while (left := list(_marked(mark))) and time.monotonic() < deadline:
         time.sleep(0.01)
     assert not left, f"left behind: {left}"

@@ -1,17 +1,16 @@
 """Nodes that spoil what they share with the engine: it goes on, tells of it, and can be ended."""
 
 import signal
-import time
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
 
-from cbtui.engines.session import LONGEST_END
 from cbtui.runs.live.live_run import State
 from sim.engine.setup import RobotUse
+from sim.trace.events import AnyEvent, Notice, RunEnded
 from sim.trace.model import Window
-from tests.faults.support import FIRST, Provoked, console_on, node_with, provoked, still_here
+from tests.faults.support import FIRST, PATIENCE, Provoked, console_on, node_with, provoked, still_here
 
 AT = f"node.py:{FIRST}"
 NO_NUMBERS = """\
@@ -19,8 +18,6 @@ velocity = Twist(linear=Vector3(x=float('nan')), angular=Vector3(z=float('inf'))
 self.create_publisher(Twist, 'cmd_vel', 10).publish(velocity)
 """
 ALL = Window(0, 1 << 62)
-_SOON = 2.0
-"""Real seconds for a run to be ended whose program ends when it is told to."""
 
 
 class GoesOn(NamedTuple):
@@ -93,17 +90,23 @@ def test_a_node_that_goes_on_after_its_fault_is_still_followed_and_can_be_ended(
         run.until(lambda live: still_here(live) and all(_is_told(run, notices, line)))
         assert run.live.alive
         assert run.notices == [*notices]
-        _stop_in_time(run, LONGEST_END if name == "threads that are left" else _SOON)
+        by_force = name == "threads that are left"
+        assert any("had not ended" in text for text in _notices_of_the_end(run)) is by_force
 
 
 def _is_told(run: Provoked, notices: tuple[str, ...], line: str) -> tuple[bool, bool]:
     return len(run.notices) >= len(notices), not line or line in run.printed
 
 
-def _stop_in_time(run: Provoked, within: float = _SOON) -> None:
-    began = time.monotonic()
+def _notices_of_the_end(run: Provoked) -> list[str]:
+    """Stop a run; what its engine told until it had ended by itself."""
     run.recorded = run.live.stop()
-    assert time.monotonic() - began < within
+    events: list[AnyEvent] = []
+    while isinstance(batch := run.news.get(timeout=PATIENCE), list):
+        events += batch
+    assert batch is None, batch
+    assert isinstance(events[-1], RunEnded)
+    return [event.text for event in events if isinstance(event, Notice)]
 
 
 @pytest.mark.parametrize(
@@ -148,7 +151,7 @@ def test_a_callback_that_waits_for_ever_on_the_real_clock_is_told_of_with_its_pl
         (notice,) = run.notices
         line = FIRST + fault.count("\n")
         assert notice.startswith(f"tick has not come back for 3 s (node.py:{line}, in fault): it computes")
-        _stop_in_time(run)
+        assert _notices_of_the_end(run) == []
 
 
 def test_a_callback_that_sleeps_long_is_not_taken_for_one_that_hangs(folder: Path) -> None:
@@ -167,7 +170,7 @@ def test_a_node_that_destroys_itself_is_told_of_and_its_other_callbacks_run_no_m
         (notice,) = run.notices
         assert notice.startswith(OWN_END.replace(str(FIRST), str(FIRST + 1)))
         assert run.sentence == notice
-        _stop_in_time(run)
+        assert _notices_of_the_end(run) == []
         assert run.printed == ["destroyed"]
 
 

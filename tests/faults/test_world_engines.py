@@ -23,7 +23,7 @@ from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
 from sim.recording import read
 from sim.trace.events import AnyEvent, Logged, Notice, Printed, RunStarted, Severity
 from tests.faults.support import ANSWERED, PATIENCE, console_on, node_with, nothing_left, still_here
-from tests.support.processes import engines_of
+from tests.support.processes import engines_of, is_stopped
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc")
 
@@ -158,7 +158,7 @@ def test_a_console_that_is_killed_takes_its_engine_and_what_it_started_along(
     fault: str, folder: Path
 ) -> None:
     path = node_with(folder, fault)
-    with nothing_left(within=PATIENCE):
+    with nothing_left():
         console = _console(path, "--record", "run.mcap")
         assert comes_true((folder / "reached").exists)
         console.kill()
@@ -170,14 +170,11 @@ def test_a_console_that_is_killed_takes_its_engine_and_what_it_started_along(
 
 
 def test_a_machine_that_slept_finishes_its_run(folder: Path) -> None:
-    path = node_with(folder, "open('reached', 'w')")
+    path = node_with(folder, "for each in (os.getppid(), os.getpid()): os.kill(each, signal.SIGSTOP)")
     with nothing_left():
         console = _console(path, "--for", "1", "--record", "run.mcap")
-        assert comes_true((folder / "reached").exists)
+        assert comes_true(lambda: sum(map(is_stopped, [console.pid, *engines_of(console.pid)])) == 2)
         both = [console.pid, *engines_of(console.pid)]
-        assert len(both) == 2
-        for each in both:
-            os.kill(each, signal.SIGSTOP)
         time.sleep(2)  # it is how long the machine sleeps, and nothing is waited for
         for each in both:
             os.kill(each, signal.SIGCONT)

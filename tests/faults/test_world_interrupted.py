@@ -106,7 +106,7 @@ def recording_is_whole() -> bool:
 
 @pytest.mark.parametrize(("name", "moment"), MOMENTS_OF_COMMANDS)
 def test_ctrl_c_ends_a_command_at_any_moment_without_a_word(name: str, moment: int) -> None:
-    with nothing_left(within=PATIENCE):
+    with nothing_left():
         command = Command(SCRIPT, str(moment), *COMMANDS[name])
         code = command.ended()
     assert code == (INTERRUPTED if Path("interrupted").exists() else 0)
@@ -118,7 +118,7 @@ def test_ctrl_c_ends_a_command_at_any_moment_without_a_word(name: str, moment: i
 
 @pytest.mark.parametrize("moment", [random.Random(seed).randint(1, LATEST // 2) for seed in range(MOMENTS)])
 def test_ctrl_c_ends_a_server_at_any_moment_without_a_word(moment: int) -> None:
-    with nothing_left(within=PATIENCE):
+    with nothing_left():
         command = Command(SCRIPT, str(moment), "serve", "--port", "0")
         assert command.process.stdout is not None
         if command.process.stdout.readline():
@@ -130,7 +130,7 @@ def test_ctrl_c_ends_a_server_at_any_moment_without_a_word(moment: int) -> None:
 @pytest.mark.parametrize("moment", [random.Random(seed).randint(1, LATEST) for seed in range(MOMENTS)])
 def test_ctrl_c_ends_a_console_that_starts_and_gives_the_terminal_back(moment: int, tmp_path: Path) -> None:
     with (
-        nothing_left(within=PATIENCE),
+        nothing_left(),
         opened(80, 24, tmp_path, "open", EXERCISE, program=[SCRIPT, str(moment)]) as console,
     ):
         assert console.ended() == INTERRUPTED
@@ -168,7 +168,7 @@ def test_ctrl_c_as_a_console_that_was_left_ends_finds_all_of_it_whole(function: 
 
 
 def test_ctrl_c_as_an_engine_starts_is_not_the_engines() -> None:
-    with nothing_left(within=PATIENCE):
+    with nothing_left():
         command = Command("-m", "cbtui", *RUN, "--clock", "real")
         command.until(command.engines)
         assert command.told(signal.SIGINT) == INTERRUPTED
@@ -178,7 +178,7 @@ def test_ctrl_c_as_an_engine_starts_is_not_the_engines() -> None:
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_run_that_is_told_to_end_tells_and_records_what_it_came_to(number: signal.Signals) -> None:
-    with nothing_left(within=PATIENCE):
+    with nothing_left():
         command = Command("-m", "cbtui", *RUN, "--clock", "real")
         command.until(Path("reached").exists)
         assert command.told(number) == 128 + number
@@ -188,7 +188,7 @@ def test_a_run_that_is_told_to_end_tells_and_records_what_it_came_to(number: sig
 
 
 def test_an_engine_that_is_stopped_keeps_nobody_from_ending_its_run() -> None:
-    with nothing_left(within=PATIENCE):
+    with nothing_left():
         command = Command("-m", "cbtui", *RUN, "--clock", "real")
         command.until(Path("reached").exists)
         (engine,) = command.engines()

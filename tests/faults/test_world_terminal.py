@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from sim.recording import read
-from tests.faults.support import PATIENCE, nothing_left
+from tests.faults.support import nothing_left
 from tests.terminal.console import TerminalConsole, opened
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc")
@@ -23,7 +23,7 @@ HUNG_UP = 128 + signal.SIGHUP
 @contextmanager
 def recording_console(home: Path) -> Iterator[TerminalConsole]:
     """A console that records; when it has ended nothing of it may be left, and the recording is whole."""
-    with nothing_left(within=PATIENCE), opened(100, 30, home, "open", "split-groups") as console:
+    with nothing_left(), opened(100, 30, home, "open", "split-groups") as console:
         console.until("What do you expect?")
         console.press(_ESCAPE)
         console.until("LIVE")
@@ -49,7 +49,7 @@ def test_a_console_that_is_told_to_hang_up_gives_the_terminal_back(tmp_path: Pat
 
 
 def test_a_console_that_was_stopped_goes_on_and_gives_the_terminal_back(tmp_path: Path) -> None:
-    with nothing_left(within=PATIENCE), opened(80, 24, tmp_path) as console:
+    with nothing_left(), opened(80, 24, tmp_path) as console:
         console.until("Split groups")
         console.process.send_signal(signal.SIGSTOP)
         os.waitpid(console.process.pid, os.WUNTRACED)

@@ -309,6 +309,6 @@ node.destroy_node()
 rclpy.try_shutdown()
 """
     done = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, timeout=20, check=True
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=60, check=True
     )
     assert (done.stdout, done.stderr) == ("interrupted False\n", "")

@@ -78,9 +78,12 @@ def test_a_reentrant_timer_overlaps_itself_on_real_threads() -> None:
     with on_wall_time() as simulation:
         node = Node("n")
         together = threading.Barrier(3, action=rclpy.shutdown)
-        node.create_timer(
-            0.02, lambda: together.wait(LIMIT) if rclpy.ok() else None, ReentrantCallbackGroup()
-        )
+
+        def meet() -> None:
+            if rclpy.ok():
+                together.wait(LIMIT)
+
+        node.create_timer(0.02, meet, ReentrantCallbackGroup())
         spin(node, MultiThreadedExecutor(3))
         trace = Trace(simulation.events)
     assert {each.thread for each in trace.calls()} == {f"ThreadPoolExecutor-0_{n}" for n in range(3)}

@@ -34,6 +34,6 @@ def test_a_picture_is_taken() -> None:
     camera = Camera(pictures.put, lambda _: None, echo)
     try:
         camera.want(shot(width=3))
-        assert pictures.get(timeout=30).width == 3
+        assert pictures.get(timeout=60).width == 3
     finally:
         camera.stop()

@@ -153,7 +153,7 @@ def test_lines_run_on_the_real_clock_too() -> None:
     while not any("publishing #1" in each.text for each in tools.said):
         clock.sleep(1_000_000)
     line.interrupt()
-    assert ended.wait(30.0)
+    assert ended.wait(60.0)
     assert tools.statuses == [2]
 
 

@@ -6,6 +6,7 @@ A snapshot of a lesson at a moment is::
     assert snap_compare(app, terminal_size=WIDE, run_before=settle)
 """
 
+import asyncio
 from collections.abc import Sequence
 from threading import Event
 
@@ -83,8 +84,8 @@ def observed(events: Sequence[AnyEvent]) -> Observe:
     return observe
 
 
-_FRAMES = 100
-"""More than lanes take to fill."""
+_LIMIT = 60.0
+"""Seconds after which lanes that are not full count as never to be."""
 
 
 async def settle(pilot: Pilot[None]) -> None:
@@ -94,8 +95,7 @@ async def settle(pilot: Pilot[None]) -> None:
         pilot.app.screen.look_for_findings()
         pilot.app.screen.draw()
     await pilot.pause()
-    for lanes in pilot.app.screen.query(Lanes):
-        for _ in range(_FRAMES):
-            if lanes.picture is None or lanes.picture.complete:
-                break
-            await pilot.pause(0.02)
+    async with asyncio.timeout(_LIMIT):
+        for lanes in pilot.app.screen.query(Lanes):
+            while lanes.picture is not None and not lanes.picture.complete:
+                await pilot.pause(0.02)

@@ -20,7 +20,7 @@ FILE = LESSON.file_name
 assert LESSON.starter_path is not None
 assert LESSON.solution_path is not None
 STARTER, SOLUTION = LESSON.starter_path, LESSON.solution_path
-_LIMIT = 30.0
+_LIMIT = 60.0
 _FOREVER = 10**18
 
 

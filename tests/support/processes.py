@@ -20,8 +20,17 @@ def engines_of(console: int) -> list[int]:
 
 def alive(process: int) -> bool:
     """Tell whether a process still does something."""
+    return _state(process) not in "ZX"
+
+
+def is_stopped(process: int) -> bool:
+    """Tell whether a process was stopped by a signal."""
+    return _state(process) == "T"
+
+
+def _state(process: int) -> str:
+    """The letter of its state in ``/proc``; X, which is dead, for one that is gone."""
     try:
-        state = Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
+        return Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
     except (FileNotFoundError, ProcessLookupError):
-        return False
-    return state not in "ZX"
+        return "X"

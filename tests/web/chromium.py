@@ -39,7 +39,7 @@ class Page:
             message["sessionId"] = self.session
         answer = self._answers[self._sent] = asyncio.get_running_loop().create_future()
         await self._wire.send_json(message)
-        return await asyncio.wait_for(answer, 30)
+        return await asyncio.wait_for(answer, 60)
 
     async def listen(self) -> None:
         """Take in what the browser tells, until it ends."""
@@ -72,7 +72,7 @@ class Page:
 
     async def until_drawn(self, text: str) -> None:
         """Wait until a text was drawn since it was last waited for."""
-        async with asyncio.timeout(30):
+        async with asyncio.timeout(60):
             while text.encode() not in self.drawn:
                 await asyncio.sleep(0.05)
         self.drawn = self.drawn.partition(text.encode())[2]
@@ -92,7 +92,7 @@ async def page_of(address: str) -> AsyncIterator[Page]:
             stdout=asyncio.subprocess.DEVNULL,
         )
         try:
-            devtools = await asyncio.wait_for(_address_of(browser), 30)
+            devtools = await asyncio.wait_for(_address_of(browser), 60)
             async with (
                 aiohttp.ClientSession() as session,
                 session.ws_connect(devtools, max_msg_size=0) as wire,

@@ -9,7 +9,7 @@ from tests.web.serving import serving
 
 
 async def until(page: Page, expression: str) -> None:
-    async with asyncio.timeout(20):
+    async with asyncio.timeout(60):
         while not await page.value_of(expression):
             await asyncio.sleep(0.05)
 

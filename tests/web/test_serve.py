@@ -32,19 +32,19 @@ async def read_until(websocket: Socket, text: str) -> None:
     # A console never stops drawing, so that waiting for each message alone would know no end.
     async with asyncio.timeout(60):
         while text.encode() not in drawn:
-            message = await websocket.receive(timeout=30)
+            message = await websocket.receive(timeout=60)
             assert message.type is aiohttp.WSMsgType.BINARY, f"{message} before {text!r} in {drawn[-2000:]!r}"
             drawn += message.data
 
 
 async def until_gone(processes: list[int]) -> None:
-    async with asyncio.timeout(20):
+    async with asyncio.timeout(60):
         while any(map(alive, processes)):
             await asyncio.sleep(0.05)
 
 
 async def until_an_engine_runs(server: Serving) -> int:
-    async with asyncio.timeout(30):
+    async with asyncio.timeout(60):
         while True:
             for process in server.descendants():
                 if ENGINE in Path(f"/proc/{process}/cmdline").read_bytes():
@@ -66,7 +66,7 @@ async def test_a_visitor_sees_the_menu_opens_a_lesson_and_leaves() -> None:
                 await websocket.send_json(["stdin", "q"])
                 await read_until(websocket, "Unit 5")
                 await websocket.send_json(["stdin", "q"])
-                while (message := await websocket.receive(timeout=20)).type is aiohttp.WSMsgType.BINARY:
+                while (message := await websocket.receive(timeout=60)).type is aiohttp.WSMsgType.BINARY:
                     pass
                 assert message.type is aiohttp.WSMsgType.CLOSE
             await until_gone(theirs)
@@ -81,8 +81,8 @@ async def test_a_visitor_who_goes_takes_the_engine_along_and_makes_room() -> Non
                 assert page.status == 503
                 assert "The only place is taken; come back when somebody has left." in await page.text()
             async with session.ws_connect("/ws") as refused:
-                assert b"The only place is taken" in (await refused.receive(timeout=20)).data
-                assert (await refused.receive(timeout=20)).type is aiohttp.WSMsgType.CLOSE
+                assert b"The only place is taken" in (await refused.receive(timeout=60)).data
+                assert (await refused.receive(timeout=60)).type is aiohttp.WSMsgType.CLOSE
             theirs = server.descendants()
             await websocket.close()
             await until_gone(theirs)
@@ -97,7 +97,7 @@ async def test_nothing_is_left_when_the_server_ends(by: signal.Signals) -> None:
             await until_an_engine_runs(server)
             theirs = server.descendants()
             server.process.send_signal(by)
-            ended = await asyncio.to_thread(server.process.wait, 20)
+            ended = await asyncio.to_thread(server.process.wait, 60)
         assert ended == (-by if by is signal.SIGKILL else 0)
         await until_gone(theirs)
         assert not [*server.home.rglob("fault.txt")]
@@ -110,7 +110,7 @@ async def test_a_console_that_hangs_is_killed_with_its_engine() -> None:
             theirs = server.descendants()
             os.kill(theirs[0], signal.SIGSTOP)
             server.process.send_signal(signal.SIGINT)
-            assert await asyncio.to_thread(server.process.wait, 20) == 0
+            assert await asyncio.to_thread(server.process.wait, 60) == 0
         await until_gone(theirs)
 
 
@@ -135,7 +135,7 @@ async def test_strange_pages_and_strange_messages_get_nowhere() -> None:
             ):
                 async with session.ws_connect("/ws?width=99999999&height=x") as websocket:
                     await websocket.send_str(message)
-                    while (answer := await websocket.receive(timeout=20)).type is aiohttp.WSMsgType.BINARY:
+                    while (answer := await websocket.receive(timeout=60)).type is aiohttp.WSMsgType.BINARY:
                         pass
                     assert (answer.type, answer.extra) == (aiohttp.WSMsgType.CLOSE, _NOT_OURS), message
             async with session.get("/") as page:

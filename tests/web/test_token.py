@@ -98,7 +98,7 @@ async def test_who_follows_a_link_of_another_site_is_led_on_by_a_page_of_ours(se
 async def test_a_token_of_ones_own_is_neither_in_the_list_of_processes_nor_handed_to_programs() -> None:
     with serving("--", "split-groups", "--threads", "4", CBTUI_TOKEN=TOKEN) as server:
         async with server.visited() as session, session.ws_connect("/ws") as websocket:
-            await websocket.receive(timeout=20)
+            await websocket.receive(timeout=60)
             for process in (server.process.pid, *server.descendants()):
                 assert b"our class" not in Path(f"/proc/{process}/cmdline").read_bytes()
             for process in server.descendants():

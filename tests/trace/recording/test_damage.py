@@ -155,7 +155,7 @@ def test_chunks_that_claim_nonsense_are_left_out_without_being_believed(whole: b
 
 
 WRITER = """
-import sys, time
+import mmap, sys, time
 from pathlib import Path
 from sim.trace.events import Printed, RunStarted
 from sim.recording import About, BackgroundRecorder, Recorder
@@ -164,9 +164,13 @@ if sys.argv[2] == "background":
     recorder = BackgroundRecorder(recorder)
 recorder.take([RunStarted(0, "killed", "real", 0)])
 number = 0
+with open(sys.argv[3], "r+b") as file:
+    latest = mmap.mmap(file.fileno(), 8)
 while True:
     number += 1
-    recorder.take([Printed(time.monotonic_ns(), f"{number} {'x' * 100}", error=False)])
+    now = time.monotonic_ns()
+    latest[:] = now.to_bytes(8, "little")
+    recorder.take([Printed(now, f"{number} {'x' * 100}", error=False)])
     if number % 500 == 0:
         print(number, flush=True)
     time.sleep(0.0002)
@@ -178,12 +182,14 @@ def test_a_recorder_that_is_killed_leaves_all_but_the_last_second(tmp_path: Path
     chance = random.Random(5)
     for turn in range(2):
         path = tmp_path / f"{turn}.mcap"
-        process = subprocess.Popen([sys.executable, "-c", WRITER, str(path), kind], stdout=subprocess.PIPE)
+        latest = tmp_path / f"{turn}.latest"
+        latest.write_bytes(bytes(8))
+        program = [sys.executable, "-c", WRITER, str(path), kind, str(latest)]
+        process = subprocess.Popen(program, stdout=subprocess.PIPE)
         assert process.stdout is not None
         for _ in range(chance.randint(1, 4)):
             process.stdout.readline()
         time.sleep(chance.random())
-        killed_at = time.monotonic_ns()
         os.kill(process.pid, signal.SIGKILL)
         process.communicate()
         recording = read(path)
@@ -191,7 +197,7 @@ def test_a_recorder_that_is_killed_leaves_all_but_the_last_second(tmp_path: Path
         printed = [event for event in events if isinstance(event, Printed)]
         assert events[0] == RunStarted(0, "killed", "real", 0)
         assert [int(event.text.split()[0]) for event in printed] == list(range(1, len(printed) + 1))
-        assert killed_at - printed[-1].t < 1_000_000_000
+        assert int.from_bytes(latest.read_bytes(), "little") - printed[-1].t < 1_000_000_000
         assert recording.damage is not None
         assert "breaks off" in recording.damage
 

@@ -23,7 +23,7 @@ from tests.trace.recording.files import timeline_of
 TIMES = 1000
 LONGEST_WINDOW = SECOND // 2
 FLUSHED_EVERY = 500
-PATIENCE = 30.0
+PATIENCE = 60.0
 
 
 @pytest.fixture(scope="module")

@@ -149,6 +149,7 @@ async def test_while_the_robot_stands_still_no_further_picture_is_wanted() -> No
         for now in (0.1, 0.2, 0.3):
             app.show(now)
             await pilot.pause(0.25)
+        await settle(pilot, lambda: app.cameras[0].wanted != [])
         assert len(app.cameras[0].wanted) == 1
 
 
