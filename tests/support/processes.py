@@ -1,6 +1,10 @@
 """Processes that others started, looked up in Linux's ``/proc``."""
 
+import time
 from pathlib import Path
+
+_LIMIT = 60.0
+"""Seconds after which a process that should have ended counts as left."""
 
 
 def descendants(process: int) -> list[int]:
@@ -21,6 +25,14 @@ def engines_of(console: int) -> list[int]:
 def alive(process: int) -> bool:
     """Tell whether a process still does something."""
     return _state(process) not in "ZX"
+
+
+def wait_until_gone(processes: list[int]) -> None:
+    """Wait until none of them does anything: whoever watches over an engine ends a moment after it."""
+    end = time.monotonic() + _LIMIT
+    while any(map(alive, processes)):
+        assert time.monotonic() < end, "a process is left"
+        time.sleep(0.01)
 
 
 def is_stopped(process: int) -> bool:

@@ -7,7 +7,7 @@ import pytest
 
 from cbtui.terminal.ending import FAULT
 from sim.recording import read
-from tests.support.processes import alive
+from tests.support.processes import wait_until_gone
 from tests.terminal.console import opened
 
 pytestmark = pytest.mark.skipif(
@@ -44,7 +44,7 @@ def test_paging_through_the_palette_before_it_is_shown_does_nothing(tmp_path: Pa
         console.press(_PALETTE + _PAGE_DOWN)
         console.until("Search")
         console.press("\x1b")
-        console.read_for(0.3)
+        console.until("Unit 5")
         console.press(_LEAVE)
         assert console.ended() == 0, console.said()
 
@@ -64,7 +64,7 @@ def test_a_fault_of_the_consoles_own_is_told_in_a_sentence_and_loses_nothing(
         assert console.ended() == 1
         assert console.left_on() == set()
         said = console.said()
-        assert not any(map(alive, theirs))
+        wait_until_gone(theirs)
     fault = tmp_path / "cbtui" / FAULT
     assert "Traceback" not in said
     assert "ended the console (ZeroDivisionError: [red]as planted[/red])" in said

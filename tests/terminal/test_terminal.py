@@ -1,13 +1,12 @@
 """The console in a real terminal: a lesson from the menu and out again, and nothing is left of it."""
 
 import sys
-import time
 from pathlib import Path
 from signal import SIGTERM
 
 import pytest
 
-from tests.support.processes import alive
+from tests.support.processes import wait_until_gone
 from tests.terminal.console import opened
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc")
@@ -45,9 +44,7 @@ def test_a_lesson_is_chosen_called_paused_scrubbed_and_left_and_nothing_stays(
         console.press("q")
         assert console.ended() == 0, console.said()
         assert console.left_on() == set()
-        gone_by = time.monotonic() + 60
-        while any(map(alive, theirs)):
-            assert time.monotonic() < gone_by, "an engine is left"
+        wait_until_gone(theirs)
 
 
 def test_a_terminal_is_as_it_was_when_the_console_is_ended_from_outside(tmp_path: Path) -> None:
