@@ -3,6 +3,7 @@
 import os
 import stat
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from queue import Queue
@@ -39,9 +40,10 @@ def server(sent: "Queue[Command]") -> Iterator[ControlServer]:
     server.start()
     yield server
     server.stop()
-    for thread in set(threading.enumerate()) - before:
-        thread.join(PATIENCE)
-        assert not thread.is_alive()
+    end = time.monotonic() + PATIENCE
+    while not set(threading.enumerate()) <= before:
+        assert time.monotonic() < end, "a thread is left"
+        time.sleep(0.001)
 
 
 def given(sent: "Queue[Command]") -> RunLine:

@@ -139,7 +139,7 @@ def test_with_two_threads_the_timer_ticks_on_the_other_worker_while_the_service_
 
 
 def test_three_calls_take_both_workers_of_a_reentrant_group_until_one_is_free_for_a_late_tick() -> None:
-    trace = run_service(reentrant(), 2, 0.8, calls=3)
+    trace = run_service(reentrant(), 2, 0.79, calls=3)
     assert trace.times("serve") == [CALLED, CALLED, SERVED]
     assert trace.times("timer") == [0.1, 0.2, SERVED, 0.6, 0.7]
 
