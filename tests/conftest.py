@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 from hypothesis import settings
+from textual.notifications import Notification
 
 from tests.support import style_sheets
 
@@ -21,6 +22,14 @@ def state_of_nobody(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """Let a console remember what it opened in a folder of the tests', and not in the person's."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("XDG_STATE_HOME", str(tmp_path_factory.mktemp("state")))
+        yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def messages_that_stay() -> Iterator[None]:
+    """Leave on screen what a console says in passing: on a busy machine it may go before a test looks."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(Notification, "time_left", 600.0)
         yield
 
 

@@ -261,7 +261,6 @@ async def test_progress_that_cannot_be_read_is_told_of_in_the_menu(
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
     (tmp_path / "cbtui").mkdir()
     (tmp_path / "cbtui" / "progress.jsonl").write_text("no progress\n")
-    monkeypatch.setattr(CbtuiApp, "NOTIFICATION_TIMEOUT", 600)
     app = menu()
     async with app.run_test(size=NARROW) as pilot:
         await pilot.pause()

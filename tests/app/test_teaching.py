@@ -40,8 +40,6 @@ _PATIENCE = 60.0
 class Console(CbtuiApp):
     """A console on a lesson of which the learner knows nothing yet."""
 
-    NOTIFICATION_TIMEOUT = 600
-
     def __init__(self, seconds: float = 2.0, lesson: str = LESSON.id, observe: Observe | None = None) -> None:
         self.engines = FakeEngines(EVENTS, ns(seconds))
         super().__init__(start_lesson=lesson, open_session=self.engines, observe=observe or observed(EVENTS))
