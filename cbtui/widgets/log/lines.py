@@ -16,7 +16,7 @@ from cbtui.text.cells import fit
 from cbtui.widgets.following import Following
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.log.filter import Filter, LogEvent
-from cbtui.widgets.log.line import line_of
+from cbtui.widgets.log.line import line_of, width_of
 from cbtui.widgets.log.search import Search
 from sim.trace.events import Printed, Severity
 from sim.trace.model import Nanoseconds
@@ -90,6 +90,7 @@ class LogLines(Following):
         if picked is not None and not wanted.passes(timeline.logs[picked], timeline):
             self.picked = None
         self._search = Search(timeline, wanted)
+        self._widest = 0
         self._look_on()
 
     def show(self, timeline: Timeline, now: Nanoseconds) -> None:
@@ -97,6 +98,7 @@ class LogLines(Following):
         if timeline is not self._search.timeline:
             self._search = Search(timeline, self._search.wanted)
             self.picked = self._kept = None
+            self._widest = 0
         self._now = now
         self._look_on()
 
@@ -124,13 +126,27 @@ class LogLines(Following):
             self.picked = None
         looks_back = self._now < timeline.end
         self._later = len(self._search.places) - count if looks_back else 0
-        drawn = (id(self._search), count, self._search.widest, looks_back, len(timeline.logs))
+        drawn = (id(self._search), count, looks_back, len(timeline.logs))
         if drawn != self._drawn:
             self._drawn = drawn
-            self.grow(count, self._search.widest)
+            self.grow(count, self._widest)
+            self._widen()
         if self._kept is not None:
             self._scroll_to_row(self._search.until(self._kept))
         self.counts = (count, written)
+
+    def watch_scroll_y(self, old_value: float, new_value: float) -> None:
+        """Have room for the lines that come into view."""
+        super().watch_scroll_y(old_value, new_value)
+        self._widen()
+
+    def _widen(self) -> None:
+        """Be as wide as the widest line that has been in view; to measure every line would take too long."""
+        rows = range(self.scroll_offset.y, min(self.scroll_offset.y + self._height, self._count))
+        logs, places = self._search.timeline.logs, self._search.places
+        widest = max((width_of(logs[places[row]]) for row in rows), default=0)
+        if widest > self._widest:
+            self.grow(self._count, widest)
 
     def _place_of(self, row: int) -> int:
         """Return the place in the whole log of a line that is shown, or where the next one would be."""

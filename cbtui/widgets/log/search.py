@@ -6,7 +6,6 @@ from collections import deque
 from collections.abc import Sequence
 
 from cbtui.widgets.log.filter import Filter, LogEvent
-from cbtui.widgets.log.line import width_of
 from sim.trace.timeline import Timeline
 
 _REMEMBERED = 64
@@ -23,8 +22,6 @@ class Search:
     def __init__(self, timeline: Timeline, wanted: Filter) -> None:
         self.timeline = timeline
         self.wanted = wanted
-        self.widest = 0
-        """Columns of the widest line that was looked at and let through."""
         self._found = array("q")
         self._looked_at = 0
         self._last: deque[LogEvent] = deque(maxlen=_REMEMBERED)
@@ -40,19 +37,17 @@ class Search:
 
     def go_on(self, most: int) -> bool:
         """Look at so many further lines at most; tell whether there are more."""
+        if self.wanted.lets_all_through:
+            return False
         logs = self.timeline.logs
         self._go_back_to_late_ones()
         start = self._looked_at
         new = logs[start : start + most]
         self._last.extend(new[-_REMEMBERED:])
         self._looked_at += len(new)
-        if self.wanted.lets_all_through:
-            passed = new
-        else:
-            here = [place for place, event in enumerate(new) if self.wanted.passes(event, self.timeline)]
-            self._found.extend(start + place for place in here)
-            passed = [new[place] for place in here]
-        self.widest = max([self.widest, *map(width_of, passed)])
+        self._found.extend(
+            place for place, event in enumerate(new, start) if self.wanted.passes(event, self.timeline)
+        )
         return self._looked_at < len(logs)
 
     def _go_back_to_late_ones(self) -> None:

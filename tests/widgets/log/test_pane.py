@@ -4,6 +4,8 @@ from textual.pilot import Pilot
 
 import cbtui.widgets.log.lines as lines_module
 from cbtui.widgets.log import LogFilter, LogLines, LogView
+from cbtui.widgets.log.filter import LogEvent
+from cbtui.widgets.log.line import width_of
 from sim.trace.events import Logged, Severity
 from sim.trace.timeline import Timeline
 from tests.app.pictures import lines_of
@@ -295,3 +297,29 @@ async def test_a_long_line_is_cut_off_and_shown_as_far_as_can_be_when_it_is_pick
         await pilot.press("up")
         await pilot.pause()
         assert shown(app)[0] == (text if len(text) <= 80 else f"{text[:79]}…")
+
+
+async def test_the_pane_is_as_wide_as_the_widest_line_that_was_in_view_and_measures_no_other(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    measured: list[LogEvent] = []
+
+    def measure(event: LogEvent) -> int:
+        measured.append(event)
+        return width_of(event)
+
+    monkeypatch.setattr(lines_module, "width_of", measure)
+    app = PaneOnly()
+    async with app.run_test(size=(30, 10)) as pilot:
+        lines = app.query_one(LogLines)
+        timeline = log_of(5000)
+        timeline.extend([Logged(ns(5), Severity.INFO, "n", "漢字" * 30, 0, 0)])
+        timeline.extend([Logged(ns(6), Severity.INFO, "n", f"line {n}", 0, 0) for n in range(100)])
+        await showing(pilot, timeline)
+        assert lines.virtual_size.width == len("[INFO] [6.000] [n]: line 99")
+        assert len(measured) <= 20
+        lines.scroll_to(y=4995, animate=False, immediate=True)
+        await pilot.pause()
+        assert lines.virtual_size.width == len("[INFO] [5.000] [n]: ") + 120
+        await typed(pilot, "line")
+        assert lines.virtual_size.width < 30

@@ -74,12 +74,6 @@ def test_the_lines_up_to_a_place_are_counted() -> None:
     assert [search.until(count) for count in (0, 1, 3, 4, 30)] == [0, 1, 1, 2, 10]
 
 
-def test_the_widest_line_that_is_let_through_is_measured_in_columns() -> None:
-    timeline = timeline_of([line(0, "x 漢字"), line(1, "x"), line(2, "another, and longer")])
-    assert searched(timeline, "x").widest == len("[INFO] [0.000] [n]: x ") + 4
-    assert searched(timeline, "").widest == len("[INFO] [0.000] [n]: another, and longer")
-
-
 @given(st.text(st.characters(exclude_categories=()), max_size=20))
 def test_the_width_of_a_line_is_that_of_what_is_shown_of_it(text: str) -> None:
     assert width_of(line(0, text)) == cell_len(line_of(line(0, text)))
@@ -89,7 +83,7 @@ def test_plain_lines_are_measured_without_going_through_their_characters(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr("cbtui.widgets.log.line.visible", None)
-    assert searched(timeline_of([Printed(0, "x" * 4096, error=False)]), "").widest == 4096
+    assert width_of(Printed(0, "x" * 4096, error=False)) == 4096
 
 
 def test_a_late_line_is_noticed_among_lines_that_are_the_same() -> None:
