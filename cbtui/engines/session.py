@@ -159,7 +159,7 @@ class Session:
                 self._warden.stop()
                 self._ended(f"the engine sent something unreadable: {error}")
                 return
-            self._finished = self._finished or any(isinstance(event, RunEnded) for event in events)
+            self._finished = self._finished or RunEnded in map(type, events)
             if events:
                 self._deliver(events)
         self._ended(None if self._finished or self._stopping else self._epitaph())

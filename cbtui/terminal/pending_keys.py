@@ -5,7 +5,6 @@ the key does finds only some of them; and one that takes the screen away again l
 """
 
 import asyncio
-from math import inf
 from time import monotonic
 
 from textual.app import App
@@ -22,9 +21,6 @@ _AGAIN = 0.005
 class PatientApp(App[None]):
     """An app whose keys and clicks take effect when the screen is whole, and not on what is gone."""
 
-    acted_at = -inf
-    """When the person last did something, on the monotonic clock."""
-
     @property
     def is_mounting(self) -> bool:
         """Whether any widget that is there still has to get its children."""
@@ -38,7 +34,6 @@ class PatientApp(App[None]):
     async def on_event(self, event: Event) -> None:
         """Deal with an event; with what a person did, when the screen is whole."""
         if isinstance(event, InputEvent):
-            self.acted_at = monotonic()
             patient_until = monotonic() + LONGEST
             while self.is_mounting and monotonic() < patient_until:
                 await asyncio.sleep(_AGAIN)

@@ -2,40 +2,56 @@
 
 import errno
 import os
+import socket
 import threading
 import time
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from multiprocessing.connection import Connection
 
-from sim.trace.events import AnyEvent, EventsLost, encode
+from sim.trace.events import AnyEvent, EventsLost, Logged, Notice, Printed, Severity, encode
 
 # Kept from before virtual time, or the keeping of last words, puts its own in their place.
 _RealThread = threading.Thread
 _real_sleep = time.sleep
 _real_lock = threading.Lock
+_monotonic = time.monotonic
 _leave = os._exit
 
 _PERIOD = 0.01
 """Seconds between two batches."""
+_LOOK = 0.001
+"""Seconds between two looks of a thread that is held up."""
 _QUIET = 10
 """Periods without a batch after which a heartbeat tells that the engine is there."""
 _BATCH = 2048
 """Events after which a batch goes out at once."""
 _BOUND = 200_000
 """Events that may wait on the real clock; more are thrown away, and counted."""
+_LINES = 256
+"""Waiting events from which on a thread that writes a line on the real clock is held up until fewer wait."""
+_PATIENCE = 1.0
+"""Seconds for which a line is held up at most: nobody may be reading."""
+_TELL = 1.0
+"""Seconds of having held lines up after which a notice tells of it, once."""
+_IN_THE_PIPE = 1 << 12
+"""Bytes that the pipe takes on the real clock before they are read: an answer comes after all of them."""
 
 TRACE_CLOSED = 86
 """The exit code of an engine whose program has closed the pipe that the trace goes down."""
 
 
 class Outbox:
-    """Takes events from any thread in order and sends them. Recording never waits on the real clock.
+    """Takes events from any thread in order and sends them.
 
-    On virtual time the thread that records sends a full batch itself: waiting for a slow reader then costs
-    no virtual time, and nothing is ever lost. ``before_batch`` runs on the sending thread every period, and
-    so does ``pack``, which makes bytes of a batch; ``heartbeat`` gives the batch that is sent when there has
-    been none for a while, which may be empty.
+    On the real clock recording does not wait, and what is too much is thrown away and counted. Only a thread
+    that writes lines faster than they are read is held up, as by a slow terminal: no line is lost then, and
+    the answer to a command does not come late behind them. On virtual time the thread that records sends a
+    full batch itself: waiting for a slow reader then costs no virtual time, and nothing is ever lost.
+
+    ``before_batch`` runs on the sending thread every period; ``pack`` makes bytes of a batch; ``heartbeat``
+    gives the batch that is sent when there has been none for a while, which may be empty.
     """
 
     def __init__(
@@ -58,6 +74,13 @@ class Outbox:
         self._lost = 0
         self._lost_told = 0
         self._quiet = 0
+        self._held_up = 0.0
+        self._bell = _real_lock()
+        """Released when there is something to send before the period is over."""
+        self._bell.acquire()
+        if not may_wait:
+            with socket.socket(fileno=os.dup(pipe.fileno())) as end:
+                end.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, _IN_THE_PIPE)
 
     def start(self) -> None:
         """Begin to send."""
@@ -67,12 +90,30 @@ class Outbox:
         """Take an event; nothing once closed."""
         if self._closed:
             return
-        if not self._may_wait and len(self._waiting) >= _BOUND:
-            self._lost += 1
-            return
+        if not self._may_wait:
+            if len(self._waiting) >= _LINES and isinstance(event, Logged | Printed):
+                self._hold_up(event.t)
+            if len(self._waiting) >= _BOUND:
+                self._lost += 1
+                return
         self._waiting.append(event)
         if self._may_wait and len(self._waiting) >= _BATCH:
             self.flush()
+
+    def _hold_up(self, t: int) -> None:
+        """Have the calling thread wait until fewer events do."""
+        began = _monotonic()
+        with suppress(RuntimeError):  # another thread has rung
+            self._bell.release()
+        while len(self._waiting) >= _LINES and _monotonic() < began + _PATIENCE and not self._closed:
+            _real_sleep(_LOOK)
+        told, self._held_up = self._held_up >= _TELL, self._held_up + _monotonic() - began
+        if self._held_up >= _TELL and not told:
+            text = (
+                "the program writes lines faster than they can be taken: what writes them is held up, "
+                "as by a slow terminal; write fewer"
+            )
+            self._waiting.append(Notice(t, Severity.INFO, text))
 
     def flush(self) -> None:
         """Send everything that waits. A reader that has gone away is no error: nobody is left to tell."""
@@ -104,9 +145,12 @@ class Outbox:
         self.flush()
 
     def _send_for_ever(self) -> None:
+        due = _monotonic()
         while True:
-            _real_sleep(_PERIOD)
-            self._before_batch()
+            self._bell.acquire(timeout=_PERIOD)
+            if _monotonic() >= due:
+                due = _monotonic() + _PERIOD
+                self._before_batch()
             self.flush()
             self._quiet += 1
             if self._quiet >= _QUIET:

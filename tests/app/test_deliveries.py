@@ -6,6 +6,7 @@ from time import monotonic
 import pytest
 
 from cbtui.runs.live.live_run import LiveRun
+from cbtui.screens.lesson import LessonScreen
 from sim.trace.events import AnyEvent, Printed
 from tests.support.builder import ns
 from tests.support.console import WIDE, RecordedConsole, settle
@@ -30,22 +31,34 @@ async def test_a_long_batch_is_taken_in_parts_and_in_order(monkeypatch: pytest.M
     assert max(map(len, taken)) <= 256
 
 
-async def test_a_long_batch_comes_slowly_while_a_key_is_answered_and_whole(
+async def test_after_each_part_a_session_rests_for_as_long_as_the_machine_let_it_wait(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("cbtui.screens.lesson.running._REST", 0.1)
-    monkeypatch.setattr("cbtui.screens.lesson.running._ANSWERING", 60.0)
+    waits: list[bool] = []
+
+    def waited(_since: float) -> float:
+        waits.append(all(part.taken.is_set() for part in handed_over))
+        return 0.05
+
+    monkeypatch.setattr("cbtui.screens.lesson.running.waited", waited)
+    handed_over: list[LessonScreen.Delivered] = []
     app = RecordedConsole("shared-group", shared_group_run().events, 5.0)
     async with app.run_test(size=WIDE) as pilot:
         await settle(pilot)
         screen = app.lesson_screen
+        post = screen.post_message
+
+        def hand_over(message: LessonScreen.Delivered) -> None:
+            handed_over.append(message)
+            post(message)
+
+        monkeypatch.setattr(screen, "_hand_over", hand_over)
         logs = len(screen.live_run.timeline.logs)
         batch: list[AnyEvent] = [Printed(ns(5) + number, "x", error=False) for number in range(3 * 256)]
-        await pilot.press("1")
-        pressed = monotonic()
+        began = monotonic()
         await asyncio.to_thread(screen._deliver, screen._runs, batch)
-        assert monotonic() - pressed >= 0.1
-        await settle(pilot)
+        assert monotonic() - began >= 3 * 0.05
+        assert waits == [True] * 3
         assert len(screen.live_run.timeline.logs) == logs + len(batch)
 
 
@@ -59,3 +72,31 @@ async def test_a_session_may_deliver_a_long_batch_to_a_screen_that_is_gone() -> 
         batch: list[AnyEvent] = [Printed(ns(5) + number, "x", error=False) for number in range(2 * 256)]
         # As on the session's own thread, which knows no app: asyncio.to_thread would hand it on.
         await asyncio.get_running_loop().run_in_executor(None, screen._deliver, screen._runs, batch)
+
+
+async def test_frames_that_nobody_asked_for_wait_on_a_busy_machine_and_those_of_keys_do_not(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("cbtui.screens.lesson.screen.waited", lambda _since: 60.0)
+    monkeypatch.setattr("cbtui.screens.lesson.screen._LONGEST_REST", 60.0)
+    drawn: list[bool] = []
+    app = RecordedConsole("shared-group", shared_group_run().events, 5.0)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        screen = app.lesson_screen
+        draw_lanes = screen.draw_lanes
+
+        def note() -> None:
+            drawn.append(screen._stale)
+            draw_lanes()
+
+        while screen._rests_until < monotonic():
+            screen._grown = True
+            await pilot.pause(0.02)
+        monkeypatch.setattr(screen, "draw_lanes", note)
+        screen._grown = True
+        await pilot.pause(0.2)
+        assert not drawn
+        await pilot.press("left_square_bracket")
+        while not drawn:
+            await pilot.pause(0.01)

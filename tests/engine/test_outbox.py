@@ -1,12 +1,14 @@
 """The way of events out of the engine: in order, bounded, and what is thrown away is counted."""
 
 import multiprocessing
+import time
+from threading import Thread
 
 import pytest
 
 from sim.engine import outbox
 from sim.engine.outbox import Outbox
-from sim.trace.events import AnyEvent, EventsLost, Printed, RunEnded, TimePassed, decode
+from sim.trace.events import AnyEvent, EventsLost, Notice, Printed, RunEnded, TimePassed, decode
 
 
 def _lines(first: int, count: int) -> list[AnyEvent]:
@@ -30,6 +32,47 @@ def test_on_the_real_clock_recording_never_waits_and_what_overflows_is_counted(
     box.record(_lines(20, 1)[0])
     box.flush()
     assert decode(far.recv_bytes()) == _lines(20, 1)
+
+
+def test_on_the_real_clock_a_thread_that_writes_too_many_lines_is_held_up_and_none_is_lost(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(outbox, "_LINES", 10)
+    monkeypatch.setattr(outbox, "_PATIENCE", 60.0)
+    monkeypatch.setattr(outbox, "_TELL", 1e-9)
+    far, near = multiprocessing.Pipe()
+    box = Outbox(near, may_wait=False, before_batch=_nothing)
+    lines = _lines(0, 1000)
+    writer = Thread(target=lambda: [box.record(line) for line in lines], daemon=True)
+    writer.start()
+    while len(box._waiting) < 10:
+        time.sleep(0.001)
+    writer.join(0.05)
+    assert writer.is_alive()
+    box.record(TimePassed(5))
+    box.start()
+    told: list[AnyEvent] = []
+    while len(told) < len(lines) + 2:
+        told += decode(far.recv_bytes())
+    writer.join()
+    assert told.index(TimePassed(5)) == 10
+    assert [event for event in told if isinstance(event, Printed)] == lines
+    assert [event.text for event in told if isinstance(event, Notice)] == [
+        "the program writes lines faster than they can be taken: what writes them is held up, "
+        "as by a slow terminal; write fewer"
+    ]
+
+
+def test_nobody_who_reads_holds_up_a_line_for_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(outbox, "_LINES", 10)
+    monkeypatch.setattr(outbox, "_BOUND", 12)
+    monkeypatch.setattr(outbox, "_PATIENCE", 0.01)
+    far, near = multiprocessing.Pipe()
+    box = Outbox(near, may_wait=False, before_batch=_nothing)
+    for line in _lines(0, 14):
+        box.record(line)
+    box.flush()
+    assert decode(far.recv_bytes()) == [*_lines(0, 12), EventsLost(11, 2)]
 
 
 def test_on_virtual_time_a_full_batch_is_sent_by_whoever_records(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -39,6 +39,9 @@ SPEEDS: tuple[float | None, ...] = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, No
 _LETS_GO = ("resume", "run until ")
 """What the trace says of commands that let time go on: a halt before those was that of an earlier command."""
 
+_CHANGES_STATE = {Notice, TimeHalted, CommandGiven}
+"""Events that say whether time goes on; most batches have none."""
+
 
 class Session(Protocol):
     """One engine process. ``deliver`` and ``ended`` are called on a thread of the session's own."""
@@ -137,7 +140,7 @@ class LiveRun:
         self.timeline.extend(events)
         self._tape.take(events)
         self._silent = False
-        for event in events:
+        for event in events if not _CHANGES_STATE.isdisjoint(map(type, events)) else ():
             if isinstance(event, Notice):
                 self._silent = self._silent or event.text.startswith(SILENT)
             elif isinstance(event, TimeHalted):

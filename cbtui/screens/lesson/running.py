@@ -13,6 +13,7 @@ from cbtui.engines.session import Deliver, Ended
 from cbtui.keys.actions import PANES, Scope
 from cbtui.keys.keymap import keymap_of
 from cbtui.looks.theme import Charset
+from cbtui.processor import not_computing, waited
 from cbtui.runs.compared_runs import Side
 from cbtui.runs.live.findings import Watch
 from cbtui.runs.live.live_recording import Finish
@@ -35,14 +36,10 @@ if TYPE_CHECKING:
 
 _AT_ONCE = 256
 """Events that the screen takes before keys have their turn: of lines as long as they come, a megabyte."""
-_BACKLOG = 4
-"""Parts of batches that may wait for the screen; the engine keeps what comes meanwhile, as far as it can."""
 _PATIENCE = 1.0
 """Seconds for which a session waits for a screen that takes nothing: it may be gone."""
-_ANSWERING = 0.2
-"""Seconds from a key on in which a batch of many parts goes slowly to the screen, which has to answer."""
-_REST = 0.02
-"""Seconds between two parts then."""
+_LONGEST_REST = 0.1
+"""Seconds after which more is handed over, however short of processors the machine is."""
 
 
 class RunningScreen(SizedScreen[None]):
@@ -79,8 +76,6 @@ class RunningScreen(SizedScreen[None]):
         self._finishing: set[asyncio.Task[None]] = set()
         self._left = False
         self._offered: tuple[object, ...] = ()
-        self._backlog = threading.BoundedSemaphore(_BACKLOG)
-        self._cbtui: CbtuiApp | None = None
         self._begin(self.FIRST_SPEED)
 
     class Delivered(Message):
@@ -90,8 +85,7 @@ class RunningScreen(SizedScreen[None]):
             super().__init__()
             self.run = run
             self.events = events
-            self.counts = False
-            """Whether it is one of the few that may wait."""
+            self.taken = threading.Event()
 
     class Over(Message):
         """The engine of the run with this number is gone; ``loss`` says how, if it should not be."""
@@ -154,18 +148,18 @@ class RunningScreen(SizedScreen[None]):
             self._tell(sentence)
 
     def _deliver(self, run: int, events: list[AnyEvent]) -> None:
-        """Hand a batch over, in parts; another thread is held up while the screen has enough to do."""
-        for first in range(0, len(events), _AT_ONCE):
-            self._deliver_part(run, events[first : first + _AT_ONCE], rest=first > 0)
+        """Hand a batch over, in parts.
 
-    def _deliver_part(self, run: int, events: list[AnyEvent], *, rest: bool) -> None:
-        message = self.Delivered(run, events)
-        if threading.current_thread() is not threading.main_thread():
-            console = self._cbtui  # a screen that is gone has no app
-            if rest and console is not None and time.monotonic() < console.acted_at + _ANSWERING:
-                time.sleep(_REST)
-            message.counts = self._backlog.acquire(timeout=_PATIENCE)
-        self._hand_over(message)
+        Another thread is held up until the screen has taken a part, and then rests for as long as both had
+        to wait for a processor: a process that always wants one gets it late when a key comes.
+        """
+        for first in range(0, len(events), _AT_ONCE):
+            message = self.Delivered(run, events[first : first + _AT_ONCE])
+            before = not_computing()
+            self._hand_over(message)
+            if threading.current_thread() is not threading.main_thread():
+                message.taken.wait(_PATIENCE)
+                time.sleep(min(waited(before), _LONGEST_REST))
 
     def _hand_over(self, message: Message) -> None:
         """Bring something from the session's thread to the screen's; one that is closing lets it drop."""
@@ -173,8 +167,7 @@ class RunningScreen(SizedScreen[None]):
 
     @on(Delivered)
     def _take(self, message: Delivered) -> None:
-        if message.counts:
-            self._backlog.release()
+        message.taken.set()
         if message.run == self._runs:
             self._tell(self._run.take(message.events))
             self._grown = True
@@ -187,7 +180,6 @@ class RunningScreen(SizedScreen[None]):
 
     def _start(self) -> None:
         """Start the first run, when the screen is there."""
-        self._cbtui = cast("CbtuiApp", self.app)
         self._tell(self._run.start())
 
     def _begin(self, speed: float | None) -> None:

@@ -10,6 +10,7 @@ from textual.binding import BindingType
 
 from cbtui.keys.actions import CHECKS, Scope, bindings_of
 from cbtui.keys.keymap import keymap_of
+from cbtui.processor import not_computing, waited
 from cbtui.runs.live.live_run import State
 from cbtui.runs.live.playhead import SPANS
 from cbtui.screens.diagnoses import problems_note
@@ -32,6 +33,12 @@ FRAMES_A_SECOND = 30
 _LANES_A_PANE = 6
 """Frames of the lanes for each of the other panes while a run goes on: those tell in words and figures, which
 nobody reads as fast as lanes are seen to move."""
+
+_RESTS = 2.0
+"""Seconds of rest for each second that a frame had to wait for a processor."""
+
+_LONGEST_REST = 0.5
+"""Seconds after which a frame is drawn however short of processors the machine is."""
 
 _LANES_A_TEXT = 12
 """Frames of the lanes for each of log and code: lines that scroll past are read no faster."""
@@ -69,6 +76,8 @@ class LessonScreen(ExportingScreen):
 
     _drawn_at = inf
     """When all panes were drawn last; the first time is the timer's."""
+    _rests_until = -inf
+    """When the next frame may be drawn that nobody asked for."""
     _texts_behind = False
     """Whether log and code have been left out since."""
 
@@ -147,6 +156,8 @@ class LessonScreen(ExportingScreen):
             self.draw()
 
     def _draw_if_stale(self) -> None:
+        if monotonic() < self._rests_until and not self._stale:
+            return
         self._frames += 1
         if self._watch.look_when_due():
             self._stale = True
@@ -157,6 +168,13 @@ class LessonScreen(ExportingScreen):
             self._draw_all_but_texts()
         elif self._grown and self.layout_now is not Layout.SMALL:
             self.draw_lanes()
+        else:
+            return
+        self.call_after_refresh(self._rest, not_computing())
+
+    def _rest(self, before: float) -> None:
+        """Draw nothing unasked for as long as the machine let the last frame wait for a processor."""
+        self._rests_until = monotonic() + min(_RESTS * waited(before), _LONGEST_REST)
 
     def _draw_pane(self, name: str) -> None:
         timeline = self._run.timeline
