@@ -13,7 +13,6 @@ from cbtui.engines.session import Deliver, Ended
 from cbtui.keys.actions import PANES, Scope
 from cbtui.keys.keymap import keymap_of
 from cbtui.looks.theme import Charset
-from cbtui.processor import not_computing, waited
 from cbtui.runs.compared_runs import Side
 from cbtui.runs.live.findings import Watch
 from cbtui.runs.live.live_recording import Finish
@@ -25,6 +24,7 @@ from cbtui.runs.setup.subject import Subject
 from cbtui.screens.sized import SizedScreen
 from cbtui.terminal.compositing import SparingCompositor
 from cbtui.terminal.garbage_collector import collect_now, let_go_of_screen
+from cbtui.terminal.processor import not_computing, waited
 from lessons.lesson import Lesson
 from sim.engine.setup import Keyboard
 from sim.trace.events import AnyEvent

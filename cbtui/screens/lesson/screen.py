@@ -10,12 +10,12 @@ from textual.binding import BindingType
 
 from cbtui.keys.actions import CHECKS, Scope, bindings_of
 from cbtui.keys.keymap import keymap_of
-from cbtui.processor import not_computing, waited
 from cbtui.runs.live.live_run import State
 from cbtui.runs.live.playhead import SPANS
 from cbtui.screens.diagnoses import problems_note
 from cbtui.screens.layout import Layout
 from cbtui.screens.lesson.exporting import ExportingScreen
+from cbtui.terminal.processor import not_computing, waited
 from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.diagnosis import Diagnosis, call_note, verdict, way_on, with_worst
