@@ -20,6 +20,7 @@ from sim.clock.child_processes import ChildProcesses
 from sim.clock.dates import replace_dates
 from sim.clock.descriptors import replace_descriptors
 from sim.clock.entropy import replace_entropy
+from sim.clock.hashes import number_threads
 from sim.clock.imports import replace_imports
 from sim.clock.outside import start_outside
 from sim.clock.outside_work import OutsideWork
@@ -207,6 +208,7 @@ def live_on(clock: VirtualClock, tell: Callable[[str], None] = _tell_nobody) -> 
     ChildProcesses(outside).replace(replacements)
     Signals(outside).replace(replacements)
     replace_imports(replacements)
+    number_threads(clock)
     replacements.hand_on()
 
 

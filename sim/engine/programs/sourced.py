@@ -9,7 +9,8 @@ from importlib.machinery import ModuleSpec, PathFinder
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, cast
 
-from sim.clock import Clock
+from sim.clock import Clock, VirtualClock
+from sim.clock.hashes import number_tasks
 
 if TYPE_CHECKING:
     from importlib.abc import Loader
@@ -77,6 +78,8 @@ class _AsyncioFinder:
         from sim.clock.asyncio_loops import ProgramLoops
 
         asyncio.set_event_loop_policy(ProgramLoops(self._clock))
+        if isinstance(self._clock, VirtualClock):
+            number_tasks(self._clock)
 
 
 def _loader(*steps: Callable[[ModuleType], None]) -> Loader:
