@@ -77,8 +77,6 @@ from sim.trace.integrity.sealing import Seal
 
 _SIGNAL_AFTER = 0.5
 """Real seconds after which a program on virtual time that comes to no wait is interrupted by a signal."""
-_CONTEXTS_END_AFTER = 1_000_000_000
-"""Nanoseconds after which a program's contexts end if it was interrupted and still runs."""
 _BATCHES_A_LOOK = 16
 """Sealed batches to one that is sent with a look at the engine's own functions, which takes milliseconds."""
 _STOPPED = "it was stopped"
@@ -265,17 +263,19 @@ class Engine:
         return True
 
     def _interrupt(self) -> None:
-        _signal_main()  # first: a program can have broken what starts threads
-        self._clock.call_at(self._clock.now() + _CONTEXTS_END_AFTER, self._programs.end_contexts)
+        try:
+            self._programs.end_contexts()
+        finally:
+            _signal_main()
 
     def _interrupt_on(self, clock: VirtualClock) -> None:
         self._limit_ending(clock)
+        self._programs.end_contexts()
         clock.interrupt(threading.main_thread().ident or 0)
 
     def _limit_ending(self, clock: VirtualClock) -> None:
         clock.resume()
         clock.set_speed(None)
-        clock.call_at(clock.now() + _CONTEXTS_END_AFTER, self._programs.end_contexts)
         clock.call_at(clock.now() + VIRTUAL_GRACE, partial(self._end_by_force, VIRTUAL_GRACE / 1e9))
 
     def _end_in_time(self) -> None:
@@ -333,6 +333,7 @@ class Engine:
             flush_files_soon()
             self._leave()
         clock.inject(partial(self._limit_ending, clock))
+        clock.inject(self._programs.end_contexts)
         self._grace_begins.release()
         _signal_main()
 
@@ -342,7 +343,8 @@ class Engine:
         finalise(self._modules, lambda file: any(is_learners(file, folder) for folder in folders))
         if os.getpid() != self._pid:
             _leave(outcome.status)  # a program forked, and this is the other one
-        self._conclude(outcome.sentence, outcome.failed)
+        if not self._conclude(outcome.sentence, outcome.failed) and outcome.failed:
+            self._tell_of_error(outcome.sentence)  # it failed as it was told to end
         finish_lines()
         self._leave()
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 from sim.ros.delivery import Delivery, ExpiringDelivery
 from sim.ros.duration import Duration
 from sim.ros.event_handler import EndpointEvents, EventCallbacks, EventHandler
-from sim.ros.exceptions import InvalidHandle
+from sim.ros.exceptions import InvalidHandle, RCLError
 from sim.ros.handle import Handle
 from sim.ros.interfaces import Message, copy_message, from_cdr
 from sim.ros.qos import DurabilityPolicy, QoSProfile
@@ -114,6 +114,7 @@ class Publisher:
             TypeError: it is not a message of this publisher's type.
             ValueError: the bytes hold no such message.
             InvalidHandle: the publisher was destroyed.
+            RCLError: its context has ended.
         """
         self.send(msg)
 
@@ -122,6 +123,11 @@ class Publisher:
         copy = self._copy(msg)
         if self.destroyed:
             raise InvalidHandle("Cannot publish: the publisher was destroyed")
+        if not self.node.context.ok():
+            raise RCLError(
+                "Failed to publish: publisher's context is invalid: rclpy.shutdown() or Ctrl-C ended it; "
+                "to publish after Ctrl-C, call rclpy.init(signal_handler_options=SignalHandlerOptions.NO)"
+            )
         with self._host.lock:
             message = self._probe.message_id()
             self._probe.published(message, self.topic_name, self.node.trace_id, copy, self.qos_profile)

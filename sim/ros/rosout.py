@@ -44,7 +44,7 @@ class RosoutPublisher(Publisher):
     def log(self, record: LogRecord) -> None:
         """Publish a line."""
         with self._host.lock:
-            if self.destroyed:
+            if self.destroyed or not self.node.context.ok():
                 return
             self._lines.append(record)
             if self._reached:

@@ -191,7 +191,9 @@ def test_a_callback_that_computes_without_end_hears_of_the_runs_end(tmp_path: Pa
 
 
 @pytest.mark.parametrize("clock", ["virtual", "real"])
-def test_an_interrupted_program_may_call_services_join_and_shut_down(tmp_path: Path, clock: str) -> None:
+def test_an_interrupted_program_is_answered_no_more_and_may_join_and_shut_down(
+    tmp_path: Path, clock: str
+) -> None:
     source = """
 import threading, rclpy
 from rclpy.executors import MultiThreadedExecutor
@@ -219,7 +221,7 @@ finally:
     print("last line")
 """
     run = run_program(tmp_path, source, seconds=3.0, clock=clock)
-    assert printed(run) == ["answered True", "last line"]
+    assert printed(run) == ["answered False", "last line"]
     assert not [event for event in run.events if isinstance(event, Notice)]
 
 
@@ -237,3 +239,44 @@ def test_a_program_behind_a_link_keeps_the_name_that_was_typed(tmp_path: Path, t
     run = run_to_end(setup)
     assert printed(run) == [f"{path} {path} {real}"]
     assert run.ending.reason.startswith(f"{path.name}:3: the program raised ZeroDivisionError")
+
+
+LAST_MESSAGE = """
+import rclpy
+from rclpy.signals import SignalHandlerOptions
+from std_msgs.msg import String
+rclpy.init({options})
+node = rclpy.create_node("last")
+publisher = node.create_publisher(String, "last", 1)
+try:
+    rclpy.spin(node)
+except KeyboardInterrupt:
+    print("ok", rclpy.ok())
+    node.get_logger().info("last line")
+    publisher.publish(String(data="stop"))
+    print("published")
+"""
+
+
+@pytest.mark.parametrize("clock", ["virtual", "real"])
+def test_a_last_message_fails_as_under_rclpy_once_ctrl_c_has_ended_the_context(
+    tmp_path: Path, clock: str
+) -> None:
+    run = run_program(tmp_path, LAST_MESSAGE.format(options=""), seconds=1.0, clock=clock)
+    assert run.ending.reason == "its time was up"
+    assert not run.ending.failed
+    assert printed(run)[0] == "ok False"
+    assert [text for _, text in run.logs()] == ["last line"]
+    assert "published" not in printed(run)
+    (notice,) = (event.text for event in run.events if isinstance(event, Notice))
+    assert notice.startswith(
+        "node.py:13: the program raised RCLError: Failed to publish: publisher's context is"
+    )
+    assert notice.endswith("call rclpy.init(signal_handler_options=SignalHandlerOptions.NO)")
+
+
+@pytest.mark.parametrize("clock", ["virtual", "real"])
+def test_a_program_that_handles_ctrl_c_itself_publishes_a_last_message(tmp_path: Path, clock: str) -> None:
+    source = LAST_MESSAGE.format(options="signal_handler_options=SignalHandlerOptions.NO")
+    run = run_program(tmp_path, source, seconds=1.0, clock=clock)
+    assert printed(run) == ["ok True", "published"]

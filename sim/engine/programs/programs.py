@@ -178,9 +178,9 @@ class Programs:
         return [*(running.process for running in self._running), *self._only]
 
     def interrupt_all(self) -> None:
-        """Raise KeyboardInterrupt in every program that runs; its contexts go on: it may publish."""
+        """Have every program that runs end as Ctrl-C would."""
         for running in tuple(self._running):
-            running.raise_interrupt()
+            running.interrupt()
 
     def end_contexts(self) -> None:
         """End the contexts of every program as Ctrl-C does, so that what spins on their threads ends."""
