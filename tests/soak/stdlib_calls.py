@@ -30,6 +30,8 @@ _SLACK = 2.0
 """Seconds that outside work may take longer, with two engines on a loaded machine."""
 _EXACT = {Does.VIRTUAL, Does.SEEDED}
 _ON_ANY_THREAD = [row for row in ROWS if row.does in _EXACT and "signal" not in row.call]
+_SELDOM_HOLD = {"multiprocessing.pool.ThreadPool"}
+"""Calls that need not wait for something outside: what comes by a pipe may be there already."""
 _MARK = "came "
 _PROGRAM = """
 import json
@@ -121,8 +123,8 @@ def _troubles_of_run(composition: Composition, run: Run) -> Iterator[str]:
         elif not row.takes - 1e-6 <= seconds <= row.takes + slack:
             yield f"{row.call} took {seconds} s of virtual time"
     told = any(isinstance(event, Notice) and event.unrepeatable for event in run.events)
-    holds = any(row.does in {Does.HOLDS, Does.NEW} for part in composition.parts for row in part)
-    if told is not holds:
+    holds = {row.call for part in composition.parts for row in part if row.does in {Does.HOLDS, Does.NEW}}
+    if not holds if told else holds - _SELDOM_HOLD:
         yield "it says that it is not repeatable" if told else "it does not say that it is not repeatable"
 
 
