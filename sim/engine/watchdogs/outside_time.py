@@ -13,13 +13,13 @@ from sim.trace.events import AnyEvent, Notice, Severity
 _RealThread = threading.Thread
 _real_sleep = time.sleep
 
-_LOOK = 0.5
+_LOOK = 0.1
 """Real seconds between two looks."""
-_PATIENCE = 6
+_PATIENCE = 30
 """Looks without a step after which the person is told."""
-_LAST_PATIENCE = 7
+_LAST_PATIENCE = 35
 """Looks without a step after which ``give_up`` is called."""
-_PATIENCE_WITH_IMPORTS = 30
+_PATIENCE_WITH_IMPORTS = 150
 """The same for a thread that imports: large libraries take long, and nobody can mend that."""
 
 
