@@ -125,3 +125,11 @@ def test_the_console_is_not_drawn_where_nobody_sees_it(
 )
 def test_what_python_writes_with_limits_the_signs(encoding: str, charset: str) -> None:
     assert charset_of({"LANG": "C.UTF-8", "TERM": "xterm"}, False, encoding) == charset
+
+
+def test_why_a_run_is_given_up_is_told_once(tmp_path: Path) -> None:
+    path = tmp_path / "node.py"
+    path.write_text("import time\nwhile True:\n    time.sleep(0)\n")
+    done = _shell(f"{_CBTUI} run --clock virtual {path}")
+    assert done.returncode == 1
+    assert done.stderr.count("time stands still: MainThread (node.py:3, in <module>)") == 1

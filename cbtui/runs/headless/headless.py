@@ -195,7 +195,8 @@ class _Headless:
             return 1
         ended = self._timeline.ended
         if ended is not None and ended.failed:
-            complain(" ".join(ended.reason.split()))
+            if all(notice.text != ended.reason for notice in self._timeline.notices):
+                complain(" ".join(ended.reason.split()))
             return 1
         return max(self._events_verdict(), self._recording_verdict())
 

@@ -44,16 +44,17 @@ class Watchdog:
         _RealThread(target=self._watch, name="watchdog", daemon=True).start()
 
     def _watch(self) -> None:
-        steps, still = self._clock.steps, 0
+        steps, still, sentence = self._clock.steps, 0, ""
         while True:
             self._be_back_in(_LOOK * (_LAST_PATIENCE + 1))
             _real_sleep(_LOOK)
             still = still + 1 if self._clock.steps == steps and not self._clock.rests else 0
             steps = self._clock.steps
             if still == _PATIENCE:
-                self._record(Notice(self._clock.now(), Severity.WARN, self._sentence()))
+                sentence = self._sentence()
+                self._record(Notice(self._clock.now(), Severity.WARN, sentence))
             elif still == (_PATIENCE_WITH_IMPORTS if self._imports() else _LAST_PATIENCE):
-                self._give_up(self._sentence())
+                self._give_up(sentence)
 
     def _imports(self) -> bool:
         stack = outwards(sys._current_frames().get(self._clock.current.ident))

@@ -34,17 +34,18 @@ class Standstill:
         self._record = record
         self._give_up = give_up
         self._told = False
+        self._said = ""
         self._began = 0.0
 
     def look(self, recess: int) -> None:
         """Take note of a recess; the clock calls this on the thread that waits."""
         if recess == _PATIENCE:
-            self._began = _monotonic()
+            self._began, self._said = _monotonic(), self._sentence()
             if not self._told and self._clock.idles:
                 self._told = True
-                self._record(Notice(self._clock.now(), Severity.WARN, self._sentence()))
+                self._record(Notice(self._clock.now(), Severity.WARN, self._said))
         elif recess > _PATIENCE and _monotonic() - self._began > _LAST_PATIENCE:
-            self._give_up(self._sentence())
+            self._give_up(self._said)
 
     def _sentence(self) -> str:
         thread = self._clock.current
