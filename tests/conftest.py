@@ -1,6 +1,7 @@
 """What holds for every test: random examples are the same each time, so that a red run is red again."""
 
 import gc
+import multiprocessing
 import signal
 from collections.abc import Iterator
 
@@ -8,7 +9,8 @@ import pytest
 from hypothesis import settings
 from textual.notifications import Notification
 
-from tests.support import style_sheets
+from cbtui.engines import session
+from tests.support import forked_engines, style_sheets
 
 settings.register_profile("same-each-time", derandomize=True, deadline=None, database=None)
 settings.load_profile("same-each-time")
@@ -38,6 +40,19 @@ def style_sheets_read_once() -> Iterator[None]:
     """Spare every console but the first the reading of Textual's style sheets."""
     with style_sheets.read_once():
         yield
+
+
+@pytest.fixture(scope="session", autouse=True)
+def engines_copied() -> Iterator[None]:
+    """Spare most engines the imports of their start."""
+    with forked_engines.forked():
+        yield
+
+
+@pytest.fixture
+def fresh_engines(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Start engines as the console does, where the process itself is what is tested."""
+    monkeypatch.setattr(session, "AFRESH", multiprocessing.get_context("spawn"))
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:

@@ -35,6 +35,8 @@ Deliver: TypeAlias = Callable[[list[AnyEvent]], None]
 Ended: TypeAlias = Callable[[str | None], None]
 """Told once that no more will come: None, or a sentence if the engine was lost."""
 
+AFRESH: BaseContext = multiprocessing.get_context("spawn")
+"""What starts an engine that nothing is said about."""
 _GRACE = 0.4
 """Seconds that an engine without a program to end gets to end by itself before it is killed."""
 LONGEST_END = GRACE + TO_LEAVE
@@ -75,7 +77,7 @@ class Session:
         self._begun = False
         self._finished = False
         self._setup = setup
-        self._context = context or multiprocessing.get_context("spawn")
+        self._context = context or AFRESH
         self._pipe, self._far_end = self._context.Pipe()
         self._reader = threading.Thread(target=self._read, name="trace-reader", daemon=True)
 

@@ -2,9 +2,13 @@
 
 from pathlib import Path
 
+import pytest
+
 from sim.engine.setup import ProgramSetup, RunSetup
 from sim.trace.events import Printed
 from tests.support.engine_runs import SECOND, Run, run_to_end
+
+pytestmark = pytest.mark.usefixtures("fresh_engines")
 
 PROGRAM = """
 import multiprocessing

@@ -36,6 +36,7 @@ rclpy.spin(node)
 """
 
 
+@pytest.mark.usefixtures("fresh_engines")
 @pytest.mark.parametrize("lesson", ["split-groups", "reentrant-2-threads"])
 def test_the_same_run_twice_gives_the_same_events(lesson: str) -> None:
     once = run_lesson(lesson, 15, 2.55, 4.0)
@@ -191,6 +192,7 @@ class _Console:
         return batch
 
 
+@pytest.mark.usefixtures("fresh_engines")
 def test_a_killed_engine_is_noticed_and_named() -> None:
     console = _Console("single-thread")
     console.until(RobotMoved)
@@ -202,6 +204,7 @@ def test_a_killed_engine_is_noticed_and_named() -> None:
     assert not multiprocessing.active_children()
 
 
+@pytest.mark.usefixtures("fresh_engines")
 def test_stopping_ends_the_process_and_may_be_repeated() -> None:
     console = _Console("exclusive-2-threads")
     console.until(RobotMoved)

@@ -25,7 +25,10 @@ from sim.trace.events import AnyEvent, Logged, Notice, Printed, RunStarted, Seve
 from tests.faults.support import ANSWERED, PATIENCE, console_on, node_with, nothing_left, still_here
 from tests.support.processes import engines_of, is_stopped
 
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc")
+pytestmark = [
+    pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc"),
+    pytest.mark.usefixtures("fresh_engines"),
+]
 
 IN_C = "open('reached', 'w')\nsum(range(10 ** 15))"
 """Never comes back, and lets no other thread of Python's go on."""

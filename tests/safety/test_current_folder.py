@@ -21,6 +21,7 @@ def traps(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@pytest.mark.usefixtures("fresh_engines")
 def test_a_program_from_elsewhere_runs_and_what_it_starts_looks_where_python_does(traps: Path) -> None:
     elsewhere = traps / "elsewhere"
     elsewhere.mkdir()
