@@ -1,4 +1,4 @@
-"""What holds for every test: random examples are the same each time, so that a red run is red again."""
+"""What holds for every test."""
 
 import gc
 import multiprocessing
@@ -6,14 +6,12 @@ import signal
 from collections.abc import Iterator
 
 import pytest
-from hypothesis import settings
 from textual.notifications import Notification
 
 from cbtui.engines import session
-from tests.support import forked_engines, style_sheets
+from tests.support import forked_engines, properties, style_sheets
 
-settings.register_profile("same-each-time", derandomize=True, deadline=None, database=None)
-settings.load_profile("same-each-time")
+properties.register_profiles()
 if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
     # As under nohup, whose children would not hear Ctrl-C either.
     signal.signal(signal.SIGINT, signal.default_int_handler)

@@ -1,11 +1,9 @@
 """Whatever is pressed, clicked and resized, in whatever order: nothing breaks, and ``q`` leaves.
 
-``CBTUI_KEY_RUNS`` says how many sequences of up to 60 steps are tried, 5 if it says nothing;
 ``python -m tests.soak.keys`` goes on for longer, over every screen and with engines.
 """
 
 import asyncio
-import os
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -16,6 +14,7 @@ from hypothesis import strategies as st
 from tests.support.builder import ns
 from tests.support.console import RecordedConsole
 from tests.support.keys import KEYS, OTHERS, SIZES, Place, Step, leave, take
+from tests.support.properties import examples
 from tests.support.runs import dummy_server_run, shared_group_run
 
 RUNS = {"shared-group": shared_group_run().events, "reentrant-2-threads": dummy_server_run().events}
@@ -31,7 +30,7 @@ steps = st.lists(
 @pytest.mark.usefixtures("in_empty_folder")
 @given(lesson=st.sampled_from(sorted(RUNS)), sequence=steps, lost=st.booleans())
 @settings(
-    max_examples=int(os.environ.get("CBTUI_KEY_RUNS", "5")),
+    max_examples=examples(8),
     deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )

@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from tests.clock.timed_waits import WAITS, Runner, Step, random_program, wrong_of
+from tests.support.properties import examples
 
 
 @pytest.fixture(scope="module")
@@ -22,7 +23,7 @@ def test_a_wait_lasts_as_long_as_it_is_told(wait: str, runner: Runner) -> None:
     assert wrong_of(program, runner.run(program)) is None
 
 
-@settings(max_examples=25)
+@settings(max_examples=examples(25))
 @given(seed=st.integers(0, 2**32))
 def test_programs_of_timed_waits_end_where_plain_python_ends(runner: Runner, seed: int) -> None:
     program = random_program(seed)

@@ -9,6 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sim.clock import VirtualClock
+from tests.support.properties import examples
 from tests.support.simulation import no_thread_left, wind_up
 
 
@@ -108,21 +109,21 @@ def play(plan: Plan) -> tuple[list[Log], list[tuple[int, int]], list[int]]:
     return logs, actions, readings
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 @given(PLANS)
 def test_time_never_goes_back(plan: Plan) -> None:
     _, _, readings = play(plan)
     assert readings == sorted(readings)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 @given(PLANS)
 def test_every_sleep_ends_exactly_at_its_deadline(plan: Plan) -> None:
     logs, _, _ = play(plan)
     assert all(log.ended - log.began == log.step.length for log in logs if isinstance(log.step, Sleep))
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 @given(PLANS)
 def test_sleeps_that_end_together_end_in_the_order_in_which_they_began(plan: Plan) -> None:
     sleeps = [log for log in play(plan)[0] if isinstance(log.step, Sleep)]
@@ -131,7 +132,7 @@ def test_sleeps_that_end_together_end_in_the_order_in_which_they_began(plan: Pla
         assert places == sorted(places)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 @given(PLANS)
 def test_every_thread_comes_to_its_end(plan: Plan) -> None:
     logs, _, _ = play(plan)
@@ -139,7 +140,7 @@ def test_every_thread_comes_to_its_end(plan: Plan) -> None:
     assert [done[number] for number in range(THREADS)] == [len(steps) for steps in plan]
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 @given(PLANS)
 def test_every_action_runs_at_its_time_and_in_order(plan: Plan) -> None:
     _, actions, _ = play(plan)
@@ -147,13 +148,13 @@ def test_every_action_runs_at_its_time_and_in_order(plan: Plan) -> None:
     assert actions == sorted(actions)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 @given(PLANS)
 def test_two_runs_are_the_same(plan: Plan) -> None:
     assert play(plan) == play(plan)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(deadline=None, max_examples=examples(60))
 @given(PLANS)
 def test_no_signal_is_lost_and_none_is_heard_twice(plan: Plan) -> None:
     """Followed step by step, a signal is a flag: a set raises it, a wait that brings True lowers it."""

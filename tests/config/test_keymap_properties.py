@@ -10,6 +10,7 @@ from cbtui.app import CbtuiApp
 from cbtui.keys.actions import ACTIONS, Scope, actions_of, bindings_of, key_id
 from cbtui.keys.config_keys import read_keys
 from cbtui.keys.keymap import Keymap, canonical, keys_of
+from tests.support.properties import examples
 
 POOL = sorted({key for action in ACTIONS for key in keys_of(action)} | {"f5", "f6", "ctrl+g", "é", "*"})
 CHOICES = st.dictionaries(
@@ -24,7 +25,7 @@ def keymap_of(choices: dict[str, list[str]]) -> Keymap:
 
 
 @given(CHOICES)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 def test_textual_has_the_keys_that_are_shown(choices: dict[str, list[str]]) -> None:
     keymap = keymap_of(choices)
     told = CbtuiApp(keys=keymap)._keymap
@@ -37,7 +38,7 @@ def test_textual_has_the_keys_that_are_shown(choices: dict[str, list[str]]) -> N
 
 
 @given(CHOICES)
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 def test_only_those_share_a_key_that_share_one_in_the_registry(choices: dict[str, list[str]]) -> None:
     keymap = keymap_of(choices)
     for scope in Scope:

@@ -1,9 +1,5 @@
-"""A deadlock is found exactly where callbacks can never go on, as the scheduler and they themselves tell.
+"""A deadlock is found exactly where callbacks can never go on, as the scheduler and they themselves tell."""
 
-``CBTUI_DEADLOCK_RUNS`` is how many systems each rule is tried on; some thousands take minutes.
-"""
-
-import os
 from collections.abc import Callable
 
 import pytest
@@ -12,12 +8,13 @@ from hypothesis import Phase, event, find, given, settings
 from sim.diagnosis import Finding, diagnose
 from sim.trace.timeline import Timeline
 from tests.diagnosis.calling_systems import CallingSystem, Fate, calling_systems, play
+from tests.support.properties import examples
 
 DEADLOCKS = {"self-made-deadlock", "needs-one-more-worker"}
 
 pytestmark = pytest.mark.filterwarnings("ignore:MultiThreadedExecutor is used with a single thread")
 
-each_system = settings(max_examples=int(os.environ.get("CBTUI_DEADLOCK_RUNS", "60")), deadline=None)
+each_system = settings(max_examples=examples(60), deadline=None)
 
 
 def deadlocks(timeline: Timeline) -> list[Finding]:

@@ -18,6 +18,7 @@ from sim.trace.events import (
 from sim.trace.timeline import Timeline
 from tests.ros.systems import System, play, systems
 from tests.support.builder import Run, ns
+from tests.support.properties import examples
 from tests.support.runs import shared_group_run
 from tests.trace.systems import legal_runs
 
@@ -48,7 +49,7 @@ def stretched(events: Sequence[AnyEvent]) -> Iterator[AnyEvent]:
 
 @pytest.mark.filterwarnings("ignore:MultiThreadedExecutor is used with a single thread")
 @given(systems(), st.lists(st.floats(0, 1), max_size=8))
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 def test_looking_at_what_is_new_finds_what_looking_at_everything_does(
     system: System, cuts: list[float]
 ) -> None:

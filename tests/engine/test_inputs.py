@@ -50,6 +50,7 @@ from tests.engine.test_time_control import Given, orders
 from tests.ros.systems import SECONDS, System, program_of, systems
 from tests.support.builder import ns
 from tests.support.engine_runs import SECOND, program_setup, run_to_end
+from tests.support.properties import examples
 from tests.support.simulation import Simulation, simulate
 from tests.support.steering import Helm, steered
 
@@ -142,7 +143,7 @@ def mixed() -> st.SearchStrategy[list[Telling | Given]]:
     return st.tuples(tellings(), orders()).flatmap(lambda both: st.permutations([*both[0], *both[1]]))
 
 
-each_system = settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow])
+each_system = settings(deadline=None, max_examples=examples(40), suppress_health_check=[HealthCheck.too_slow])
 
 
 @each_system

@@ -24,12 +24,13 @@ from sim.trace.events import (
 )
 from tests.ros.systems import SECONDS, System, play, program_of, systems
 from tests.support.builder import ns
+from tests.support.properties import examples
 from tests.support.simulation import Simulation
 from tests.support.steering import Helm, steered, without_commands
 
 pytestmark = pytest.mark.filterwarnings("ignore:MultiThreadedExecutor is used with a single thread")
 
-each_system = settings(deadline=None, max_examples=25, suppress_health_check=[HealthCheck.too_slow])
+each_system = settings(deadline=None, max_examples=examples(25), suppress_health_check=[HealthCheck.too_slow])
 
 Int32 = message("std_msgs", "Int32")
 

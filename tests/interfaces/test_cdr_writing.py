@@ -17,6 +17,7 @@ from sim.ros.interfaces.field_types import AbstractWString, BasicType, FieldType
 from sim.ros.interfaces.interface_definition import FILLER_FIELD
 from sim.ros.interfaces.sequences import typecode
 from tests.interfaces.strategies import TEXT, messages
+from tests.support.properties import examples
 
 PACKAGES = ("std_msgs", "geometry_msgs", "nav_msgs", "sensor_msgs", "test_msgs")
 
@@ -39,7 +40,7 @@ CLASSES = [
 # The first message of a class makes encoders; shrinking large messages takes minutes.
 patient = settings(
     deadline=None,
-    max_examples=6,
+    max_examples=examples(6),
     phases=[Phase.explicit, Phase.reuse, Phase.generate],
     suppress_health_check=[HealthCheck.data_too_large, HealthCheck.too_slow],
 )

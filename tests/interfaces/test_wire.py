@@ -25,6 +25,7 @@ from sim.ros.interfaces import (
     to_cdr,
 )
 from tests.interfaces.strategies import messages
+from tests.support.properties import examples
 
 CLASSES = [
     message("builtin_interfaces", "Time"),
@@ -62,7 +63,7 @@ random_messages = st.sampled_from(CLASSES).flatmap(messages)
 # messages are wanted here.
 patient = settings(
     deadline=None,
-    max_examples=150,
+    max_examples=examples(150),
     phases=[Phase.explicit, Phase.reuse, Phase.generate],
     suppress_health_check=[HealthCheck.data_too_large, HealthCheck.too_slow],
 )

@@ -24,6 +24,7 @@ from sim.ros.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from sim.ros.interfaces import action
 from sim.ros.node import Node
 from sim.ros.qos import QoSProfile
+from tests.support.properties import examples
 from tests.support.simulation import Simulation, Trace, simulate
 
 pytestmark = pytest.mark.filterwarnings("ignore:MultiThreadedExecutor is used with a single thread")
@@ -204,7 +205,7 @@ def traced_play(plan: ServerPlan) -> tuple[Outcome, Trace]:
     return plays[0].outcome, trace
 
 
-each_plan = settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow])
+each_plan = settings(deadline=None, max_examples=examples(40), suppress_health_check=[HealthCheck.too_slow])
 
 
 @each_plan
@@ -252,7 +253,7 @@ def test_in_the_end_only_a_server_that_keeps_results_for_ever_remembers_goals(pl
     assert outcome.remembered == kept
 
 
-@settings(each_plan, max_examples=15)
+@settings(each_plan, max_examples=examples(15))
 @given(server_plans)
 def test_the_same_plan_gives_the_same_trace(plan: ServerPlan) -> None:
     assert traced_play(plan)[1].events == traced_play(plan)[1].events

@@ -12,10 +12,13 @@ from sim.ros.executor import Executor
 from sim.ros.host import current_host
 from tests.ros.schedules import broken_rules, first_trouble, play_seeded
 from tests.ros.systems import System, play, systems
+from tests.support.properties import examples
 
 pytestmark = pytest.mark.filterwarnings("ignore:MultiThreadedExecutor is used with a single thread")
 
-each_schedule = settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow])
+each_schedule = settings(
+    deadline=None, max_examples=examples(40), suppress_health_check=[HealthCheck.too_slow]
+)
 SEEDS = st.integers(1, 2**32 - 1)
 ENOUGH = range(1, 400)
 """Schedules within which a fault is found that no run in the usual order shows."""
@@ -27,13 +30,13 @@ def test_an_executor_keeps_its_rules_in_every_order_of_threads(system: System, s
     assert not list(broken_rules(system, play_seeded(system, seed)))
 
 
-@settings(each_schedule, max_examples=30)
+@settings(each_schedule, max_examples=examples(30))
 @given(systems(), SEEDS)
 def test_a_seed_gives_the_same_run_each_time(system: System, seed: int) -> None:
     assert play_seeded(system, seed).events == play_seeded(system, seed).events
 
 
-@settings(each_schedule, max_examples=15)
+@settings(each_schedule, max_examples=examples(15))
 @given(systems())
 def test_seed_0_is_the_usual_order(system: System) -> None:
     assert play_seeded(system, 0).events == play(system).events

@@ -15,10 +15,11 @@ from sim.trace.events import (
 )
 from tests.ros.replay import Replay
 from tests.ros.systems import System, play, systems
+from tests.support.properties import examples
 
 pytestmark = pytest.mark.filterwarnings("ignore:MultiThreadedExecutor is used with a single thread")
 
-each_system = settings(deadline=None, max_examples=40, suppress_health_check=[HealthCheck.too_slow])
+each_system = settings(deadline=None, max_examples=examples(40), suppress_health_check=[HealthCheck.too_slow])
 
 
 @each_system

@@ -10,24 +10,27 @@ from tests.soak import fuzz_runs, results
 from tests.soak.fuzz_runs import again, fuzz, input_of, keep
 from tests.soak.fuzz_target import Target
 from tests.soak.fuzz_targets import TARGETS
+from tests.support.properties import examples
 
 _INPUTS = {"run": 60, "prompt": 60, "completion": 150, "packages": 150, "interfaces": 150, "lesson": 150}
 _OTHERS = 400
 _TEXT = st.text(st.characters() | st.sampled_from("\x00\x1b\x9b\u202e\ud800[]{}=:\"'\\-#/\n\t "), max_size=60)
 
 
+@pytest.mark.hypothesis
 @pytest.mark.parametrize("name", TARGETS)
 def test_no_input_crashes_a_reader(name: str) -> None:
-    outcome = fuzz(TARGETS[name](), _INPUTS.get(name, _OTHERS), seed=1)
+    outcome = fuzz(TARGETS[name](), examples(_INPUTS.get(name, _OTHERS)), seed=1)
     assert [(crash.what, crash.where, crash.data) for crash in outcome.crashes] == []
     assert outcome.accepted + outcome.refused == outcome.inputs
 
 
+@pytest.mark.hypothesis
 @pytest.mark.parametrize("name", ["yaml", "parameters", "config", "arguments", "log", "setup"])
 def test_no_text_crashes_a_reader(name: str) -> None:
     target = TARGETS[name]()
 
-    @settings(max_examples=60, derandomize=True, database=None, deadline=None)
+    @settings(max_examples=examples(60), derandomize=True, database=None, deadline=None)
     @given(_TEXT)
     def give(text: str) -> None:
         assert not isinstance(again(target, text.encode("utf-8", "surrogatepass")), tuple)

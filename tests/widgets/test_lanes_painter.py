@@ -11,6 +11,7 @@ from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLan
 from sim.trace.events import MessageDropped, Reason
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
+from tests.support.properties import examples
 from tests.support.runs import (
     Run,
     dummy_server_one_thread_run,
@@ -117,7 +118,7 @@ def test_a_wide_picture_names_threads_as_rclpy_does_and_tells_more() -> None:
     assert "queue 0/10 · age 1.0 ms" in picture
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=examples(60), deadline=None)
 @given(
     st.sampled_from(RUNS),
     st.integers(-ns(5), ns(40)),
@@ -136,7 +137,7 @@ def test_every_picture_has_the_size_that_was_asked_for(
     assert charset is not Charset.ASCII or picture.text.isascii()
 
 
-@settings(max_examples=20, deadline=None)
+@settings(max_examples=examples(20), deadline=None)
 @given(st.lists(st.integers(0, ns(30)), min_size=1, max_size=6), st.sampled_from([ns(0.5), ns(10), ns(60)]))
 def test_a_painter_paints_the_same_whatever_it_painted_before(moments: list[int], length: int) -> None:
     timeline = RUNS[0]

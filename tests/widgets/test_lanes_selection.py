@@ -9,6 +9,7 @@ from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, T
 from cbtui.widgets.lanes.selection import Selection, bar_at, bar_up_to, beside, start_of
 from sim.trace.model import Call, Span, Wait, Window
 from sim.trace.timeline import Timeline
+from tests.support.properties import examples
 from tests.support.runs import dummy_server_run, ns, shared_group_run, split_groups_run
 from tests.widgets.pictures import told
 
@@ -53,7 +54,7 @@ def test_a_service_of_others_has_its_calls() -> None:
     assert bar_at(timeline, lane, Window(bar.sent, bar.sent + 1)) is bar
 
 
-@settings(deadline=None, max_examples=30)
+@settings(deadline=None, max_examples=examples(30))
 @given(st.sampled_from(RUNS), st.data())
 def test_going_on_and_back_along_a_lane_meets_the_same_bars(timeline: Timeline, data: st.DataObject) -> None:
     lane = data.draw(st.sampled_from(all_lanes(timeline, "/motor_power")))

@@ -15,6 +15,7 @@ from rosbags.interfaces import ConnectionExtRosbag2
 from sim.recording import About, Recorder, read
 from sim.trace.events import AnyEvent, MessageSent, Printed, TimePassed, TopicAppeared
 from sim.trace.model import Window
+from tests.support.properties import examples
 from tests.trace.recording.files import (
     ABOUT,
     TOPICS,
@@ -52,7 +53,7 @@ def test_the_state_at_a_thousand_times_is_that_of_the_run(recorded: Path) -> Non
 
 
 @given(legal_runs())
-@settings(deadline=None, max_examples=30)
+@settings(deadline=None, max_examples=examples(30))
 def test_any_events_come_back_as_they_were(events: list[AnyEvent]) -> None:
     with TemporaryDirectory() as folder:
         path = Path(folder) / "run.mcap"

@@ -10,6 +10,7 @@ from cbtui.widgets.factory import FactoryPainter
 from cbtui.widgets.factory.scene import Area, Scene, Stay, scene_of
 from sim.trace.events import Reason
 from sim.trace.timeline import Timeline
+from tests.support.properties import examples
 from tests.support.runs import Run, dummy_server_run, ns, shared_group_run, split_groups_run
 from tests.widgets.factory.scenes import (
     four_workers_one_seat,
@@ -217,7 +218,7 @@ def test_more_belts_than_rows_say_how_many_are_left_out() -> None:
     assert "+15 more belts" in text
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=examples(150), deadline=None)
 @given(
     st.sampled_from(RUNS),
     st.floats(0, 31),
@@ -236,7 +237,7 @@ def test_a_picture_has_the_size_that_was_asked_for(
 
 
 @given(st.sampled_from(RUNS), st.floats(0, 31), st.floats(0, 31))
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=examples(30), deadline=None)
 def test_a_moment_looks_the_same_whatever_was_looked_at_before(
     timeline: Timeline, now: float, other: float
 ) -> None:

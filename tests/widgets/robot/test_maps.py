@@ -15,6 +15,7 @@ from cbtui.widgets.robot.extents import Extent, View, near, whole
 from cbtui.widgets.robot.painter import RobotPainter
 from sim.trace.events import ArenaShown, RobotMoved, Scanned
 from sim.trace.timeline import Timeline
+from tests.support.properties import examples
 from tests.support.runs import Run, ns, scan_from, shared_group_run, split_groups_run
 from tests.widgets.pictures import told
 
@@ -125,7 +126,7 @@ def test_a_run_without_a_robot_says_so() -> None:
     assert "no robot in this run" in RobotPainter().text(told(Run()), 0, 44, 10)
 
 
-@settings(max_examples=40, deadline=None)
+@settings(max_examples=examples(40), deadline=None)
 @given(
     st.floats(-30, 30),
     st.floats(-30, 30),
