@@ -1,8 +1,6 @@
 """Changing a program's set-up from the command line: what runs, what is recorded, what is refused."""
 
 import json
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +11,7 @@ from cbtui.commands.options import changes
 from cbtui.runs.recorded.recording_file import setup_of
 from sim.engine.setup import GroupChange, PeriodChange
 from sim.recording import read
+from tests.support.commands import cbtui
 
 CHANGES = (
     *("--group", "SetBool_callback=shared"),
@@ -20,11 +19,6 @@ CHANGES = (
     *("--period", "timer_callback=0.5"),
     *("--sensor-rate", "5"),
 )
-
-
-def cbtui(*words: str) -> "subprocess.CompletedProcess[str]":
-    command = [sys.executable, "-m", "cbtui", *words]
-    return subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
 
 
 def starts(file: Path, callback: str) -> list[float]:

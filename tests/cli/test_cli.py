@@ -10,11 +10,7 @@ import pytest
 from cbtui import cli
 from lessons.catalogue import lessons
 from sim.engine.setup import RunSetup
-
-
-def _cbtui(*arguments: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "cbtui", *arguments]
-    return subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
+from tests.support.commands import cbtui
 
 
 def test_list_names_every_lesson_in_order(capsys: pytest.CaptureFixture[str]) -> None:
@@ -51,7 +47,7 @@ def test_list_names_every_lesson_in_order(capsys: pytest.CaptureFixture[str]) ->
     ],
 )
 def test_a_wrong_command_is_refused_in_one_line(arguments: list[str], sentence: str) -> None:
-    done = _cbtui(*arguments)
+    done = cbtui(*arguments)
     assert done.returncode == 2
     assert done.stdout == ""
     assert len(done.stderr.splitlines()) == 1
@@ -84,7 +80,7 @@ def test_run_takes_the_clock_that_is_asked_for_or_the_lessons_own(
 
 
 def test_run_puts_the_log_on_stderr_as_ros_prints_it_and_a_summary_on_stdout() -> None:
-    done = _cbtui("run", "exclusive-2-threads", "--for", "10", "--call", "2.55", "--call-data", "false")
+    done = cbtui("run", "exclusive-2-threads", "--for", "10", "--call", "2.55", "--call-data", "false")
     assert done.returncode == 0
     log = done.stderr.splitlines()
     assert log[0] == "[WARN] [1700000000.000000000] [service_start_turn]: Setting exclusive Groups"
@@ -93,11 +89,12 @@ def test_run_puts_the_log_on_stderr_as_ros_prints_it_and_a_summary_on_stdout() -
     assert "1 call" in done.stdout
 
 
+@pytest.mark.usefixtures("fresh_engines")
 def test_events_are_one_json_object_a_line_and_the_same_each_time(tmp_path: Path) -> None:
     files = [tmp_path / "once.jsonl", tmp_path / "again.jsonl"]
     for file in files:
         arguments = ("run", "reentrant-1-thread", "--for", "9", "--call", "2.55", "--events", str(file))
-        assert _cbtui(*arguments).returncode == 0
+        assert cbtui(*arguments).returncode == 0
     assert files[0].read_bytes() == files[1].read_bytes()
     lines = [json.loads(line) for line in files[0].read_text().splitlines()]
     kinds = {line["event"] for line in lines}
@@ -138,7 +135,7 @@ def main():
 def test_a_file_runs_with_its_arguments_and_its_own_service_is_called(tmp_path: Path, ending: str) -> None:
     (tmp_path / "server.py").write_text(SERVER + ending)
     file = str(tmp_path / "server.py")
-    done = _cbtui("run", file, "--clock", "virtual", "--for", "2", "--call", "1", "--", "hello")
+    done = cbtui("run", file, "--clock", "virtual", "--for", "2", "--call", "1", "--", "hello")
     assert done.returncode == 0
     assert done.stderr == "[INFO] [1700000001.000000000] [server]: hello True\n"
     assert "/switch  1 call" in done.stdout
@@ -146,19 +143,20 @@ def test_a_file_runs_with_its_arguments_and_its_own_service_is_called(tmp_path: 
 
 def test_a_file_runs_on_the_real_clock_unless_told_otherwise(tmp_path: Path) -> None:
     (tmp_path / "one.py").write_text("print('one')")
-    done = _cbtui("run", str(tmp_path / "one.py"), "--for", "5")
+    done = cbtui("run", str(tmp_path / "one.py"), "--for", "5")
     assert done.returncode == 0
     assert done.stdout.startswith("one\none.py, ")
     assert "of real time: the program returned" in done.stdout
 
 
+@pytest.mark.usefixtures("fresh_engines")
 def test_a_program_that_fails_gives_exit_code_1_and_one_sentence_after_its_traceback(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # Without PyBullet there is no robot, and the sentence says what to do.
     (tmp_path / "pybullet.py").write_text("raise ImportError('no wheel for this Python')")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    done = _cbtui("run", "single-thread", "--for", "1")
+    done = cbtui("run", "single-thread", "--for", "1")
     assert done.returncode == 1
     [sentence] = done.stderr.splitlines()
     assert "PyBullet" in sentence

@@ -1,19 +1,17 @@
 """``cbtui compare`` from the command line: what is given to the runs, and what is refused."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
 
 from cbtui import cli
+from tests.support.commands import cbtui
 from tests.trace.recording.files import write
 from tests.trace.samples import FULL
 
 
-def cbtui(*words: str) -> str:
-    command = [sys.executable, "-m", "cbtui", *words]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+def told(*words: str) -> str:
+    done = cbtui(*words)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
@@ -28,7 +26,7 @@ def figures(text: str, section: str, label: str) -> list[str]:
 
 def test_a_lesson_can_be_compared_with_itself_with_other_threads() -> None:
     words = ("--to", "8", "--call", "2.55", "--threads-a", "2", "--threads-b", "1")
-    text = cbtui("compare", "reentrant-2-threads", "reentrant-2-threads", *words)
+    text = told("compare", "reentrant-2-threads", "reentrant-2-threads", *words)
     assert text.startswith(
         "run A  reentrant-2-threads, 2 threads\nrun B  reentrant-2-threads, 1 thread\n0 to 8 s\n"
     )
@@ -39,18 +37,18 @@ def test_a_lesson_can_be_compared_with_itself_with_other_threads() -> None:
 def test_lines_and_calls_reach_both_runs() -> None:
     line = "ros2 service call /dummy_server_srv std_srvs/srv/SetBool '{data: true}'"
     words = ("--to", "3", "--call", "1.2", "--at", "0.5", line)
-    text = cbtui("compare", "reentrant-2-threads", "exclusive-2-threads", *words)
+    text = told("compare", "reentrant-2-threads", "exclusive-2-threads", *words)
     assert figures(text, "SetBool_callback", "calls")[0] in ("1", "2")
-    alone = cbtui("compare", "reentrant-2-threads", "exclusive-2-threads", "--to", "3", "--call", "1.2")
+    alone = told("compare", "reentrant-2-threads", "exclusive-2-threads", "--to", "3", "--call", "1.2")
     assert alone != text
 
 
 def test_what_is_run_gets_the_inputs_of_a_recording_and_lasts_as_long(tmp_path: Path) -> None:
     recording = str(tmp_path / "run.mcap")
-    cbtui("run", "exclusive-2-threads", "--for", "3", "--at", "1.2", "ros2 topic list", "--record", recording)
-    text = cbtui("compare", "exclusive-2-threads", "reentrant-1-thread", "--inputs", recording)
+    told("run", "exclusive-2-threads", "--for", "3", "--at", "1.2", "ros2 topic list", "--record", recording)
+    text = told("compare", "exclusive-2-threads", "reentrant-1-thread", "--inputs", recording)
     assert "0 to 3 s" in text.splitlines()
-    text = cbtui("compare", recording, "exclusive-2-threads", "--inputs", recording)
+    text = told("compare", recording, "exclusive-2-threads", "--inputs", recording)
     rows = [line for line in text.splitlines() if line.startswith("  ") and "run A" not in line]
     assert len(rows) > 8
     assert all(line.endswith("same") for line in rows)

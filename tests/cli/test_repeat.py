@@ -1,7 +1,5 @@
 """Repeating recorded runs and comparing runs, from the command line."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -10,13 +8,9 @@ from cbtui import cli
 from cbtui.runs.recorded.recording_file import about
 from cbtui.runs.recorded.repeat import CannotRepeatError, repeated
 from sim.engine.setup import ProgramSetup, RunSetup
+from tests.support.commands import cbtui
 from tests.trace.recording.files import write
 from tests.trace.samples import FULL
-
-
-def cbtui(*words: str) -> "subprocess.CompletedProcess[str]":
-    command = [sys.executable, "-m", "cbtui", *words]
-    return subprocess.run(command, capture_output=True, text=True, check=False)
 
 
 @pytest.fixture(scope="module")

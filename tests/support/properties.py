@@ -15,4 +15,4 @@ def register_profiles() -> None:
 
 def examples(most: int) -> int:
     """Return how many of ``most`` examples a test gets in this run, one at least."""
-    return max(1, most * settings.default.max_examples // ALL)
+    return max(1, most * settings().max_examples // ALL)
