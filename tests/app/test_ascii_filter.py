@@ -6,6 +6,7 @@ from rich.cells import cell_len
 from cbtui.text.ascii_filter import in_ascii
 from tests.app.pictures import lines_of
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.daily import first_daily
 from tests.support.runs import shared_group_run
 
 PRINTABLE = st.text(st.characters(exclude_categories=["C", "M", "Z"]))
@@ -22,7 +23,7 @@ def test_signs_get_the_plainest_sign_like_them() -> None:
     assert in_ascii("● ◂ ╭─┤ ✓ × café … ⣿█") == "* < +-+ + x cafe ~ .#"
 
 
-@pytest.mark.parametrize("size", [NARROW, WIDE])
+@pytest.mark.parametrize("size", first_daily(WIDE, NARROW))
 async def test_an_ascii_terminal_gets_nothing_but_ascii(size: tuple[int, int]) -> None:
     app = RecordedConsole("shared-group", shared_group_run().events, 13.15, charset="ascii")
     async with app.run_test(size=size) as pilot:

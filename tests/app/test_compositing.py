@@ -10,6 +10,7 @@ from cbtui.terminal.compositing import Parts, SparingCompositor
 from cbtui.widgets.guide import Guide
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.daily import first_daily
 from tests.support.runs import shared_group_run
 
 EVENTS = shared_group_run().events
@@ -41,7 +42,7 @@ def cells(strip: Strip) -> list[Cell]:
     return [(character, segment.style) for segment in strip for character in segment.text]
 
 
-@pytest.mark.parametrize("size", [NARROW, WIDE])
+@pytest.mark.parametrize("size", first_daily(WIDE, NARROW))
 async def test_the_parts_that_are_sent_make_the_whole_picture(
     size: tuple[int, int], monkeypatch: pytest.MonkeyPatch
 ) -> None:

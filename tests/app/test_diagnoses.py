@@ -26,6 +26,7 @@ from sim.trace.timeline import Timeline
 from tests.app.pictures import lines_of, text_of
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.daily import first_daily
 from tests.support.engine_runs import run_lesson
 from tests.support.runs import shared_group_run
 from tests.trace.recording.files import write
@@ -62,7 +63,7 @@ def status(app: CbtuiApp) -> str:
     return lines_of(app)[0]
 
 
-@pytest.mark.parametrize("size", [NARROW, WIDE], ids=["80x24", "140x40"])
+@pytest.mark.parametrize("size", first_daily(WIDE, NARROW), ids=["140x40", "80x24"])
 async def test_the_window_tells_what_why_what_to_do_and_where(size: tuple[int, int]) -> None:
     async with console(size=size) as (app, pilot):
         await press(pilot, "d", "down")
@@ -78,7 +79,7 @@ async def test_the_window_tells_what_why_what_to_do_and_where(size: tuple[int, i
         assert "esc close" in shown
 
 
-@pytest.mark.parametrize("size", [NARROW, WIDE], ids=["80x24", "140x40"])
+@pytest.mark.parametrize("size", first_daily(WIDE, NARROW), ids=["140x40", "80x24"])
 async def test_enter_goes_to_the_moment_the_lane_and_the_code(size: tuple[int, int]) -> None:
     async with console(size=size) as (app, pilot):
         await press(pilot, "d", "down", "enter")
@@ -93,6 +94,7 @@ async def test_enter_goes_to_the_moment_the_lane_and_the_code(size: tuple[int, i
         assert "def timer_callback" in text_of(app)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("key", ["escape", "q"])
 async def test_closing_leaves_everything_as_it_is(key: str) -> None:
     async with console() as (app, pilot):
@@ -110,6 +112,7 @@ async def test_a_run_without_problems_says_so_and_offers_no_way() -> None:
         assert "go there" not in text_of(app)
 
 
+@pytest.mark.slow
 async def test_what_is_true_of_the_whole_run_offers_no_way_to_go() -> None:
     async with console("reentrant-2-threads", 3.0) as (app, pilot):
         await press(pilot, "d")
@@ -119,6 +122,7 @@ async def test_what_is_true_of_the_whole_run_offers_no_way_to_go() -> None:
         assert isinstance(app.screen, DiagnosesScreen)
 
 
+@pytest.mark.slow
 async def test_a_click_on_the_line_opens_the_list_and_one_in_the_list_highlights() -> None:
     async with console() as (app, pilot):
         await pilot.click(DiagnosisLine)
@@ -139,6 +143,7 @@ async def test_the_line_counts_problems_and_tells_of_the_worst_when_nothing_wait
         assert "6 problems · d" in lines_of(app)[-2]
 
 
+@pytest.mark.slow
 async def test_another_run_begins_without_findings() -> None:
     async with console() as (app, pilot):
         app.engines._events = []
@@ -167,6 +172,7 @@ async def test_the_rules_look_at_most_once_a_second_whatever_is_drawn(
         assert looks <= monotonic() - began + 1
 
 
+@pytest.mark.slow
 async def test_a_recording_has_its_diagnoses_too(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
     write(path, run_lesson("shared-group", TURNED).events, About(title="shared-group", clock="virtual"))

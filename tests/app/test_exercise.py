@@ -103,6 +103,7 @@ async def test_e_puts_the_starter_here_and_goes_to_the_exercise(here: Path) -> N
         assert type(app.lesson_screen) is LessonScreen
 
 
+@pytest.mark.slow
 async def test_a_file_that_was_changed_is_kept_and_used(here: Path) -> None:
     (here / FILE).write_text("mine = True\n")
     app = ExerciseConsole(Engines([]))
@@ -113,6 +114,7 @@ async def test_a_file_that_was_changed_is_kept_and_used(here: Path) -> None:
         assert told.message.startswith(f"Your {FILE} in {here} is kept as it is")
 
 
+@pytest.mark.slow
 async def test_a_folder_that_takes_no_file_is_told_of_and_nothing_happens(here: Path) -> None:
     Progress().see(LESSON.id)
     (here / FILE).mkdir()
@@ -159,6 +161,7 @@ async def test_checks_that_fail_are_shown_and_enter_goes_to_their_moment() -> No
         assert (progress.passed, progress.seen) == (False, False)
 
 
+@pytest.mark.slow
 async def test_what_is_asked_can_be_read_by_scrolling() -> None:
     async with console(failing()) as (app, _, pilot):
         assert "The file is the node" not in text_of(app)
@@ -176,12 +179,14 @@ async def test_a_file_that_passes_is_noted_and_the_next_lesson_named() -> None:
         assert "hint" not in offered(app)
 
 
+@pytest.mark.slow
 async def test_a_narrow_screen_has_room_for_the_keys_that_help_with_a_file_that_fails() -> None:
     async with console(failing()) as (app, _, _pilot):
         keys = lines_of(app)[-1]
         assert all(key in keys for key in ("look there", "w watch", "h hint", "e lesson"))
 
 
+@pytest.mark.slow
 async def test_the_guide_says_what_is_asked_where_the_checks_were(here: Path) -> None:
     async with console(failing(), WIDE) as (app, _, pilot):
         await pilot.press("1")
@@ -194,6 +199,7 @@ async def test_the_guide_says_what_is_asked_where_the_checks_were(here: Path) ->
 # the keys
 
 
+@pytest.mark.slow
 async def test_nothing_is_offered_that_would_make_it_another_run_than_the_judged_one() -> None:
     app = ExerciseConsole(engines := Engines([]))
     async with app.run_test(size=NARROW) as pilot:
@@ -241,6 +247,7 @@ async def test_saving_runs_it_again_and_the_run_before_can_be_compared(here: Pat
         assert f"{FILE}, run 1" in text_of(app)
 
 
+@pytest.mark.slow
 async def test_saving_while_it_runs_ends_that_run(here: Path) -> None:
     engines = Engines([])
     app = ExerciseConsole(engines)
@@ -252,6 +259,7 @@ async def test_saving_while_it_runs_ends_that_run(here: Path) -> None:
         assert [session.stopped for session in engines.sessions] == [True, True, False]
 
 
+@pytest.mark.slow
 async def test_saving_the_same_again_changes_nothing(here: Path) -> None:
     async with console(failing()) as (_, engines, pilot):
         (here / FILE).write_bytes(STARTER.read_bytes())
@@ -260,6 +268,7 @@ async def test_saving_the_same_again_changes_nothing(here: Path) -> None:
         assert len(engines.sessions) == 2
 
 
+@pytest.mark.slow
 async def test_a_file_that_is_gone_is_told_of_and_goes_on_when_it_is_back(here: Path) -> None:
     async with console(failing()) as (app, engines, pilot):
         (here / FILE).unlink()
@@ -270,6 +279,7 @@ async def test_a_file_that_is_gone_is_told_of_and_goes_on_when_it_is_back(here: 
         assert "is gone" not in text_of(app)
 
 
+@pytest.mark.slow
 async def test_no_watch_is_left_behind() -> None:
     async with console(failing()) as (app, _, pilot):
         assert watching(app)
@@ -293,6 +303,7 @@ async def test_a_run_that_takes_too_much_is_ended_and_told_of() -> None:
         assert not app.exercise.live_run.alive
 
 
+@pytest.mark.slow
 async def test_a_paused_run_may_stand_as_long_as_it_likes() -> None:
     engines = Engines([])
     app = ExerciseConsole(engines)

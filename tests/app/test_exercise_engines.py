@@ -33,6 +33,7 @@ async def test_the_starter_fails_and_once_mended_it_passes(here: Path) -> None:
     assert not [thread for thread in threading.enumerate() if thread.name == "trace-reader"]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("text", "sentence"),
     [
@@ -54,6 +55,7 @@ async def test_a_file_that_cannot_be_judged_is_told_of_and_left_as_it_is(
     assert (here / FILE).read_text() == text
 
 
+@pytest.mark.slow
 async def test_a_file_that_goes_on_for_ever_is_ended(here: Path) -> None:
     (here / FILE).write_text(ENDLESS_CALLBACK)
     app = ExerciseConsole()

@@ -12,6 +12,7 @@ from sim.trace.events import AnyEvent, KeyboardAsked, Printed, Reading, RunEnded
 from tests.app.pictures import text_of
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.daily import first_daily
 from tests.support.runs import dummy_server_run
 
 NAME = "teleop.py"
@@ -44,7 +45,7 @@ def typed(app: RecordedConsole) -> list[str]:
     return [command.text for command in app.engines.latest.commands if isinstance(command, Type)]
 
 
-@pytest.mark.parametrize("size", [NARROW, WIDE])
+@pytest.mark.parametrize("size", first_daily(WIDE, NARROW))
 async def test_it_is_said_who_reads_and_where_to_type(size: tuple[int, int]) -> None:
     async with console(Reading.LINES, size) as (app, pilot):
         assert "teleop.py waits for input from the keyboard; press i and type" in text_of(app)

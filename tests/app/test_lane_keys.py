@@ -16,6 +16,7 @@ from cbtui.widgets.lanes.selection import Selection
 from tests.app.pictures import lines_of, text_of
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.daily import first_daily
 from tests.support.runs import shared_group_run, split_groups_run
 
 EVENTS = shared_group_run().events
@@ -44,7 +45,7 @@ def lanes_of(app: RecordedConsole) -> Lanes:
     return app.screen.query_one(Lanes)
 
 
-@pytest.mark.parametrize("size", [NARROW, WIDE])
+@pytest.mark.parametrize("size", first_daily(WIDE, NARROW))
 async def test_enter_selects_what_runs_now_and_tells_of_it(size: tuple[int, int]) -> None:
     async with console(size) as (app, pilot):
         assert "▸ A" not in text_of(app)
@@ -66,6 +67,7 @@ async def test_up_and_down_go_from_lane_to_lane_and_stay_at_the_ends() -> None:
         assert isinstance(selection.lane, ThreadLane)
 
 
+@pytest.mark.slow
 async def test_the_arrows_belong_to_the_panes_until_the_lanes_are_gone_to() -> None:
     async with console() as (app, pilot):
         guide = app.screen.query_one(Guide)
@@ -115,6 +117,7 @@ async def test_a_click_on_a_lane_moves_the_cursor_there_and_selects_the_bar() ->
         assert "BACK" in lines_of(app)[0]
 
 
+@pytest.mark.slow
 async def test_a_click_on_a_lanes_name_selects_it_and_leaves_the_cursor() -> None:
     async with console() as (app, pilot):
         await click(pilot, 2, 3)
@@ -125,6 +128,7 @@ async def test_a_click_on_a_lanes_name_selects_it_and_leaves_the_cursor() -> Non
         assert "LIVE" in lines_of(app)[0]
 
 
+@pytest.mark.slow
 async def test_a_click_on_the_axis_moves_the_cursor_alone() -> None:
     async with console() as (app, pilot):
         await click(pilot, 13 + 10, 6)
@@ -132,6 +136,7 @@ async def test_a_click_on_the_axis_moves_the_cursor_alone() -> None:
         assert lanes_of(app).now == ns(5.0)
 
 
+@pytest.mark.slow
 async def test_the_wheel_zooms() -> None:
     async with console() as (app, pilot):
         lanes = lanes_of(app)
@@ -151,6 +156,7 @@ async def test_the_arrows_pan_and_leave_the_cursor_and_every_other_pane() -> Non
         assert lanes_of(app).window == window
 
 
+@pytest.mark.slow
 async def test_panning_ends_where_the_run_does() -> None:
     async with console(WIDE) as (app, pilot):
         await press(pilot, *["left"] * 9)
@@ -163,12 +169,14 @@ async def test_panning_ends_where_the_run_does() -> None:
         assert lanes_of(app).window.end == ns(14)
 
 
+@pytest.mark.slow
 async def test_a_selection_does_not_outlive_its_run() -> None:
     async with console() as (app, pilot):
         await press(pilot, "enter", "t", "2")
         assert lanes_of(app).selection is None
 
 
+@pytest.mark.slow
 async def test_lanes_without_anything_can_be_gone_to() -> None:
     app = RecordedConsole("shared-group", [], 0.0)
     async with app.run_test(size=NARROW) as pilot:
@@ -188,6 +196,7 @@ async def test_y_copies_what_is_known_of_the_selected_bar() -> None:
         assert "copied A odom_callback waits" in [each.message for each in app._notifications]
 
 
+@pytest.mark.slow
 async def test_y_copies_what_the_moment_means_where_nothing_is_selected() -> None:
     async with console() as (app, pilot):
         await press(pilot, "y")
@@ -199,6 +208,7 @@ async def test_y_copies_what_the_moment_means_where_nothing_is_selected() -> Non
         ]
 
 
+@pytest.mark.slow
 async def test_lanes_name_the_keys_that_are_in_force() -> None:
     keys = Keymap({"lesson.call_service": ("b",), "lesson.previous_event": ("f7",)})
     app = RecordedConsole("split-groups", split_groups_run().events, 9.4, keys=keys)

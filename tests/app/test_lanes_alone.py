@@ -3,6 +3,7 @@
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 
+import pytest
 from textual.pilot import Pilot
 
 from cbtui.keys.keymap import Keymap
@@ -55,6 +56,7 @@ async def test_lanes_that_have_no_room_are_counted_with_the_key_that_shows_them(
         assert len(lanes_of(app).splitlines()) == 21
 
 
+@pytest.mark.slow
 async def test_lanes_that_are_more_than_a_screen_are_gone_through_with_the_arrows() -> None:
     async with console(30) as (app, pilot):
         assert "+23 lanes Z │" in lanes_of(app)
@@ -77,6 +79,7 @@ async def test_lanes_give_the_panes_their_room_back() -> None:
             assert guide.has_focus
 
 
+@pytest.mark.slow
 async def test_a_pane_that_fills_the_screen_makes_way_for_the_lanes() -> None:
     async with console(12) as (app, pilot):
         await press(pilot, "z")

@@ -24,6 +24,7 @@ from sim.engine.commands import CallService, Pause, ResetWorld, Resume, SetSpeed
 from tests.app.pictures import lines_of, text_of
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, predict, settle
+from tests.support.daily import first_daily
 from tests.support.fake_session import FakeSession
 from tests.support.runs import dummy_server_run, shared_group_run
 
@@ -124,6 +125,7 @@ async def test_r_runs_again_after_the_engine_was_lost() -> None:
         assert "● LIVE" in status(app)
 
 
+@pytest.mark.slow
 async def test_r_runs_again_after_the_run_has_ended() -> None:
     async with console() as (app, pilot):
         app.engines.latest.play(ns(100))
@@ -135,6 +137,7 @@ async def test_r_runs_again_after_the_run_has_ended() -> None:
         assert "t 13.1" in status(app)
 
 
+@pytest.mark.slow
 async def test_what_an_engine_sends_after_its_run_was_replaced_does_not_count() -> None:
     async with console() as (app, pilot):
         await press(pilot, "t", "2")
@@ -159,6 +162,7 @@ async def test_t_runs_again_with_other_threads(key: str, threads: int | None) ->
         assert app.engines.latest.setup.threads == threads
 
 
+@pytest.mark.slow
 async def test_the_chosen_threads_stay_for_the_next_run() -> None:
     async with console() as (app, pilot):
         await press(pilot, "t", "3")
@@ -170,6 +174,7 @@ async def test_the_chosen_threads_stay_for_the_next_run() -> None:
         assert app.engines.latest.setup.threads == 3
 
 
+@pytest.mark.slow
 async def test_thinking_better_of_the_threads_leaves_the_run_alone() -> None:
     async with console() as (app, pilot):
         for key in ("escape", "q"):
@@ -187,6 +192,7 @@ async def test_n_opens_the_next_lesson_and_ends_this_run() -> None:
         assert not app.engines.latest.stopped
 
 
+@pytest.mark.slow
 async def test_the_last_lesson_has_no_next_one() -> None:
     async with console(size=WIDE, lesson=lessons()[-1].id) as (app, pilot):
         assert "n next" not in lines_of(app)[-1]
@@ -202,6 +208,7 @@ async def test_q_ends_the_run_and_goes_back_to_the_menu() -> None:
         assert engine.stopped
 
 
+@pytest.mark.slow
 async def test_leaving_the_console_ends_the_run() -> None:
     async with console() as (app, pilot):
         await pilot.press("ctrl+q")
@@ -230,6 +237,7 @@ async def test_a_narrow_screen_shows_the_pane_of_a_number() -> None:
             assert shown.has_focus_within
 
 
+@pytest.mark.slow
 async def test_tab_goes_round_the_panes() -> None:
     async with console() as (app, pilot):
         for pane in (CodeView, FactoryView, RobotView, LogLines, ShellOutput, Guide):
@@ -237,6 +245,7 @@ async def test_tab_goes_round_the_panes() -> None:
             assert app.screen.query_one(pane).has_focus
 
 
+@pytest.mark.slow
 async def test_a_click_on_a_name_shows_its_pane() -> None:
     async with console() as (app, pilot):
         line = next(y for y, text in enumerate(lines_of(app)) if "4 Robot" in text)
@@ -258,7 +267,7 @@ async def test_a_wide_screen_shows_every_pane_but_the_shell_which_takes_the_plac
         assert (log.display, shell.display) == (True, False)
 
 
-@pytest.mark.parametrize("size", [NARROW, WIDE])
+@pytest.mark.parametrize("size", first_daily(WIDE, NARROW))
 async def test_z_gives_the_screen_to_one_pane_and_back(size: tuple[int, int]) -> None:
     async with console(size) as (app, pilot):
         await press(pilot, "5", "z")
@@ -284,6 +293,7 @@ async def test_brackets_look_back_in_time_on_every_pane_at_once() -> None:
         assert "● LIVE" in status(app)
 
 
+@pytest.mark.slow
 async def test_looking_back_stands_still_while_the_run_goes_on() -> None:
     async with console(WIDE) as (app, pilot):
         await press(pilot, "left_square_bracket")

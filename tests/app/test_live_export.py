@@ -29,6 +29,7 @@ from sim.trace.storage.tape import Tape
 from tests.app.pictures import lines_of, text_of
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.daily import first_daily
 from tests.support.runs import shared_group_run
 from tests.trace.recording.files import write
 
@@ -79,7 +80,7 @@ async def exported(app: CbtuiApp, pilot: Pilot[None], key: str) -> Path:
     return Path(sentence.removeprefix("Exported to "))
 
 
-@pytest.mark.parametrize("size", [NARROW, WIDE])
+@pytest.mark.parametrize("size", first_daily(WIDE, NARROW))
 async def test_the_window_offers_every_format(size: tuple[int, int]) -> None:
     async with console(size) as (app, pilot):
         await press(pilot, "x")
@@ -90,6 +91,7 @@ async def test_the_window_offers_every_format(size: tuple[int, int]) -> None:
         assert messages(app) == []
 
 
+@pytest.mark.slow
 async def test_its_key_and_those_of_the_window_can_be_chosen(folder: Path) -> None:
     keys = Keymap({"lesson.export": ("X",), "export.choose_table": ("j",)})
     async with console(keys=keys) as (app, pilot):
@@ -114,6 +116,7 @@ async def test_a_trace_of_a_live_run_has_its_beginning(folder: Path) -> None:
     assert max(packet.timestamp for packet in slices) <= begun + ns(5.0)
 
 
+@pytest.mark.slow
 async def test_a_table_tells_what_came_after_the_window_opened(folder: Path) -> None:
     async with console() as (app, pilot):
         await press(pilot, "x")
@@ -135,6 +138,7 @@ async def test_the_other_formats_are_written_too() -> None:
         assert json.loads(trace.read_text())["traceEvents"]
 
 
+@pytest.mark.slow
 async def test_a_picture_shows_the_stretch_on_screen_or_the_whole_run() -> None:
     async with console() as (app, pilot):
         await press(pilot, *["greater_than_sign"] * 3)
@@ -147,6 +151,7 @@ async def test_a_picture_shows_the_stretch_on_screen_or_the_whole_run() -> None:
         assert ": 0 to " in (await exported(app, pilot, "w")).read_text()
 
 
+@pytest.mark.slow
 async def test_no_file_is_ever_replaced(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("time.strftime", lambda _: "20260102-030405")
     taken = folder / "shared-group-20260102-030405.csv"
@@ -175,6 +180,7 @@ def test_a_folder_that_takes_no_file_is_told_of(folder: Path) -> None:
     assert export.write() == f"Nothing was exported: cannot write {export._path}: No such file or directory"
 
 
+@pytest.mark.slow
 async def test_a_full_disk_is_told_of_and_leaves_no_file(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -220,6 +226,7 @@ class SlowDisk:
             await pilot.pause()
 
 
+@pytest.mark.slow
 async def test_the_keys_go_on_and_the_top_line_tells_how_far_it_is(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -239,6 +246,7 @@ async def test_the_keys_go_on_and_the_top_line_tells_how_far_it_is(
         assert "EXPORT" not in lines_of(app)[0]
 
 
+@pytest.mark.slow
 async def test_an_export_that_is_soon_over_is_finished_when_the_lesson_is_left(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -258,6 +266,7 @@ async def test_an_export_that_is_soon_over_is_finished_when_the_lesson_is_left(
     assert app.saved == [f"Exported to {path}"]
 
 
+@pytest.mark.slow
 async def test_one_that_is_not_is_given_up_and_leaves_no_file(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

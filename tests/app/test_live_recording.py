@@ -116,6 +116,7 @@ async def test_the_console_goes_on_while_the_end_of_a_recording_is_written(
         assert recorded(folder).damage is None
 
 
+@pytest.mark.slow
 async def test_it_goes_on_at_the_end_of_the_run_too(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     async with console() as (app, pilot):
         await press(pilot, "R")
@@ -130,6 +131,7 @@ async def test_it_goes_on_at_the_end_of_the_run_too(folder: Path, monkeypatch: p
         assert recorded(folder).damage is None
 
 
+@pytest.mark.slow
 async def test_quitting_meanwhile_still_finishes_the_file(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -149,6 +151,7 @@ async def test_quitting_meanwhile_still_finishes_the_file(
     assert app.saved[0].startswith("Recorded ")
 
 
+@pytest.mark.slow
 async def test_leaving_ends_the_recording_cleanly(folder: Path) -> None:
     async with console() as (app, pilot):
         await press(pilot, "R", "q")
@@ -161,6 +164,7 @@ async def test_leaving_ends_the_recording_cleanly(folder: Path) -> None:
     assert recorded(folder).damage is None
 
 
+@pytest.mark.slow
 async def test_quitting_the_console_ends_the_recording_cleanly(folder: Path) -> None:
     async with console() as (app, pilot):
         await press(pilot, "R", "ctrl+q")
@@ -190,6 +194,7 @@ async def test_the_end_of_the_run_ends_the_recording_and_says_so(folder: Path) -
         assert "REC " not in lines_of(app)[0]
 
 
+@pytest.mark.slow
 async def test_another_run_is_not_recorded(folder: Path) -> None:
     async with console() as (app, pilot):
         await press(pilot, "R", "t", "2")
@@ -199,6 +204,7 @@ async def test_another_run_is_not_recorded(folder: Path) -> None:
         assert recorded(folder).damage is None
 
 
+@pytest.mark.slow
 async def test_what_cannot_be_recorded_is_said_in_a_sentence(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

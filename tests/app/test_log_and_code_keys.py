@@ -58,6 +58,7 @@ async def test_a_slash_filters_the_log_from_wherever_one_is() -> None:
         assert tabs(app).rstrip().endswith("186 lines · follows")
 
 
+@pytest.mark.slow
 async def test_keys_that_are_typed_into_a_filter_do_nothing_else() -> None:
     async with console() as (app, pilot):
         await press(pilot, "slash", "s", "space", "left", "q", "right", "question_mark", "colon")
@@ -65,6 +66,7 @@ async def test_keys_that_are_typed_into_a_filter_do_nothing_else() -> None:
         assert app.engines.latest.commands == []
 
 
+@pytest.mark.slow
 async def test_the_frame_of_the_log_says_what_is_shown() -> None:
     async with console(WIDE) as (app, pilot):
         assert "5 Log 186 lines · follows" in text_of(app)
@@ -81,6 +83,7 @@ async def test_a_line_that_is_picked_moves_the_cursor_of_every_pane() -> None:
         assert "● LIVE" in lines_of(app)[0]
 
 
+@pytest.mark.slow
 async def test_the_keys_of_the_log_are_offered_on_the_log_and_when_they_mean_something() -> None:
     async with console(WIDE) as (app, pilot):
         assert "f stay" not in lines_of(app)[-1]
@@ -109,6 +112,7 @@ async def test_enter_goes_from_the_code_to_the_lane_and_back() -> None:
         assert code.place.line == timer.first_line
 
 
+@pytest.mark.slow
 async def test_a_click_on_a_callback_selects_its_lane_and_stays_at_the_code() -> None:
     async with console(WIDE) as (app, pilot):
         code, lanes = app.screen.query_one(CodeView), app.screen.query_one(Lanes)
@@ -129,6 +133,7 @@ async def test_what_is_copied_goes_to_the_terminals_clipboard() -> None:
         assert "copied 1 line" in text_of(app)
 
 
+@pytest.mark.slow
 async def test_without_an_editor_the_key_says_what_to_do(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delenv("EDITOR", raising=False)
     monkeypatch.delenv("VISUAL", raising=False)
@@ -137,6 +142,7 @@ async def test_without_an_editor_the_key_says_what_to_do(monkeypatch: pytest.Mon
         assert "no editor is named" in text_of(app)
 
 
+@pytest.mark.slow
 async def test_a_terminal_that_cannot_be_lent_is_told_of(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("EDITOR", "vi")
     async with console() as (app, pilot):
@@ -180,6 +186,7 @@ async def test_the_editor_is_opened_at_the_line_and_the_run_goes_on(
         assert "t 14.0" in lines_of(app)[0]
 
 
+@pytest.mark.slow
 async def test_a_file_that_changed_on_disk_is_run_again_as_it_is_now(tmp_path: Path) -> None:
     path = tmp_path / "node.py"
     path.write_text("first = 1\n")

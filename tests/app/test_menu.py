@@ -18,6 +18,7 @@ from lessons.lesson import Lesson
 from lessons.progress import Progress
 from tests.app.pictures import lines_of, text_of
 from tests.support.console import NARROW, TALL, WIDE
+from tests.support.daily import first_daily
 from tests.support.exercises import until
 from tests.support.fake_session import FakeEngines
 
@@ -35,7 +36,7 @@ def opened(app: CbtuiApp) -> str | None:
     return None if lesson is None else lesson.id
 
 
-@pytest.mark.parametrize("size", [TALL, WIDE])
+@pytest.mark.parametrize("size", first_daily(WIDE, TALL))
 async def test_the_menu_shows_every_lesson_under_its_unit(size: tuple[int, int]) -> None:
     app = menu()
     async with app.run_test(size=size):
@@ -54,7 +55,7 @@ async def test_a_wide_menu_shows_in_its_list_what_every_lesson_is_made_of() -> N
             assert lesson.groups in line
 
 
-@pytest.mark.parametrize("size", [NARROW, WIDE])
+@pytest.mark.parametrize("size", first_daily(WIDE, NARROW))
 async def test_the_menu_tells_what_the_highlighted_lesson_teaches_and_is_made_of(
     size: tuple[int, int],
 ) -> None:
@@ -89,7 +90,7 @@ async def test_enter_opens_the_highlighted_lesson() -> None:
 async def test_a_number_opens_its_lesson() -> None:
     app = menu()
     async with app.run_test(size=NARROW) as pilot:
-        for lesson in lessons()[:9]:
+        for lesson in lessons()[:9:4]:
             await pilot.press(str(lesson.number))
             assert opened(app) == lesson.id
             await pilot.press("q")
@@ -169,7 +170,7 @@ def many_lessons() -> tuple[Lesson, ...]:
     )
 
 
-@pytest.mark.parametrize("size", [NARROW, WIDE])
+@pytest.mark.parametrize("size", first_daily(WIDE, NARROW))
 async def test_a_list_that_is_too_long_goes_with_the_highlight(
     size: tuple[int, int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -188,6 +189,7 @@ async def test_a_list_that_is_too_long_goes_with_the_highlight(
 # progress
 
 
+@pytest.mark.slow
 async def test_a_lesson_that_was_opened_has_a_mark_in_the_next_console_too() -> None:
     first, second, *_ = lessons()
     app = menu()
@@ -204,6 +206,7 @@ async def test_a_lesson_that_was_opened_has_a_mark_in_the_next_console_too() -> 
         assert "opened    just now" in text
 
 
+@pytest.mark.slow
 async def test_a_home_that_cannot_be_written_is_told_of_and_nothing_else_changes(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -230,6 +233,7 @@ asyncio.run(main())
     assert HEAVY & set(shown.stdout.split()) == set()
 
 
+@pytest.mark.slow
 async def test_marks_tell_how_far_the_learner_is_in_each_lesson() -> None:
     plain, exercised = lessons()[0], next(lesson for lesson in lessons() if lesson.exercise is not None)
     app = menu()

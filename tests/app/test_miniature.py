@@ -20,6 +20,7 @@ from sim.trace.timeline import Timeline
 from tests.app.pictures import text_of
 from tests.support.builder import ns
 from tests.support.console import NARROW
+from tests.support.daily import first_daily
 from tests.support.fake_session import FakeEngines, FakeSession
 from tests.support.runs import shared_group_run
 
@@ -125,7 +126,7 @@ async def test_a_lesson_that_cannot_be_run_is_said_to_be_once() -> None:
         assert [session.setup.title for session in engines.sessions].count(lessons()[0].id) == 1
 
 
-@pytest.mark.parametrize("key", ["enter", "q", "question_mark", "o", "ctrl+p"])
+@pytest.mark.parametrize("key", first_daily("enter", "q", "question_mark", "o", "ctrl+p"))
 async def test_whatever_takes_the_menu_s_place_ends_the_engine_that_draws(key: str) -> None:
     app, engines = console()
     async with app.run_test(size=NARROW) as pilot:
@@ -162,12 +163,18 @@ async def test_the_cursor_goes_through_a_run_once_and_rests_at_its_end() -> None
         assert drawn._sweep is None
 
 
-@pytest.mark.parametrize("charset", Charset)
-@pytest.mark.parametrize("width", [*range(1, 130, 7), 38, 39, 61, 62, 120])
-def test_a_picture_is_as_wide_as_it_is_to_be(width: int, charset: Charset) -> None:
+@pytest.fixture(scope="module")
+def shared_group() -> Timeline:
+    """A whole run, which nobody changes."""
     timeline = Timeline()
     timeline.extend(shared_group_run().events)
-    rows = miniature(Subject(timeline, Painter(charset)), timeline.end // 2, Size(width, 8))
+    return timeline
+
+
+@pytest.mark.parametrize("charset", Charset)
+@pytest.mark.parametrize("width", [*range(1, 130, 7), 38, 39, 61, 62, 120])
+def test_a_picture_is_as_wide_as_it_is_to_be(width: int, charset: Charset, shared_group: Timeline) -> None:
+    rows = miniature(Subject(shared_group, Painter(charset)), shared_group.end // 2, Size(width, 8))
     assert {sum(len(run.text) for run in row) for row in rows} == {width}
     assert len(rows) <= 8
 

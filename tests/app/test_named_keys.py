@@ -74,6 +74,7 @@ async def test_the_menu_names_the_keys_in_force() -> None:
         assert "s pressed at" not in screen
 
 
+@pytest.mark.slow
 async def test_the_guide_on_screen_names_the_keys_in_force() -> None:
     pages = []
     for keys in (STANDARD, OTHER):

@@ -26,6 +26,7 @@ from cbtui.widgets.lanes.selection import Selection
 from cbtui.widgets.log.lines import LogLines
 from sim.trace.events import EntityId, EntityKind
 from tests.support.console import WIDE, RecordedConsole, settle
+from tests.support.daily import first_daily
 from tests.support.exercises import until
 from tests.support.runs import split_groups_run
 
@@ -132,10 +133,10 @@ async def search_themes(app: RecordedConsole, pilot: Pilot[None]) -> None:
 
 @pytest.mark.parametrize(
     "open_window",
-    [
+    first_daily(
         *(lambda _, pilot, key=key: pilot.press(key) for key in ("question_mark", "ctrl+p", "d", "t")),
         search_themes,
-    ],
+    ),
 )
 async def test_a_window_that_is_left_twice_at_once_does_not_take_the_lesson_with_it(
     open_window: Callable[[RecordedConsole, Pilot[None]], Awaitable[None]],
@@ -152,6 +153,7 @@ async def test_a_window_that_is_left_twice_at_once_does_not_take_the_lesson_with
         assert app.screen is lesson
 
 
+@pytest.mark.slow
 async def test_two_quick_clicks_on_the_key_that_leaves_a_lesson_leave_the_lesson_alone() -> None:
     app = RecordedConsole("split-groups", split_groups_run().events, 4.0)
     async with app.run_test(size=WIDE) as pilot:
@@ -168,6 +170,7 @@ async def test_two_quick_clicks_on_the_key_that_leaves_a_lesson_leave_the_lesson
     assert app.return_code is None
 
 
+@pytest.mark.slow
 async def test_an_action_of_a_widget_that_has_the_keys_no_more_is_not_done() -> None:
     app = RecordedConsole("split-groups", split_groups_run().events, 4.0)
     async with app.run_test(size=WIDE):
@@ -177,6 +180,7 @@ async def test_an_action_of_a_widget_that_has_the_keys_no_more_is_not_done() -> 
                 await perform(app, action)
 
 
+@pytest.mark.slow
 async def test_a_palette_that_was_closed_looks_for_nothing_more() -> None:
     app = RecordedConsole("split-groups", split_groups_run().events, 4.0)
     async with app.run_test(size=WIDE) as pilot:
@@ -189,6 +193,7 @@ async def test_a_palette_that_was_closed_looks_for_nothing_more() -> None:
     assert looking is None
 
 
+@pytest.mark.slow
 async def test_keys_of_a_screen_that_goes_away_are_painted_no_more(monkeypatch: pytest.MonkeyPatch) -> None:
     app = RecordedConsole("split-groups", split_groups_run().events, 4.0)
     async with app.run_test(size=WIDE) as pilot:
@@ -214,6 +219,7 @@ async def test_a_click_on_what_was_just_removed_is_nobodys(monkeypatch: pytest.M
         assert len(forwarded) == 1
 
 
+@pytest.mark.slow
 async def test_the_group_of_a_callback_that_a_new_run_has_yet_to_make_is_asked_for_among_all() -> None:
     app = RecordedConsole("split-groups", split_groups_run().events, 4.0)
     async with app.run_test(size=WIDE) as pilot:

@@ -8,6 +8,7 @@ from cbtui.widgets.lanes import Lanes
 from tests.app.pictures import lines_of, text_of
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.daily import first_daily
 from tests.support.fake_session import FakeEngines
 from tests.support.runs import shared_group_run
 
@@ -67,6 +68,7 @@ async def test_drawing_goes_on_when_the_terminal_is_large_enough_again() -> None
         assert "odom_callback waits 9.1 s" in lines_of(app)[-2]
 
 
+@pytest.mark.slow
 async def test_a_screen_that_grows_looks_as_if_it_had_always_been_so_large() -> None:
     pictures = []
     for first in (NARROW, WIDE, (60, 20)):
@@ -92,7 +94,7 @@ async def test_lanes_diagnosis_and_keys_are_always_on_screen() -> None:
             assert {len(line) for line in lines_of(app)} == {size[0]}
 
 
-@pytest.mark.parametrize("page", ["pageup", "pagedown"])
+@pytest.mark.parametrize("page", first_daily("pageup", "pagedown"))
 @pytest.mark.parametrize("window", ["p", "t"], ids=["set-up", "threads"])
 async def test_a_window_that_opened_where_nothing_fits_has_no_pages(window: str, page: str) -> None:
     app = RecordedConsole("shared-group", EVENTS, 13.15)

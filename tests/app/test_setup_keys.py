@@ -99,6 +99,7 @@ async def test_each_group_shows_its_code_and_has_its_key(key: str, code: str) ->
         assert change.wish == wishes[key]
 
 
+@pytest.mark.slow
 async def test_the_group_in_force_is_highlighted_and_p_gives_the_program_s_again() -> None:
     async with console() as (app, pilot):
         await press(pilot, *TO_ODOM, "g", "s")
@@ -109,6 +110,7 @@ async def test_the_group_in_force_is_highlighted_and_p_gives_the_program_s_again
         assert notes(app)[-1] == "everything as it is written"
 
 
+@pytest.mark.slow
 async def test_g_without_a_selected_callback_lets_one_be_chosen_first() -> None:
     async with console() as (app, pilot):
         await press(pilot, "g")
@@ -135,6 +137,7 @@ async def test_p_begins_with_the_period_of_a_timer() -> None:
         )
 
 
+@pytest.mark.slow
 async def test_what_is_no_period_is_asked_for_again() -> None:
     async with console() as (app, pilot):
         await press(pilot, "p", "enter", "0", "enter")
@@ -144,6 +147,7 @@ async def test_what_is_no_period_is_asked_for_again() -> None:
         assert len(sessions(app)) == 1
 
 
+@pytest.mark.slow
 async def test_nothing_typed_is_the_program_s_own_number() -> None:
     async with console() as (app, pilot):
         await press(pilot, "p", "enter", *"0.7", "enter")
@@ -177,6 +181,7 @@ async def test_several_changes_make_one_run_that_is_compared_with_the_one_before
         assert notes(app) == ["changed: odom own group, 4 threads"]
 
 
+@pytest.mark.slow
 async def test_undoing_all_has_everything_as_the_program_says() -> None:
     async with console() as (app, pilot):
         await press(pilot, "t", "4")
@@ -189,6 +194,7 @@ async def test_undoing_all_has_everything_as_the_program_says() -> None:
         assert app.lesson_screen.live_run.setup.threads is None
 
 
+@pytest.mark.slow
 async def test_thinking_better_of_the_set_up_leaves_the_run_alone() -> None:
     async with console() as (app, pilot):
         await press(pilot, "g", "enter", "o", "escape")
@@ -200,6 +206,7 @@ async def test_thinking_better_of_the_set_up_leaves_the_run_alone() -> None:
 # what stays
 
 
+@pytest.mark.slow
 async def test_running_again_keeps_the_changes_and_another_lesson_drops_them() -> None:
     async with console() as (app, pilot):
         await press(pilot, *TO_ODOM, "g", "o")
@@ -220,6 +227,7 @@ async def test_the_screen_says_what_is_changed(size: tuple[int, int], row: int) 
         assert "changed: odom own group" in lines_of(app)[row]
 
 
+@pytest.mark.slow
 async def test_a_run_before_any_callback_offers_what_can_be_changed_all_the_same() -> None:
     async with console(seconds=-1) as (app, pilot):
         await press(pilot, "g")
@@ -243,6 +251,7 @@ async def test_the_console_can_be_opened_with_changes(tmp_path: Path) -> None:
         assert "changed: odom own group" in text_of(app)
 
 
+@pytest.mark.slow
 async def test_a_real_run_has_the_group_that_was_chosen() -> None:
     app = CbtuiApp(start_lesson="shared-group")
     predict(app, "shared-group")

@@ -72,6 +72,7 @@ async def test_what_lines_wrote_is_shown_with_control_characters_made_visible() 
         assert "/scan" in text
 
 
+@pytest.mark.slow
 async def test_a_tab_that_a_line_wrote_is_shown_as_blanks() -> None:
     shown = LineSaid(ns(1.0), 1, "float64 x\n\tint32 sec", False)
     async with console() as (app, pilot):
@@ -82,6 +83,7 @@ async def test_a_tab_that_a_line_wrote_is_shown_as_blanks() -> None:
         assert second.index("int32") == first.index("float64") + 8
 
 
+@pytest.mark.slow
 async def test_looking_back_shows_what_had_been_written_by_then() -> None:
     async with console() as (app, pilot):
         await press(pilot, "6")
@@ -124,6 +126,7 @@ async def test_tab_asks_and_the_answer_fills_in_what_is_common() -> None:
         assert not any("/robot/odom  /robot/scan" in line for line in lines_of(app))
 
 
+@pytest.mark.slow
 async def test_no_completion_leaves_the_line_alone() -> None:
     async with console() as (app, pilot):
         await press(pilot, "colon")

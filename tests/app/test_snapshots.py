@@ -6,11 +6,12 @@ from textual.pilot import Pilot
 from cbtui.app import CbtuiApp
 from sim.trace.events import AnyEvent
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.daily import first_daily
 from tests.support.fake_session import FakeEngines
 from tests.support.runs import dummy_server_run, shared_group_run, split_groups_run
 
 Compare = Callable[..., bool]
-SIZES = pytest.mark.parametrize("size", [NARROW, WIDE], ids=["80x24", "140x40"])
+SIZES = pytest.mark.parametrize("size", first_daily(WIDE, NARROW), ids=["140x40", "80x24"])
 
 
 @SIZES

@@ -216,6 +216,7 @@ async def test_enough_of_a_run_unlocks_what_it_showed() -> None:
         assert app.kept().seen
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("failed", [False, True])
 async def test_a_run_that_failed_has_shown_nothing(failed: bool) -> None:
     async with console(3.0, observe=the_lessons_own_run()) as (app, pilot):
@@ -225,6 +226,7 @@ async def test_a_run_that_failed_has_shown_nothing(failed: bool) -> None:
         assert app.kept().seen is not failed
 
 
+@pytest.mark.slow
 async def test_what_is_being_read_stays_in_its_place_when_the_run_unlocks_what_it_showed() -> None:
     async with console(29.0, LESSON.id, the_lessons_own_run(), "1", "enter", "2", "enter") as (app, pilot):
         guide, read = app.screen.query_one(Guide), app.screen.query_one("#part-guide")
@@ -236,6 +238,7 @@ async def test_what_is_being_read_stays_in_its_place_when_the_run_unlocks_what_i
         assert read.virtual_region.y - guide.scroll_offset.y == -2
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("lesson", "key"), [(LESSON.id, "n next"), (WITH_EXERCISE.id, "e exercise")])
 async def test_the_keys_of_a_narrow_screen_tell_the_way_on_after_the_explanation(
     lesson: str, key: str
@@ -245,6 +248,7 @@ async def test_the_keys_of_a_narrow_screen_tell_the_way_on_after_the_explanation
         assert key in lines_of(app)[-1]
 
 
+@pytest.mark.slow
 async def test_who_asks_for_the_answer_may_predict_first_or_leave_it() -> None:
     async with console() as (app, pilot):
         await press(pilot, "escape", "a")
@@ -258,6 +262,7 @@ async def test_who_asks_for_the_answer_may_predict_first_or_leave_it() -> None:
         assert top(app) is LessonScreen
 
 
+@pytest.mark.slow
 async def test_a_run_that_shows_something_else_outdoes_the_lesson() -> None:
     async with console(observe=observed(split_groups_run().events)) as (app, pilot):
         await press(pilot, "1", "enter", "2", "enter", "a")
@@ -266,6 +271,7 @@ async def test_a_run_that_shows_something_else_outdoes_the_lesson() -> None:
         assert FIRST.because not in app.page
 
 
+@pytest.mark.slow
 async def test_a_run_that_cannot_be_held_against_is_told_of_in_a_sentence() -> None:
     def broken(_setup: RunSetup, name: str, _given_up: Event) -> Observed:
         return Observed(Timeline(), f"{name} ended its whole process at 0.000 s", broken_off=True)
@@ -276,6 +282,7 @@ async def test_a_run_that_cannot_be_held_against_is_told_of_in_a_sentence() -> N
         assert FIRST.because not in app.page
 
 
+@pytest.mark.slow
 async def test_a_screen_that_is_left_breaks_off_the_run_beside_it() -> None:
     begun, over = Event(), Event()
 
@@ -330,6 +337,7 @@ async def test_hints_come_in_their_order_and_end_with_the_third() -> None:
         assert app.kept().hints == 3
 
 
+@pytest.mark.slow
 async def test_a_hint_is_told_where_the_page_is_not_in_sight() -> None:
     Progress().see(WITH_EXERCISE.id)
     assert WITH_EXERCISE.exercise is not None
@@ -337,6 +345,7 @@ async def test_a_hint_is_told_where_the_page_is_not_in_sight() -> None:
         assert [note.message for note in app._notifications] == [WITH_EXERCISE.exercise.hints[0]]
 
 
+@pytest.mark.slow
 async def test_no_hint_is_given_before_the_exercise_can_be_read() -> None:
     async with console(lesson=WITH_EXERCISE.id) as (app, pilot):
         await press(pilot, "escape", "h", "H")

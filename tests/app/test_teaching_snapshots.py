@@ -9,6 +9,7 @@ from textual.pilot import Pilot
 from lessons.progress import Progress
 from tests.app.test_teaching import WITH_EXERCISE, Console, press, the_lessons_own_run, until_shown
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.daily import first_daily
 from tests.support.exercises import SOLUTION, STARTER, Engines, ExerciseConsole, judged_run, until
 from tests.support.runs import shared_group_run
 
@@ -30,7 +31,7 @@ def test_the_question_before_a_run_looks_as_it_did(snap_compare: Compare) -> Non
     assert snap_compare(Console(), terminal_size=NARROW, run_before=pressed("2"))
 
 
-@pytest.mark.parametrize("size", [NARROW, WIDE], ids=["80x24", "140x40"])
+@pytest.mark.parametrize("size", first_daily(WIDE, NARROW), ids=["140x40", "80x24"])
 def test_a_right_and_a_wrong_prediction_look_as_they_did(
     snap_compare: Compare, size: tuple[int, int]
 ) -> None:

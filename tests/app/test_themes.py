@@ -7,11 +7,12 @@ from cbtui.app import CbtuiApp
 from cbtui.looks.colour_themes import THEMES, palette_of
 from cbtui.looks.contrast import contrast
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.daily import first_daily
 from tests.support.fake_session import FakeEngines
 from tests.support.runs import shared_group_run
 
 LEAST = {theme.name: palette_of(theme).words for theme in THEMES}
-THEME = pytest.mark.parametrize("theme", LEAST)
+THEME = pytest.mark.parametrize("theme", first_daily(*LEAST))
 
 
 def hard_to_read(app: App[None], least: float) -> dict[str, float]:
@@ -28,7 +29,7 @@ def hard_to_read(app: App[None], least: float) -> dict[str, float]:
 
 
 @THEME
-@pytest.mark.parametrize("size", [NARROW, WIDE], ids=["80x24", "140x40"])
+@pytest.mark.parametrize("size", first_daily(WIDE, NARROW), ids=["140x40", "80x24"])
 async def test_the_menu_is_readable(theme: str, size: tuple[int, int]) -> None:
     app = CbtuiApp(theme=theme, open_session=FakeEngines([], 0))
     async with app.run_test(size=size) as pilot:

@@ -149,14 +149,14 @@ def test_a_file_runs_on_the_real_clock_unless_told_otherwise(tmp_path: Path) -> 
     assert "of real time: the program returned" in done.stdout
 
 
-@pytest.mark.usefixtures("fresh_engines")
 def test_a_program_that_fails_gives_exit_code_1_and_one_sentence_after_its_traceback(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # Without PyBullet there is no robot, and the sentence says what to do.
     (tmp_path / "pybullet.py").write_text("raise ImportError('no wheel for this Python')")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
-    done = cbtui("run", "single-thread", "--for", "1")
+    command = [sys.executable, "-m", "cbtui", "run", "single-thread", "--for", "1"]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60, check=False)
     assert done.returncode == 1
     [sentence] = done.stderr.splitlines()
     assert "PyBullet" in sentence

@@ -31,6 +31,7 @@ def test_it_is_recorded_of_every_fault_that_keys_are_answered_in_time() -> None:
     assert {name for name, entry in recorded.items() if float(entry["half_ms"]) > ANSWERED * 1e3} == set()
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="processes are looked up in /proc")
 def test_the_command_presses_keys_while_a_fault_goes_on_and_tells_the_waits(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

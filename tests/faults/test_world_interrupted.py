@@ -15,6 +15,7 @@ import pytest
 from lessons.catalogue import find
 from sim.recording import About, Recorder, read
 from tests.faults.support import PATIENCE, node_with, nothing_left
+from tests.support.daily import first_daily
 from tests.support.processes import engines_of
 from tests.support.runs import shared_group_run
 from tests.terminal.console import opened
@@ -140,7 +141,9 @@ def test_ctrl_c_ends_a_console_that_starts_and_gives_the_terminal_back(moment: i
         assert "fault of its own" not in console.said()
 
 
-@pytest.mark.parametrize("function", [*LOOPS_START, "EndingApp.run", "EndingApp.run_async", "ending_heard"])
+@pytest.mark.parametrize(
+    "function", first_daily(*LOOPS_START, "EndingApp.run", "EndingApp.run_async", "ending_heard")
+)
 def test_ctrl_c_before_the_console_hears_it_ends_it_before_it_draws(function: str, tmp_path: Path) -> None:
     with opened(80, 24, tmp_path, program=[SCRIPT, function]) as console:
         assert console.ended() == INTERRUPTED
@@ -148,6 +151,7 @@ def test_ctrl_c_before_the_console_hears_it_ends_it_before_it_draws(function: st
         assert console.left_on() == set()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("function", ["MenuScreen.compose", "PanedScreen.compose", "LogView.on_mount"])
 def test_ctrl_c_while_the_console_puts_its_widgets_together_ends_it(function: str, tmp_path: Path) -> None:
     with opened(80, 24, tmp_path, "open", EXERCISE, "--exercise", program=[SCRIPT, function]) as console:
@@ -156,6 +160,7 @@ def test_ctrl_c_while_the_console_puts_its_widgets_together_ends_it(function: st
         assert "fault of its own" not in console.said()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("function", LOOPS_END)
 def test_ctrl_c_as_a_console_that_was_left_ends_finds_all_of_it_whole(function: str, tmp_path: Path) -> None:
     with opened(80, 24, tmp_path, program=[SCRIPT, function]) as console:

@@ -1,0 +1,10 @@
+"""Which of a test's cases are run each time, and which with the slow tests."""
+
+from typing import Any
+
+import pytest
+
+
+def first_daily(case: Any, *others: Any) -> list[Any]:
+    """Return the values of a parameter of a long test; all but the first are left to the slow run."""
+    return [case, *(pytest.param(other, marks=pytest.mark.slow) for other in others)]
