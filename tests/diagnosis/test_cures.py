@@ -98,10 +98,10 @@ SENSORS = ("timer_callback", "odom_callback", "scan_callback")
     ("lesson", "threads", "call", "cures"),
     [
         ("single-thread", None, None, {(each, 2) for each in SENSORS}),
-        ("shared-group", 2, None, {(each, None) for each in SENSORS}),
-        ("no-groups-at-all", None, 2.55, {("timer_callback", None)}),
+        pytest.param("shared-group", 2, None, {(each, None) for each in SENSORS}, marks=pytest.mark.slow),
+        pytest.param("no-groups-at-all", None, 2.55, {("timer_callback", None)}, marks=pytest.mark.slow),
         ("reentrant-1-thread", None, 2.55, {("", 2)}),
-        ("lock-or-group", None, None, {("count_with_lock", None)}),
+        pytest.param("lock-or-group", None, None, {("count_with_lock", None)}, marks=pytest.mark.slow),
     ],
 )
 def test_each_cure_that_a_lesson_is_offered_ends_what_it_is_offered_for(
