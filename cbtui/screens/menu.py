@@ -3,7 +3,7 @@
 import asyncio
 from collections.abc import Callable, Sequence
 from time import time
-from typing import TYPE_CHECKING, ClassVar, cast
+from typing import TYPE_CHECKING, ClassVar
 
 from rich.text import Text
 from textual import on
@@ -22,6 +22,7 @@ from cbtui.learning.preview import CALLS, LENGTH, CannotPreviewError, GivenUpErr
 from cbtui.learning.stage import Stage, in_words, stage_of
 from cbtui.looks.theme import Charset
 from cbtui.runs.setup.recent import Opened, Recents
+from cbtui.screens.console import console_of
 from cbtui.screens.layout import Layout
 from cbtui.screens.sized import SizedScreen
 from cbtui.widgets.about import About, Description, of_file, of_lesson
@@ -34,7 +35,6 @@ from lessons.lesson import Lesson
 from lessons.progress import Progress
 
 if TYPE_CHECKING:
-    from cbtui.app import CbtuiApp
     from cbtui.runs.live.live_run import OpenSession
 
 _REST = 0.3
@@ -343,7 +343,7 @@ class MenuScreen(SizedScreen[None]):
         return self.query_one(Miniature)
 
     def _open(self, choice: Lesson | Opened) -> None:
-        app = cast("CbtuiApp", self.app)
+        app = console_of(self)
         if isinstance(choice, Lesson):
             app.open_lesson(choice)
             return

@@ -1,7 +1,7 @@
 """Asks for a program or a recording of the person's own."""
 
 from time import time
-from typing import TYPE_CHECKING, ClassVar, cast
+from typing import ClassVar
 
 from textual import on
 from textual.app import ComposeResult
@@ -12,12 +12,10 @@ from textual.widgets import Input, Static
 from cbtui.keys.actions import Scope, bindings_of
 from cbtui.looks.theme import Charset
 from cbtui.runs.setup.own_files import CannotOpenError, completed, entry_for
+from cbtui.screens.console import console_of
 from cbtui.screens.sized import SizedModal
 from cbtui.text.cells import visible
 from cbtui.widgets.key_bar import KeyBar
-
-if TYPE_CHECKING:
-    from cbtui.app import CbtuiApp
 
 _OFFERED = 24
 """Names that are listed at most."""
@@ -83,7 +81,7 @@ class OpeningScreen(SizedModal[None]):
 
     def _open(self, text: str) -> None:
         try:
-            cast("CbtuiApp", self.app).open_file(entry_for(text, time()))
+            console_of(self).open_file(entry_for(text, time()))
         except CannotOpenError as error:
             self._say(visible(str(error), self._charset), wrong=True)
 
