@@ -4,7 +4,6 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from multiprocessing.context import ForkServerContext, ForkServerProcess
-from typing import Any
 
 import pytest
 
@@ -24,10 +23,6 @@ _PRELOADED = (
 class _Engine(ForkServerProcess):
     """A copy that has the environment of the process that asked for it, as a fresh one has."""
 
-    def __init__(self, *args: Any, **kwargs: Any) -> None:
-        forking_context(_PRELOADED)
-        super().__init__(*args, **kwargs)
-
     def start(self) -> None:
         self._environment = dict(os.environ)
         super().start()
@@ -45,6 +40,7 @@ class _Context(ForkServerContext):
 @contextmanager
 def forked() -> Iterator[None]:
     """Let sessions that are given no context copy their engines."""
+    forking_context(_PRELOADED)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(session, "AFRESH", _Context())
         yield

@@ -32,6 +32,7 @@ from sim.trace.events import (
 from sim.trace.model import Window
 from sim.trace.storage.spill import Spill
 from sim.trace.timeline import Timeline
+from tests.support.daily import first_daily
 from tests.trace.naive import Naive, overlaps
 from tests.trace.systems import GROUP_OF, jumbled_runs, legal_runs
 from tests.trace.test_timeline_properties import (
@@ -146,7 +147,7 @@ def test_calls_within_a_window_were_out_at_some_time_in_it(
             ]
 
 
-@pytest.mark.parametrize("later", [0, 2 * NEWEST_KEPT])
+@pytest.mark.parametrize("later", first_daily(0, 2 * NEWEST_KEPT))
 def test_a_call_is_answered_or_lost_however_many_came_after_it(later: int) -> None:
     sent = [ServiceCalled(number, number, "/motors", 0, "on") for number in range(1, 3 + later)]
     timeline = forgetful(

@@ -1,5 +1,6 @@
 """A recording that begins in the middle of a run shows the present as one that was there from the start."""
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -12,6 +13,7 @@ from sim.trace.events import (
     MessageDropped,
     TopicAppeared,
 )
+from tests.support.daily import first_daily
 from tests.support.runs import dummy_server_run, shared_group_run
 from tests.trace.recording.files import TOPICS, timeline_of
 from tests.trace.samples import CAST
@@ -31,9 +33,10 @@ def test_from_its_beginning_on_every_moment_is_that_of_the_run(events: list[AnyE
     assert_same_from(events, min(cut, len(events)))
 
 
-def test_lessons_can_be_recorded_from_any_event_on() -> None:
+@pytest.mark.parametrize("step", first_daily(2011, 311))
+def test_lessons_can_be_recorded_from_any_event_on(step: int) -> None:
     for run in (shared_group_run(), dummy_server_run()):
-        for cut in range(0, len(run.events), 311):
+        for cut in range(0, len(run.events), step):
             assert_same_from(run.events, cut)
 
 

@@ -13,6 +13,7 @@ import pytest
 from cbtui.runs.recorded.events_file import EventsFile
 from sim.recording import About, Recorder, RecordingError, read, recorder
 from sim.trace.events import AnyEvent, Notice, Severity
+from tests.support.daily import first_daily
 from tests.trace.recording.files import run_in_batches, without_contents
 
 BATCHES = run_in_batches(9)[:3]
@@ -79,13 +80,14 @@ def events_on(disk: Disk) -> list[AnyEvent]:
         return []
 
 
-def test_a_recording_gives_back_its_events_at_whichever_byte_its_disk_was_full() -> None:
+@pytest.mark.parametrize("step", first_daily(19, 1))
+def test_a_recording_gives_back_its_events_at_whichever_byte_its_disk_was_full(step: int) -> None:
     whole, failure = recorded(MANY, BATCHES)
     size = len(whole.getvalue())
     assert (failure, events_on(whole)) == (None, EVENTS)
     counts = {b"": 0}
     seen = []
-    for room in range(size):
+    for room in range((size - 1) % step, size, step):
         disk, failure = recorded(room, BATCHES)
         content = disk.getvalue()
         assert failure == FULL
@@ -99,7 +101,7 @@ def test_a_recording_gives_back_its_events_at_whichever_byte_its_disk_was_full()
     assert seen == sorted(seen)
     assert len(set(seen)) > 2
     assert seen[-1] == len(EVENTS)
-    assert seen[size // 2] > 0
+    assert seen[len(seen) // 2] > 0
 
 
 def test_a_long_program_takes_no_room_from_the_first_events_however_late_they_come(tmp_path: Path) -> None:
@@ -114,10 +116,11 @@ def test_a_long_program_takes_no_room_from_the_first_events_however_late_they_co
     assert events_on(disk) == without_contents(BATCHES[0])
 
 
-def test_a_recording_that_breaks_off_at_any_byte_gives_back_what_came_before() -> None:
+@pytest.mark.parametrize("step", first_daily(19, 1))
+def test_a_recording_that_breaks_off_at_any_byte_gives_back_what_came_before(step: int) -> None:
     whole = recorded(MANY, BATCHES)[0].getvalue()
     seen = []
-    for cut in range(len(whole)):
+    for cut in range((len(whole) - 1) % step, len(whole), step):
         events = events_on(Disk(cut, whole[:cut]))
         assert events == EVENTS[: len(events)]
         seen.append(len(events))
