@@ -46,22 +46,18 @@ class Narrator:
         self._end_all(self._order.latest)
         self._sink.close()
 
-    @property
-    def tells(self) -> set[type]:
-        """The kinds of events that it knows."""
-        return set(self._tell)
-
     def _tell_all(self, events: Sequence[AnyEvent]) -> None:
         tell = self._tell
         for event in events:
-            tell[event.__class__](event)
+            known = tell.get(event.__class__)
+            if known is not None:
+                known(event)
 
     def _telling(self) -> dict[type, Callable[[Any], object]]:
         cast = self._stage.cast
         return {
             ev.RunStarted: self._run_started,
             ev.RunEnded: self._run_ended,
-            ev.RunEnding: _leave_out,
             ev.ProcessAppeared: cast.add_process,
             ev.ProcessEnded: self._process_ended,
             ev.ThreadAppeared: self._stage.add_thread,
@@ -82,8 +78,6 @@ class Narrator:
             ev.CallbackFailed: self._running.fail,
             ev.Published: self._published,
             ev.QosMismatched: self._qos_mismatched,
-            ev.TopicAppeared: _leave_out,
-            ev.MessageSent: _leave_out,
             ev.ServiceCalled: self._service_called,
             ev.ServiceReplied: self._service_replied,
             ev.RequestLost: self._request_lost,
@@ -91,20 +85,13 @@ class Narrator:
             ev.CallUnblocked: self._call_unblocked,
             ev.Logged: self._logged,
             ev.Printed: self._printed,
-            ev.ArenaShown: _leave_out,
             ev.RobotMoved: self._robot_moved,
-            ev.Scanned: _leave_out,
             ev.VelocityCommanded: self._velocity_commanded,
             ev.CommandGiven: self._command_given,
-            ev.InputGiven: _leave_out,
             ev.TimeHalted: self._command_given,
-            ev.TimePassed: _leave_out,
-            ev.KeyboardAsked: _leave_out,
             ev.Typed: self._typed,
             ev.LineGiven: self._command_given,
             ev.LineSaid: self._line_said,
-            ev.LineEnded: _leave_out,
-            ev.LineCompleted: _leave_out,
             ev.Notice: self._noticed,
             ev.EventsLost: self._events_lost,
             ev.ContentsLost: self._contents_lost,
@@ -394,7 +381,3 @@ class Narrator:
         if unanswered:
             track = self._stage.words("notices")
             self._sink.instant(track, t, "calls without a reply", "call", NO_FACTS, Links(end=unanswered))
-
-
-def _leave_out(_event: object) -> None:
-    """Trace viewers have no way to show such events."""

@@ -17,7 +17,7 @@ from sim.trace.events import (
     MessageSent,
     TopicAppeared,
     TopicId,
-    spelt_out,
+    escape_surrogates,
 )
 
 _BOUND = 32_000_000
@@ -110,7 +110,7 @@ class Contents:
         try:
             packed = self._encoder.encode(events)
         except UnicodeEncodeError:
-            packed = self._encoder.encode(spelt_out(events))
+            packed = self._encoder.encode(escape_surrogates(events))
         self._packed = taken
         return packed
 

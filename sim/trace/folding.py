@@ -69,7 +69,9 @@ class Folded:
         fold = self._fold
         end = self.end
         for event in events:
-            fold[event.__class__](event)
+            known = fold.get(event.__class__)
+            if known is not None:
+                known(event)
             end = max(end, event.t)
         self.end = end
 
@@ -93,7 +95,6 @@ class Folded:
         return {
             ev.RunStarted: self._run_started,
             ev.RunEnded: self._run_ended,
-            ev.RunEnding: _pass_over,
             ev.ProcessAppeared: self.cast.add_process,
             ev.ProcessEnded: self.cast.end_process,
             ev.ThreadAppeared: self.cast.add_thread,
@@ -114,8 +115,6 @@ class Folded:
             ev.CallbackFailed: self._callback_failed,
             ev.Published: self.publications.add,
             ev.QosMismatched: self.mismatches.add,
-            ev.TopicAppeared: _pass_over,
-            ev.MessageSent: _pass_over,
             ev.ServiceCalled: self._service_called,
             ev.ServiceReplied: self._service_replied,
             ev.RequestLost: self.calls.lose,
@@ -128,9 +127,6 @@ class Folded:
             ev.Scanned: self._scanned,
             ev.VelocityCommanded: self.velocities.add,
             ev.CommandGiven: self._command_given,
-            ev.InputGiven: _pass_over,
-            ev.TimeHalted: _pass_over,
-            ev.TimePassed: _pass_over,
             ev.KeyboardAsked: self._keyboard_asked,
             ev.Typed: self.shell.add,
             ev.LineGiven: self._line_given,
@@ -251,7 +247,3 @@ class Folded:
 
 def _unknown(_: object) -> None:
     """A reply counts from its arrival, and so does what an action has of messages and calls together."""
-
-
-def _pass_over(_: object) -> None:
-    """Nothing is asked of such events yet but that they happened, which ``end`` tells."""

@@ -51,7 +51,7 @@ def test_a_callback_as_long_as_the_period_is_called_back_to_back() -> None:
 def test_the_age_of_a_timers_call_is_how_late_it_is() -> None:
     trace = spin_with_timer(0.1, until=0.75, blocks={2: 0.35})
     starts = [each for each in trace.events if type(each).__name__ == "CallbackStarted"]
-    assert [each.age for each in starts] == [0, 0, 250_000_000, 0, 0]  # type: ignore[union-attr]
+    assert [each.age for each in starts] == [0, 0, 250_000_000, 0, 0]  # type: ignore[attr-defined]
 
 
 @given(st.integers(0, 10**6), st.integers(1, 1000), st.integers(0, 10**6))

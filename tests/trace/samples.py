@@ -1,6 +1,11 @@
-"""One event of every kind, twice: with all it can carry, and with as little as it may."""
+"""Events of every kind: a story of them all, and any kind with all it can carry or as little as it may."""
 
+from enum import Enum
 from math import inf
+from types import UnionType
+from typing import Annotated, Any, get_args, get_origin
+
+import msgspec
 
 from sim.trace.events import (
     AnyEvent,
@@ -16,6 +21,7 @@ from sim.trace.events import (
     ContentsLost,
     EntityAppeared,
     EntityGone,
+    EntityId,
     EntityKind,
     EntityReady,
     EventsLost,
@@ -49,6 +55,7 @@ from sim.trace.events import (
     ServiceCalled,
     ServiceReplied,
     Severity,
+    Shown,
     SpinClashed,
     ThreadAppeared,
     TimeHalted,
@@ -144,3 +151,40 @@ BARE: list[AnyEvent] = [
     Notice(2_800_000_000, Severity.INFO, "The robot stands."),
     EntityGone(2_800_000_000, 3),
 ]
+
+
+_SAMPLES = {int: 1, str: "text", float: 0.5, bool: True, bytes: bytes(8)}
+_WITHOUT_CALLBACK = 3
+"""The client of ``BARE``."""
+
+
+def full(kind: type[AnyEvent]) -> AnyEvent:
+    """An event of a kind with all it can carry; its ids are those of ``CAST``."""
+    return kind(*(_value(field.type) for field in msgspec.structs.fields(kind)))
+
+
+def bare(kind: type[AnyEvent]) -> AnyEvent:
+    """An event of a kind with as little as it may carry; its entity has no callback."""
+    least: dict[str, Any] = {}
+    for name, annotated in ((field.name, field.type) for field in msgspec.structs.fields(kind)):
+        marks = get_args(annotated)
+        if annotated == EntityId:
+            least[name] = _WITHOUT_CALLBACK
+        elif Shown.IF_ANY in marks:
+            least[name] = {int: 0, str: ""}.get(marks[0], ("", 0))
+        elif name == "callback":
+            least[name] = ""
+        elif get_origin(marks[:1] and marks[0]) is UnionType:
+            least[name] = None
+    return msgspec.structs.replace(full(kind), **least)
+
+
+def _value(annotated: Any) -> Any:
+    """A value of a field's type."""
+    arguments = get_args(annotated)
+    match get_origin(annotated):
+        case origin if origin is Annotated or origin is UnionType:
+            return _value(arguments[0])
+        case origin if origin is tuple:
+            return tuple(_value(each) for each in arguments if each is not ...)
+    return next(iter(annotated)) if issubclass(annotated, Enum) else _SAMPLES[annotated]

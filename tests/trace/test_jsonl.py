@@ -1,54 +1,56 @@
-"""Lines of JSON: what they carry, and that their documentation is right."""
+"""Lines of JSON: what they have, and that their documentation says so."""
 
 import json
-import re
-from importlib.resources import files
 from math import inf, nan
-from typing import Any, get_args
+from typing import Any
 
 import pytest
 
-from sim.export.jsonl import JsonLines
+from sim.export.jsonl import JsonLines, json_fields
 from sim.trace import events as ev
-from sim.trace.events import AnyEvent
+from sim.trace.events import AnyEvent, kinds
 from tests.support.runs import dummy_server_run
-from tests.trace.samples import BARE, CAST, FULL
-
-GUIDE = (files("sim.trace") / "EVENTS.md").read_text()
-EVENTS, FIELDS = GUIDE.split("| field |")
-DOCUMENTED = {name: fields.split() for name, fields in re.findall(r"^\| (\w+) \| (.+) \|$", EVENTS, re.M)}
+from tests.trace.events_page import PAGE, kinds_with_lines, page, unexplained
+from tests.trace.samples import BARE, CAST, FULL, bare, full
 
 
 def objects(events: list[AnyEvent]) -> list[dict[str, Any]]:
     return [json.loads(line) for line in JsonLines().lines(events)]
 
 
-def test_the_guide_lists_every_event() -> None:
-    tags = {kind.__struct_config__.tag for kind in get_args(AnyEvent)}
-    assert set(DOCUMENTED) - {"event"} == tags - {"time"}
+def line_of(event: AnyEvent) -> dict[str, Any]:
+    return objects([ev.ProcessAppeared(0, 1, "talker-1"), *BARE[: len(CAST) + 1], event])[-1]
+
+
+def test_the_page_is_written_from_the_classes_of_events() -> None:
+    written = page()
+    assert PAGE.read_text() == written, "write it anew: python -m tests.trace.events_page"
+
+
+def test_every_field_is_explained() -> None:
+    assert unexplained() == []
 
 
 def test_that_time_passes_is_no_line() -> None:
     assert objects([ev.TimePassed(1)]) == []
 
 
-@pytest.mark.parametrize("line", objects(FULL), ids=lambda line: line["event"])
-def test_an_event_with_all_it_can_carry_has_the_fields_of_the_guide(line: dict[str, Any]) -> None:
-    fields = [name.rstrip("?") for name in DOCUMENTED[line["event"]]]
-    assert list(line) == ["t", "event", *fields]
+@pytest.mark.parametrize("kind", kinds_with_lines())
+def test_an_event_with_all_it_can_carry_has_all_fields_of_the_page(kind: type[AnyEvent]) -> None:
+    fields = [name.rstrip("?") for field in json_fields(kind) for name in field.names]
+    assert list(line_of(full(kind))) == ["t", "event", *fields]
 
 
-@pytest.mark.parametrize("line", objects(BARE)[len(CAST) :], ids=lambda line: line["event"])
-def test_an_event_leaves_out_what_does_not_apply(line: dict[str, Any]) -> None:
-    fields = [name for name in DOCUMENTED[line["event"]] if not name.endswith("?")]
-    assert list(line) == ["t", "event", *fields]
+@pytest.mark.parametrize("kind", kinds_with_lines())
+def test_an_event_leaves_out_what_does_not_apply(kind: type[AnyEvent]) -> None:
+    fields = [name for field in json_fields(kind) for name in field.names if not name.endswith("?")]
+    assert list(line_of(bare(kind))) == ["t", "event", *fields]
 
 
-def test_every_field_is_explained() -> None:
-    explained = set()
-    for names in re.findall(r"^\| ([\w, ]+) \| .+ \|$", FIELDS, re.M):
-        explained |= set(names.split(", "))
-    assert {name.rstrip("?") for fields in DOCUMENTED.values() for name in fields} - {"fields"} == explained
+@pytest.mark.parametrize("kind", kinds())
+def test_an_event_is_packed_and_unpacked(kind: type[AnyEvent]) -> None:
+    events = [full(kind), bare(kind)]
+    assert ev.decode(ev.encode(events)) == events
 
 
 def test_golden_lines() -> None:

@@ -1,13 +1,10 @@
 """What trace viewers are told of a run, read back from both kinds of file."""
 
 from collections.abc import Callable, Sequence
-from io import BytesIO
-from typing import get_args
 
 import pytest
 from hypothesis import given
 
-from sim.export import Narrator, PerfettoFile
 from sim.trace.events import (
     AnyEvent,
     CallbackStarted,
@@ -19,12 +16,14 @@ from sim.trace.events import (
     Reason,
     RunStarted,
     ThreadAppeared,
+    kinds,
 )
 from sim.trace.model import Window
 from tests.support.runs import Run, dummy_server_run, ns, shared_group_run
 from tests.trace.export import reading
 from tests.trace.export.examples import NASTY, small_run, timeline_of
 from tests.trace.export.reading import Trace
+from tests.trace.samples import CAST, FULL, full
 from tests.trace.systems import GROUP_OF, THREADS, jumbled_runs, legal_runs
 
 Read = Callable[[Sequence[AnyEvent]], Trace]
@@ -240,9 +239,11 @@ def test_a_file_without_its_beginning_still_has_tracks_for_all(read: Read) -> No
     assert trace.named("thread 1")
 
 
-def test_every_event_has_a_way_to_be_told() -> None:
-    narrator = Narrator(PerfettoFile(BytesIO()))
-    assert narrator.tells == set(get_args(AnyEvent))
+@both
+def test_an_event_of_any_kind_can_be_exported(read: Read) -> None:
+    assert_sound(read(FULL))
+    for kind in kinds():
+        assert_sound(read([*CAST, full(kind)]))
 
 
 @both

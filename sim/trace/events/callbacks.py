@@ -1,0 +1,112 @@
+"""What becomes of a callback: it gets ready, waits, runs, is suspended, fails, ends."""
+
+from enum import StrEnum
+
+from sim.trace.events.event import Event
+from sim.trace.events.fields import EntityId, HolderId, Maybe, MessageId, Nanoseconds, Text, ThreadId
+
+
+class Reason(StrEnum):
+    """Why a ready callback does not run."""
+
+    GROUP_HELD = "group held"
+    """Its mutually exclusive group has let another callback in."""
+    NO_FREE_WORKER = "no free worker"
+    """Its group would let it in, but every thread of its executor is running a callback."""
+    NOBODY_SPINS = "nobody spins"
+    """Its node is in no executor, or that executor is not spinning."""
+
+
+class EntityReady(Event, frozen=True, tag="ready"):
+    """A message, request or reply arrived, or a timer fell due."""
+
+    entity: EntityId
+    depth: int
+    """Messages in the queue after it."""
+    message: Maybe[MessageId]
+
+
+class MessageDropped(Event, frozen=True, tag="message_drop"):
+    """A queue lost a message.
+
+    A full queue loses its oldest message to a newer one, and any queue a message that stays longer than the
+    lifespan that its publisher gave it.
+    """
+
+    entity: EntityId
+    depth: int
+    """Messages in the queue after it."""
+    message: Maybe[MessageId]
+
+
+class WaitStarted(Event, frozen=True, tag="wait_start"):
+    """A ready callback does not run.
+
+    Another ``wait_start`` of the same entity replaces the reason.
+    """
+
+    entity: EntityId
+    since: Nanoseconds
+    """When the callback became ready; the same for all events of one wait."""
+    reason: Reason
+    """Why it waits: ``group held``, ``no free worker`` or ``nobody spins``."""
+    holder: HolderId
+    """Name of the callback that is in the way."""
+    workers_busy: bool
+    """Whether no thread was free either."""
+
+
+class WaitEnded(Event, frozen=True, tag="wait_end"):
+    """A callback that waited got its thread, or what it waited for is gone."""
+
+    entity: EntityId
+
+
+class CallbackStarted(Event, frozen=True, tag="callback_start"):
+    """A thread began to run an entity's callback.
+
+    Recorded on that thread, after the group let it in and the message was taken, before the callback's
+    first line.
+    """
+
+    entity: EntityId
+    thread: ThreadId
+    message: Maybe[MessageId]
+    age: Nanoseconds
+    """Time since the message was published, or how late a timer is."""
+    depth: int
+    """Messages left in the queue."""
+
+
+class CallbackEnded(Event, frozen=True, tag="callback_end"):
+    """The callback returned or raised, and its group is free of it."""
+
+    entity: EntityId
+    thread: ThreadId
+
+
+class CallbackSuspended(Event, frozen=True, tag="callback_suspend"):
+    """A coroutine callback awaits something; its thread is free, its group still held."""
+
+    entity: EntityId
+    thread: ThreadId
+
+
+class CallbackResumed(Event, frozen=True, tag="callback_resume"):
+    """A suspended coroutine callback runs on, perhaps on another thread."""
+
+    entity: EntityId
+    thread: ThreadId
+
+
+class CallbackFailed(Event, frozen=True, tag="callback_error"):
+    """A callback raised."""
+
+    entity: EntityId
+    thread: ThreadId
+    error: Text
+    """The exception's class and text."""
+    file: str
+    """Innermost file of the program's own code."""
+    line: int
+    """Line in that file."""

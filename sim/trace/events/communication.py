@@ -1,0 +1,111 @@
+"""What goes between nodes: messages, their contents, service calls and their replies."""
+
+from sim.trace.events.event import Event
+from sim.trace.events.fields import (
+    CallbackId,
+    CallId,
+    Cdr,
+    Maybe,
+    MessageId,
+    NodeId,
+    ServiceName,
+    SourcePlace,
+    ThreadId,
+    TopicId,
+    TopicName,
+    TypeName,
+    WireOnly,
+)
+
+
+class Published(Event, frozen=True, tag="publish"):
+    """A message was published."""
+
+    message: MessageId
+    topic: TopicName
+    node: NodeId
+    entity: CallbackId
+
+
+class QosMismatched(Event, frozen=True, tag="qos_mismatch"):
+    """A publisher and a subscription of one topic do not match, so no message goes between them.
+
+    The node is the publisher's, the callback the subscription's, none for one outside the program. A
+    subscription that no executor serves, as ``wait_for_message`` makes it, is no entity and has a place.
+    """
+
+    topic: TopicName
+    node: NodeId
+    entity: CallbackId
+    policy: str
+    """Quality of service on which the two do not agree: ``RELIABILITY``, ``DURABILITY``, …"""
+    publisher: Maybe[SourcePlace] = ("", 0)
+    """Where the program makes the publisher, as ``file:line``."""
+    subscription: Maybe[SourcePlace] = ("", 0)
+    """Where the program makes the subscription, as ``file:line``."""
+
+
+class TopicAppeared(Event, frozen=True, tag="topic"):
+    """The first message was published of a topic whose contents are recorded."""
+
+    topic: WireOnly[TopicId]
+    name: TopicName
+    message_type: TypeName
+    """Full name of the messages' type, such as ``std_msgs/msg/Int32``."""
+    definition: str
+    """Definition of the type and of all that it contains, in the ``ros2msg`` form of MCAP schemas."""
+    type_hash: WireOnly[str] = ""
+    """What ROS 2 knows the type by (``RIHS01_…``)."""
+    offered_qos: WireOnly[str] = ""
+    """What the first publisher offers, as YAML in rosbag2's form."""
+
+
+class MessageSent(Event, frozen=True, tag="message"):
+    """A published message was encoded; only in runs whose contents are recorded."""
+
+    message: MessageId
+    topic: TopicId
+    data: Cdr
+    """Bytes of the message as little-endian CDR; none where it could not be encoded."""
+
+
+class ServiceCalled(Event, frozen=True, tag="service_call"):
+    """A request left for a service."""
+
+    call: CallId
+    service: ServiceName
+    entity: CallbackId
+    request: str
+    """The request, as Python shows it."""
+
+
+class ServiceReplied(Event, frozen=True, tag="service_reply"):
+    """A service answered a call."""
+
+    call: CallId
+    service: ServiceName
+    response: str
+    """The response, as Python shows it."""
+
+
+class RequestLost(Event, frozen=True, tag="request_lost"):
+    """A request was sent while nobody offered the service; no answer will ever come."""
+
+    call: CallId
+    service: ServiceName
+
+
+class CallBlocked(Event, frozen=True, tag="blocked"):
+    """A thread blocks in ``Client.call`` until the reply comes."""
+
+    call: CallId
+    thread: ThreadId
+    entity: CallbackId
+    service: ServiceName
+
+
+class CallUnblocked(Event, frozen=True, tag="unblocked"):
+    """``Client.call`` returned."""
+
+    call: CallId
+    thread: ThreadId

@@ -1,0 +1,25 @@
+"""What all events have in common."""
+
+from functools import cache
+
+import msgspec
+
+from sim.trace.events.fields import Nanoseconds
+
+
+class Event(msgspec.Struct, frozen=True, array_like=True, gc=False):
+    """Something that happened in a run.
+
+    A subclass describes one kind of event, and is the only description of it: the types of its fields and
+    the texts below them tell what a line of JSON has and what ``EVENTS.md`` says. Events are tiny because a
+    callback writes several of them: on the wire each is a MessagePack array that starts with its tag.
+    """
+
+    t: Nanoseconds
+    """Time since the run began."""
+
+
+@cache
+def kinds() -> tuple[type[Event], ...]:
+    """Every kind of event. For use after ``sim.trace.events`` has been imported, which imports them all."""
+    return tuple(Event.__subclasses__())

@@ -1,0 +1,141 @@
+"""Who takes part in a run: programs, threads, executors, nodes, callback groups and entities."""
+
+from enum import StrEnum
+
+from sim.trace.events.event import Event
+from sim.trace.events.fields import (
+    CallbackId,
+    EntityId,
+    ExecutorId,
+    GroupId,
+    Maybe,
+    Nanoseconds,
+    NodeId,
+    ProcessId,
+    ThreadId,
+    ThreadName,
+    WireOnly,
+)
+
+
+class EntityKind(StrEnum):
+    """What an entity of a wait set is."""
+
+    TIMER = "timer"
+    SUBSCRIPTION = "subscription"
+    GUARD = "guard"
+    CLIENT = "client"
+    SERVICE = "service"
+    WAITABLE = "waitable"
+
+
+class GroupKind(StrEnum):
+    """How a callback group admits callbacks."""
+
+    EXCLUSIVE = "exclusive"
+    REENTRANT = "reentrant"
+    CUSTOM = "custom"
+
+
+class ProcessAppeared(Event, frozen=True, tag="process"):
+    """One of several programs of the run was started."""
+
+    process: ProcessId
+    label: WireOnly[str]
+    """Tells the program from the others."""
+
+
+class ProcessEnded(Event, frozen=True, tag="process_end"):
+    """One of several programs ended."""
+
+    process: ProcessId
+    reason: str
+    """Why the program is over, as a sentence."""
+    status: int
+    """Exit code."""
+
+
+class ThreadAppeared(Event, frozen=True, tag="thread"):
+    """A thread of a program ran its first callback, or its executor named it."""
+
+    thread: WireOnly[ThreadId]
+    name: ThreadName
+    """Name as the lanes show it, among several programs without its program's label."""
+    process: Maybe[ProcessId] = 0
+    executor: WireOnly[ExecutorId] = 0
+    """The executor whose worker the thread is; 0 for a thread that the program itself started."""
+
+
+class ExecutorAppeared(Event, frozen=True, tag="executor"):
+    """An executor was made."""
+
+    executor: WireOnly[ExecutorId]
+    kind: str
+    """Class of the executor."""
+    threads: int
+    """How many callbacks it can run at once."""
+
+
+class NodeAppeared(Event, frozen=True, tag="node"):
+    """A node of a program was made."""
+
+    node: NodeId
+    name: WireOnly[str]
+    """Fully qualified name (``/sub_node``)."""
+
+
+class GroupAppeared(Event, frozen=True, tag="group"):
+    """A callback group got its first entity."""
+
+    group: GroupId
+    node: NodeId
+    kind: WireOnly[GroupKind]
+    class_name: str
+    """Python class of the group."""
+
+
+class EntityAppeared(Event, frozen=True, tag="entity"):
+    """An entity with a callback was made."""
+
+    entity: EntityId
+    node: WireOnly[NodeId]
+    group: WireOnly[GroupId]
+    kind: WireOnly[EntityKind]
+    name: WireOnly[str]
+    """Topic or service; empty where there is neither."""
+    callback: WireOnly[str]
+    """Name of the callback's function."""
+    file: str
+    """File in which the callback is written."""
+    first_line: int
+    """First line of the callback."""
+    last_line: int
+    """Last line of the callback."""
+    depth: int
+    """QoS depth of the queue; 0 for timers."""
+    period: Nanoseconds
+    """Time between a timer's calls; 0 for others."""
+
+
+class EntityGone(Event, frozen=True, tag="entity_gone"):
+    """An entity was destroyed."""
+
+    entity: EntityId
+
+
+class SpinClashed(Event, frozen=True, tag="spin_clash"):
+    """A thread asked to spin what is being spun already.
+
+    Without ``node`` nothing was taken from an executor: the executor, which spins already, raised
+    ``RuntimeError``.
+    """
+
+    entity: CallbackId
+    node: Maybe[NodeId]
+    """Node that was taken from the executor that spins it, which serves it no more."""
+    function: str
+    """Function of rclpy's that asked to spin."""
+    file: Maybe[str]
+    """File of the program in which it was called."""
+    line: Maybe[int]
+    """Line at which it was called."""

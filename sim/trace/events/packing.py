@@ -1,0 +1,57 @@
+"""Packs events as MessagePack for the pipe and for files."""
+
+from functools import cache, reduce
+from operator import or_
+from typing import Any
+
+import msgspec
+
+from sim.trace.events.event import Event, kinds
+
+_encoder = msgspec.msgpack.Encoder()
+
+
+def encode(events: list[Event]) -> bytes:
+    """Pack a batch of events."""
+    try:
+        return _encoder.encode(events)
+    except UnicodeEncodeError:
+        return _encoder.encode(escape_surrogates(events))
+
+
+def escape_surrogates(events: list[Event]) -> list[Event]:
+    """Return events in whose texts lone surrogates, which UTF-8 does not have, are written as ``\\udc80``.
+
+    They come from names of files that are not UTF-8, and what programs print can hold them.
+    """
+    return [_escaped(event) for event in events]
+
+
+def _escaped(value: Any) -> Any:
+    match value:
+        case str():
+            return value.encode(errors="backslashreplace").decode()
+        case tuple():
+            return tuple(map(_escaped, value))
+        case msgspec.Struct():
+            texts = {name: _escaped(getattr(value, name)) for name in value.__struct_fields__}
+            return msgspec.structs.replace(value, **texts)
+    return value
+
+
+def decode(batch: bytes) -> list[Event]:
+    """Unpack what ``encode`` packed.
+
+    Raises:
+        msgspec.DecodeError: the bytes are not a batch of events.
+    """
+    try:
+        return _decoder().decode(batch)
+    except (UnicodeDecodeError, RecursionError) as error:
+        raise msgspec.DecodeError(f"the bytes are no events: {error}") from None
+
+
+@cache
+def _decoder() -> msgspec.msgpack.Decoder[list[Event]]:
+    event: Any = reduce(or_, kinds())
+    return msgspec.msgpack.Decoder(list[event])

@@ -1,0 +1,68 @@
+"""The robot and what stands around it."""
+
+from sim.trace.events.event import Event
+from sim.trace.events.fields import (
+    MessageId,
+    Metres,
+    MetresPerSecond,
+    Radians,
+    RadiansPerSecond,
+    Ranges,
+)
+
+
+class ArenaShown(Event, frozen=True, tag="arena"):
+    """What stands around the robot."""
+
+    walls: tuple[tuple[float, float, float, float], ...]
+    """Walls as x0, y0, x1 and y1 each, in metres."""
+    sphere: tuple[float, float, float]
+    """Obstacle as x, y and radius, in metres."""
+    robot_radius: Metres
+    """Distance from the middle of the robot to its rim."""
+
+
+class RobotMoved(Event, frozen=True, tag="robot"):
+    """Where the robot is, and how it moves."""
+
+    x: Metres
+    """Position in the room."""
+    y: Metres
+    """Position in the room."""
+    yaw: Radians
+    """Direction, counter-clockwise from the x axis."""
+    front: Metres
+    """Free way straight ahead, infinite for nothing in sight."""
+    linear: MetresPerSecond
+    """Velocity of the robot."""
+    angular: RadiansPerSecond
+    """Velocity of the robot."""
+    motors: bool
+    """Whether the wheels are powered."""
+    touching: bool
+    """Whether the robot touches something."""
+    turned: Radians
+    """Angle turned since the run began, counter-clockwise positive."""
+    travelled: Metres
+    """Distance driven since the run began."""
+
+
+class Scanned(Event, frozen=True, tag="scan"):
+    """The laser measured a full turn."""
+
+    message: MessageId
+    ranges: Ranges
+    """How many ranges there are, and the one straight ahead in metres, ``null`` for nothing in range.
+
+    On the wire: little-endian uint16 millimetres, 0 for nothing in range. Beam i points at -pi + i·2pi/n from
+    straight ahead, counter-clockwise.
+    """
+
+
+class VelocityCommanded(Event, frozen=True, tag="cmd_vel"):
+    """The robot's driver took a velocity command."""
+
+    linear: MetresPerSecond
+    """Commanded velocity, after clamping."""
+    angular: RadiansPerSecond
+    """Commanded velocity, after clamping."""

@@ -1,0 +1,78 @@
+"""The run itself: its beginning and end, its inputs, its time, and what its trace has lost."""
+
+from sim.trace.events.event import Event
+from sim.trace.events.fields import Nanoseconds, Text, WireOnly
+
+
+class RunStarted(Event, frozen=True, tag="run_start"):
+    """The run began."""
+
+    target: str
+    """The lesson or file that runs."""
+    clock: str
+    """``virtual`` or ``real``."""
+    epoch: Nanoseconds
+    """Time since 1970 that ``t`` = 0 has in log lines."""
+
+
+class RunEnded(Event, frozen=True, tag="run_end"):
+    """The run is over: its time was up, its program returned or failed, or somebody stopped it."""
+
+    reason: str
+    """Why the run is over, as a sentence."""
+    failed: bool
+    """Whether the run ended because something went wrong."""
+
+
+class RunEnding(Event, frozen=True, tag="run_ending"):
+    """The program was told to end, as by Ctrl-C: what follows is its own ending, and checks leave it out."""
+
+    reason: str
+    """Why the run ends, as a sentence."""
+
+
+class CommandGiven(Event, frozen=True, tag="command"):
+    """The person at the keyboard or the command line did something to the run, such as calling a service."""
+
+    text: Text
+    """What was done."""
+
+
+class InputGiven(Event, frozen=True, tag="input"):
+    """Something was told to the run from outside, and is carried out now: what a repetition has to be told.
+
+    What the set-up of the run foresaw is not among these, nor is what is done to the run's time.
+    """
+
+    command: Text
+    """A command of the engine as JSON."""
+    recess: WireOnly[int] = 0
+    """0 at the end of its moment; a moment that does not end takes inputs in recesses, counted from 1."""
+
+
+class TimeHalted(Event, frozen=True, tag="halt"):
+    """Time stands again: what the run was to go on to has come."""
+
+    text: Text
+    """The command that said how far to go."""
+
+
+class TimePassed(Event, frozen=True, tag="time"):
+    """The run on the real clock has come to ``t``: told while nothing else is, so that time goes on.
+
+    Lines of JSON leave it out.
+    """
+
+
+class EventsLost(Event, frozen=True, tag="lost"):
+    """The trace could not keep up, and events were thrown away."""
+
+    count: int
+    """How many were lost since the run began."""
+
+
+class ContentsLost(Event, frozen=True, tag="contents_lost"):
+    """Messages were published faster than they could be encoded."""
+
+    count: int
+    """How many are without contents since the run began."""

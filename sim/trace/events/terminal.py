@@ -1,0 +1,129 @@
+"""What a run says, and what is typed into it: log, output, notices, keyboard, ``ros2`` lines."""
+
+from enum import StrEnum
+
+from sim.trace.events.event import Event
+from sim.trace.events.fields import CallbackId, LineId, LoggerName, Maybe, ProcessId, Text, ThreadId, WireOnly
+
+
+class Severity(StrEnum):
+    """Severities of a log line, named as ROS prints them."""
+
+    DEBUG = "DEBUG"
+    INFO = "INFO"
+    WARN = "WARN"
+    ERROR = "ERROR"
+    FATAL = "FATAL"
+
+
+class Reading(StrEnum):
+    """How a program reads from its terminal."""
+
+    NOTHING = "nothing"
+    """It does not wait for the keyboard any more."""
+    LINES = "lines"
+    """Line by line; each key is shown as it is typed, and ctrl+c ends the run."""
+    SECRET = "secret"
+    """Line by line, and nothing is shown: a password."""
+    KEYS = "keys"
+    """Key by key, without enter; ctrl+c ends the run."""
+    RAW = "raw"
+    """Key by key, and ctrl+c is a key like any other."""
+
+    @property
+    def takes_keys(self) -> bool:
+        """Whether it takes each key as it is typed."""
+        return self in (Reading.KEYS, Reading.RAW)
+
+
+class Logged(Event, frozen=True, tag="log"):
+    """A program wrote a line to its log."""
+
+    severity: Severity
+    """``DEBUG``, ``INFO``, ``WARN``, ``ERROR`` or ``FATAL``."""
+    logger: LoggerName
+    """Name of the logger."""
+    text: Text
+    """The line, without its prefix."""
+    thread: Maybe[ThreadId]
+    entity: CallbackId
+
+
+class Printed(Event, frozen=True, tag="print"):
+    """A program wrote a line to standard output or error."""
+
+    text: Text
+    """The line."""
+    error: bool
+    """Whether it went to standard error."""
+    process: Maybe[ProcessId] = 0
+    ends: WireOnly[bool] = True
+    """False for the beginning of a line behind which the program waits for the keyboard."""
+
+
+class Notice(Event, frozen=True, tag="notice"):
+    """The engine has something to say to the person about the run itself."""
+
+    severity: Severity
+    """``INFO``, ``WARN`` or ``ERROR``."""
+    text: Text
+    """One sentence."""
+    entity: CallbackId = 0
+    unrepeatable: WireOnly[bool] = False
+    """Whether it says why a run on virtual time cannot be repeated exactly."""
+
+
+class KeyboardAsked(Event, frozen=True, tag="keyboard"):
+    """A program waits for the keyboard; recorded where it begins to, does so in another way, or stops.
+
+    A program that looks for keys again and again, each time for a moment, is recorded the first time only.
+    """
+
+    reads: Reading
+    """``lines``, ``secret`` (lines that are not shown), ``keys``, ``raw`` (ctrl+c is a key, too), or
+    ``nothing`` any more."""
+    program: str
+    """What people call the program."""
+
+
+class Typed(Event, frozen=True, tag="typed"):
+    """Text was typed at the terminal of the run's programs."""
+
+    text: Text
+    """What was typed; a password is spelt in dots."""
+
+
+class LineGiven(Event, frozen=True, tag="line"):
+    """A ``ros2`` line was given, at the prompt, on the command line or by the run's set-up."""
+
+    line: LineId
+    text: Text
+    """The line."""
+
+
+class LineSaid(Event, frozen=True, tag="line_text"):
+    """A ``ros2`` line wrote a line of text."""
+
+    line: LineId
+    text: Text
+    """What it wrote."""
+    error: bool
+    """Whether it went to standard error."""
+
+
+class LineEnded(Event, frozen=True, tag="line_end"):
+    """A ``ros2`` line is done."""
+
+    line: LineId
+    status: int
+    """Exit code."""
+
+
+class LineCompleted(Event, frozen=True, tag="completion"):
+    """The answer to a request for completion in a ``ros2`` line."""
+
+    line: LineId
+    start: int
+    """Where in the line the word begins that was to be completed."""
+    words: tuple[str, ...]
+    """What could stand from there to where completion was asked for."""
