@@ -22,11 +22,11 @@ from cbtui.widgets.comparison import ComparisonHeadings, ComparisonTable, Words
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes, Selection, start_of
 from cbtui.widgets.lanes.keys import lane_keys
-from sim.trace.figures.comparison import compare_in_slices
+from sim.trace.descriptions import executor_label
+from sim.trace.figures.comparison import compare_incrementally
 from sim.trace.figures.comparison_rows import RUNS, Section, extent, sections, stretch
+from sim.trace.incremental import Incremental
 from sim.trace.model import Nanoseconds, Window
-from sim.trace.slices import Slices
-from sim.trace.words import executor_label
 
 _PLAIN = Ink(Role.TEXT)
 _STRONG = Ink(Role.STRONG)
@@ -168,14 +168,14 @@ class CompareScreen(SizedScreen[None]):
         self._compared = None
         self._rest_until = 0.0
 
-    def _figures(self, asked: Window) -> Slices[tuple[str, tuple[Section, ...]]]:
+    def _figures(self, asked: Window) -> Incremental[tuple[str, tuple[Section, ...]]]:
         first, second = self._sides
         what = "Whole runs" if self._whole else "On screen"
         if self._whole and self._bounds is not None:
             what = "As asked"
         if asked.length <= 0:
             return f"{what}: nothing that both runs have; {_shorter(first, second)}", ()
-        compared = yield from compare_in_slices(first.timeline, second.timeline, asked)
+        compared = yield from compare_incrementally(first.timeline, second.timeline, asked)
         if self._whole:
             return f"{what}, {extent(compared)}", sections(compared)
         cut = asked.end < min(self._asked.end, self._end)

@@ -4,16 +4,16 @@ from collections.abc import Iterator, Sequence
 
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, Run
 from cbtui.text.cells import fit
-from sim.trace.figures.comparison_rows import DIFFERENCE, RUNS, Row, Section, Verdict
+from sim.trace.figures.comparison_rows import DIFFERENCE, RUNS, Assessment, ComparisonRow, Section
 
 _PLAIN = Ink(Role.TEXT)
 _FAINT = Ink(Role.FAINT)
 _STRONG = Ink(Role.STRONG)
 _DIFFERENCES = {
-    Verdict.SAME: _FAINT,
-    Verdict.OTHER: _PLAIN,
-    Verdict.BETTER: _STRONG,
-    Verdict.WORSE: Ink(Role.WARN),
+    Assessment.SAME: _FAINT,
+    Assessment.OTHER: _PLAIN,
+    Assessment.BETTER: _STRONG,
+    Assessment.WORSE: Ink(Role.WARN),
 }
 
 _LABEL, _FIGURE, _DIFFERENCE = 18, 16, 19
@@ -26,7 +26,7 @@ Line = list[Run]
 
 def headings(width: int, charset: Charset) -> Line:
     """Return the line that names the columns, in exactly ``width`` columns."""
-    row = Row("", RUNS, DIFFERENCE)
+    row = ComparisonRow("", RUNS, DIFFERENCE)
     return _side_by_side([[_cells(row, each, charset)] for each in _blocks(width)], width)[0]
 
 
@@ -83,14 +83,14 @@ def _section(section: Section, width: int, charset: Charset) -> Iterator[Line]:
     yield [Run(" " * width, _PLAIN)]
 
 
-def _cells(row: Row, width: int, charset: Charset) -> Line:
+def _cells(row: ComparisonRow, width: int, charset: Charset) -> Line:
     """A row in exactly ``width`` columns; the difference has what the others leave."""
     first, second = row.figures
     cells = (
         (f" {row.label}", _LABEL, _FAINT),
         (first, _FIGURE, _PLAIN),
         (second, _FIGURE, _PLAIN),
-        (row.difference, width, _DIFFERENCES[row.verdict]),
+        (row.difference, width, _DIFFERENCES[row.assessment]),
     )
     line: Line = []
     room = width

@@ -11,11 +11,11 @@ from cbtui.runs.live.findings import Told
 from cbtui.runs.live.live_run import LiveRun, State
 from cbtui.runs.live.playhead import Playhead
 from cbtui.text.durations import duration
+from sim.trace.descriptions import name_of
 from sim.trace.events import KeyboardAsked, Notice, Reason, Severity
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Call, Moment, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
-from sim.trace.words import name_of
 
 WORTH_TELLING: Nanoseconds = 10_000_000
 """Shorter waits are the ordinary hand-over from one callback to the next."""

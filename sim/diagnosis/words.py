@@ -2,10 +2,10 @@
 
 from collections.abc import Iterable
 
+from sim.trace.descriptions import name_of
 from sim.trace.events import EntityId, EntityKind
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
-from sim.trace.words import name_of
 
 
 def who(entity: EntityId, timeline: Timeline) -> str:

@@ -8,9 +8,9 @@ from sim.export.ordering import InOrder
 from sim.export.running import Running, Stretch
 from sim.export.texts import cell, seconds
 from sim.trace import events as ev
-from sim.trace.cast import Cast
 from sim.trace.events import AnyEvent, EntityId
 from sim.trace.model import Nanoseconds
+from sim.trace.participants import Participants
 
 COLUMNS = (
     "start_s",
@@ -40,16 +40,16 @@ class CallTable:
         self._rows = csv.writer(file)
         self._rows.writerow(COLUMNS)
         self._order = InOrder()
-        self._cast = Cast()
+        self._participants = Participants()
         self._running = Running()
         self._waiting: dict[EntityId, Nanoseconds] = {}
         self._waited: dict[EntityId, Nanoseconds] = {}
         self._told: dict[EntityId, tuple[str, str, str, str]] = {}
         self._fold: dict[type, Callable[[Any], object]] = {
-            ev.ProcessAppeared: self._cast.add_process,
-            ev.ThreadAppeared: self._cast.add_thread,
-            ev.GroupAppeared: self._cast.add_group,
-            ev.EntityAppeared: self._cast.add_entity,
+            ev.ProcessAppeared: self._participants.add_process,
+            ev.ThreadAppeared: self._participants.add_thread,
+            ev.GroupAppeared: self._participants.add_group,
+            ev.EntityAppeared: self._participants.add_entity,
             ev.WaitStarted: self._wait_started,
             ev.WaitEnded: self._wait_ended,
             ev.CallbackStarted: self._callback_started,
@@ -105,7 +105,7 @@ class CallTable:
 
     def _write(self, stretch: Stretch, end: Nanoseconds | None) -> None:
         callback, kind, entity, group = self._about(stretch.entity)
-        thread = self._cast.threads.get(stretch.thread)
+        thread = self._participants.threads.get(stretch.thread)
         self._rows.writerow(
             (
                 seconds(stretch.start),
@@ -129,9 +129,9 @@ class CallTable:
         return told
 
     def _tell(self, entity: EntityId) -> tuple[str, str, str, str]:
-        known = self._cast.entities.get(entity)
+        known = self._participants.entities.get(entity)
         if known is None:
             return f"callback {entity}", "", "", ""
-        group = self._cast.groups.get(known.group)
+        group = self._participants.groups.get(known.group)
         letter = "" if group is None else group.letter
         return cell(known.spoken_name), known.kind.value, cell(known.name), letter

@@ -10,7 +10,6 @@ from typing import Any, NamedTuple
 import msgspec
 
 from sim.trace import events as ev
-from sim.trace.cast import Cast
 from sim.trace.events import (
     AnyEvent,
     EntityId,
@@ -23,6 +22,7 @@ from sim.trace.events import (
     ThreadId,
     TopicId,
 )
+from sim.trace.participants import Participants
 
 ROBOT = "robot"
 """What stands for the node of the robot's driver, which is none of the learner's program."""
@@ -74,14 +74,14 @@ class RunNames:
     """What the ids of a run stand for in its lines; see ``Names``."""
 
     def __init__(self) -> None:
-        self._cast = Cast()
+        self._participants = Participants()
         self._entities: dict[EntityId, Line] = {}
         self._topics: dict[TopicId, str] = {}
         self._take: dict[type[AnyEvent], Callable[[Any], object]] = {
-            ev.ProcessAppeared: self._cast.add_process,
-            ev.ThreadAppeared: self._cast.add_thread,
-            ev.NodeAppeared: self._cast.add_node,
-            ev.GroupAppeared: self._cast.add_group,
+            ev.ProcessAppeared: self._participants.add_process,
+            ev.ThreadAppeared: self._participants.add_thread,
+            ev.NodeAppeared: self._participants.add_node,
+            ev.GroupAppeared: self._participants.add_group,
             ev.EntityAppeared: self._add_entity,
             ev.TopicAppeared: self._add_topic,
         }
@@ -93,7 +93,7 @@ class RunNames:
             add(event)
 
     def _add_entity(self, event: ev.EntityAppeared) -> None:
-        entity = self._cast.add_entity(event)
+        entity = self._participants.add_entity(event)
         self._entities[event.entity] = {
             "node": self.node(entity.node),
             **({"callback": entity.callback} if entity.callback else {}),
@@ -107,15 +107,15 @@ class RunNames:
 
     def process(self, process: ProcessId) -> str | None:
         """The label of one of several programs."""
-        return self._cast.processes.get(process)
+        return self._participants.processes.get(process)
 
     def node(self, node: NodeId) -> str:
         """The name of a node."""
-        return self._cast.nodes.get(node, ROBOT if node == 0 else f"node {node}")
+        return self._participants.nodes.get(node, ROBOT if node == 0 else f"node {node}")
 
     def thread(self, thread: ThreadId) -> str:
         """The name of a thread."""
-        known = self._cast.threads.get(thread)
+        known = self._participants.threads.get(thread)
         return f"thread {thread}" if known is None else known.name
 
     def topic(self, topic: TopicId) -> str:
@@ -124,7 +124,7 @@ class RunNames:
 
     def callback(self, entity: EntityId) -> str | None:
         """The spoken name of an entity."""
-        known = self._cast.entities.get(entity)
+        known = self._participants.entities.get(entity)
         return None if known is None else known.spoken_name
 
     def entity(self, entity: EntityId) -> Line:
@@ -133,7 +133,7 @@ class RunNames:
 
     def group(self, group: GroupId) -> Line:
         """The fields of a callback group."""
-        known = self._cast.groups.get(group)
+        known = self._participants.groups.get(group)
         return {} if known is None else {"group": known.letter, "group_type": known.kind}
 
 

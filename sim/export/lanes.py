@@ -1,4 +1,4 @@
-"""The rows of a lanes picture: which there are, and what lies on each, cut down to what can be seen."""
+"""The rows of a picture of lanes and the bars on each, reduced to what is visible."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Tells a stream of events as tracks, slices, instants, counters and arrows: what trace viewers show."""
+"""Translates events to the tracks, slices, instants, counters and arrows of trace viewers."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -7,12 +7,12 @@ from sim.export.flows import Flows
 from sim.export.ordering import InOrder, Parcel
 from sim.export.running import Running, Stretch
 from sim.export.sink import NO_FACTS, NO_LINKS, Facts, Links, Sink, TrackId
-from sim.export.stage import Stage
 from sim.export.texts import printable
+from sim.export.track_layout import TrackLayout
 from sim.trace import events as ev
+from sim.trace.descriptions import why_waiting
 from sim.trace.events import AnyEvent, EntityId, EntityKind, ThreadId
 from sim.trace.model import Nanoseconds, Wait
-from sim.trace.words import why_waiting
 
 _UNFINISHED: Facts = {"unfinished": "yes"}
 
@@ -28,7 +28,7 @@ class Narrator:
     def __init__(self, sink: Sink) -> None:
         self._sink = sink
         self._order = InOrder()
-        self._stage = Stage(sink)
+        self._layout = TrackLayout(sink)
         self._flows = Flows()
         self._running = Running()
         self._waiting: dict[EntityId, Nanoseconds] = {}
@@ -37,11 +37,11 @@ class Narrator:
         self._tell: dict[type, Callable[[Any], object]] = self._telling()
 
     def take(self, events: Sequence[AnyEvent]) -> None:
-        """Tell a batch, in order of time; some of it may be told later."""
+        """Write a batch in order of time; some of it may be held back."""
         self._tell_all(self._order.take(events))
 
     def finish(self) -> None:
-        """Tell the rest, and end what still goes on."""
+        """Write the rest, and end slices that are still open."""
         self._tell_all(self._order.rest())
         self._end_all(self._order.latest)
         self._sink.close()
@@ -54,17 +54,17 @@ class Narrator:
                 known(event)
 
     def _telling(self) -> dict[type, Callable[[Any], object]]:
-        cast = self._stage.cast
+        participants = self._layout.participants
         return {
             ev.RunStarted: self._run_started,
             ev.RunEnded: self._run_ended,
-            ev.ProcessAppeared: cast.add_process,
+            ev.ProcessAppeared: participants.add_process,
             ev.ProcessEnded: self._process_ended,
-            ev.ThreadAppeared: self._stage.add_thread,
+            ev.ThreadAppeared: self._layout.add_thread,
             ev.ExecutorAppeared: self._executor_appeared,
-            ev.NodeAppeared: cast.add_node,
+            ev.NodeAppeared: participants.add_node,
             ev.GroupAppeared: self._group_appeared,
-            ev.EntityAppeared: cast.add_entity,
+            ev.EntityAppeared: participants.add_entity,
             ev.EntityGone: self._entity_gone,
             ev.EntityReady: self._entity_ready,
             ev.MessageDropped: self._message_dropped,
@@ -100,22 +100,22 @@ class Narrator:
     # the run
 
     def _run_started(self, event: ev.RunStarted) -> None:
-        self._stage.begin(event.target)
+        self._layout.begin(event.target)
         self._sink.begin_run(event.epoch)
 
     def _run_ended(self, event: ev.RunEnded) -> None:
         self._say("notices", event.t, f"the run ended: {event.reason}", {"failed": str(event.failed)})
 
     def _process_ended(self, event: ev.ProcessEnded) -> None:
-        label = self._stage.cast.processes.get(event.process, "a program")
+        label = self._layout.participants.processes.get(event.process, "a program")
         self._say("notices", event.t, f"{label} ended: {event.reason}", {"status": event.status})
 
     def _executor_appeared(self, event: ev.ExecutorAppeared) -> None:
         self._say("notices", event.t, event.kind, {"threads": event.threads})
 
     def _group_appeared(self, event: ev.GroupAppeared) -> None:
-        self._stage.cast.add_group(event)
-        self._stage.add_group(event.group)
+        self._layout.participants.add_group(event)
+        self._layout.add_group(event.group)
 
     def _events_lost(self, event: ev.EventsLost) -> None:
         self._running.doubt()
@@ -138,15 +138,15 @@ class Narrator:
         self._show_depth(event.entity, event.t, event.depth)
 
     def _lose(self, entity: EntityId, t: Nanoseconds, what: str, flows: tuple[int, ...]) -> None:
-        track = self._stage.waits(self._stage.actor(entity))
+        track = self._layout.waits(self._layout.actor(entity))
         self._sink.instant(track, t, what, "queue", NO_FACTS, Links(end=flows))
 
     def _show_depth(self, entity: EntityId, t: Nanoseconds, depth: int) -> None:
-        actor = self._stage.actor(entity)
+        actor = self._layout.actor(entity)
         if actor.shown_depth == depth or not actor.depth:
             return
         actor.shown_depth = depth
-        self._sink.count(self._stage.queue(actor), t, depth)
+        self._sink.count(self._layout.queue(actor), t, depth)
 
     def _entity_gone(self, event: ev.EntityGone) -> None:
         self._stop_waiting(event.entity, event.t)
@@ -157,7 +157,7 @@ class Narrator:
     def _wait_started(self, event: ev.WaitStarted) -> None:
         self._stop_waiting(event.entity, event.t)
         self._waiting[event.entity] = event.since
-        actor = self._stage.actor(event.entity)
+        actor = self._layout.actor(event.entity)
         wait = Wait(event.t, None, event.since, event.entity, event.reason, event.holder, event.workers_busy)
         facts: dict[str, str | int | float] = {
             "reason": event.reason.value,
@@ -165,9 +165,9 @@ class Narrator:
             "workers_busy": "yes" if event.workers_busy else "no",
         }
         if event.holder:
-            facts["culprit"] = self._stage.actor(event.holder).name
-        name = printable(why_waiting(wait, self._stage.cast))
-        self._sink.begin(self._stage.waits(actor), event.t, name, "wait", facts)
+            facts["culprit"] = self._layout.actor(event.holder).name
+        name = printable(why_waiting(wait, self._layout.participants))
+        self._sink.begin(self._layout.waits(actor), event.t, name, "wait", facts)
 
     def _wait_ended(self, event: ev.WaitEnded) -> None:
         since = self._waiting.get(event.entity)
@@ -177,7 +177,7 @@ class Narrator:
 
     def _stop_waiting(self, entity: EntityId, t: Nanoseconds) -> None:
         if self._waiting.pop(entity, None) is not None:
-            self._sink.end(self._stage.waits(self._stage.actor(entity)), t)
+            self._sink.end(self._layout.waits(self._layout.actor(entity)), t)
 
     # calls
 
@@ -187,7 +187,7 @@ class Narrator:
             self._end_call(stretch, event.t)
         self._unblock(event.thread, event.t)
         stretch = self._running.start(event, self._waited.pop(event.entity, 0))
-        actor = self._stage.actor(event.entity)
+        actor = self._layout.actor(event.entity)
         facts = {
             **actor.facts,
             "late_ms" if actor.kind is EntityKind.TIMER else "message_age_ms": event.age / 1e6,
@@ -197,10 +197,10 @@ class Narrator:
         through = self._flows.served(event.message) if actor.kind is EntityKind.SERVICE else ()
         taken = self._flows.take(event.message, event.entity)
         links = Links((), through, taken) if through or taken else NO_LINKS
-        self._sink.begin(self._stage.thread(event.thread), event.t, actor.name, "callback", facts, links)
-        stretch.lane = self._stage.enter(actor.group)
-        on = {"thread": self._stage.thread_name(event.thread)}
-        self._sink.begin(self._stage.lane(actor.group, stretch.lane), event.t, actor.name, "group", on)
+        self._sink.begin(self._layout.thread(event.thread), event.t, actor.name, "callback", facts, links)
+        stretch.lane = self._layout.enter(actor.group)
+        on = {"thread": self._layout.thread_name(event.thread)}
+        self._sink.begin(self._layout.lane(actor.group, stretch.lane), event.t, actor.name, "group", on)
         self._show_depth(event.entity, event.t, event.depth)
 
     def _callback_ended(self, event: ev.CallbackEnded) -> None:
@@ -225,29 +225,29 @@ class Narrator:
     def _callback_resumed(self, event: ev.CallbackResumed) -> None:
         self._unblock(event.thread, event.t)
         stretch, before = self._running.resume(event)
-        actor = self._stage.actor(event.entity)
+        actor = self._layout.actor(event.entity)
         if before is None:
-            stretch.lane = self._stage.enter(actor.group)
+            stretch.lane = self._layout.enter(actor.group)
             self._sink.begin(self._lane_of(stretch), event.t, actor.name, "group", NO_FACTS)
         else:
             self._sink.end(self._lane_of(stretch), event.t)
         facts = {**actor.facts, "resumed": "yes"}
-        self._sink.begin(self._stage.thread(event.thread), event.t, actor.name, "callback", facts)
+        self._sink.begin(self._layout.thread(event.thread), event.t, actor.name, "callback", facts)
 
     def _leave(self, stretch: Stretch, t: Nanoseconds, facts: Facts = NO_FACTS) -> None:
         """A call leaves its thread."""
         self._unblock(stretch.thread, t)
         if stretch.error:
             facts = {**facts, "error": printable(stretch.error)}
-        self._sink.end(self._stage.thread(stretch.thread), t, facts)
+        self._sink.end(self._layout.thread(stretch.thread), t, facts)
 
     def _end_call(self, stretch: Stretch, t: Nanoseconds, facts: Facts = NO_FACTS) -> None:
         """A call lets its group go."""
         self._sink.end(self._lane_of(stretch), t, facts)
-        self._stage.leave(self._stage.actor(stretch.entity).group, stretch.lane)
+        self._layout.leave(self._layout.actor(stretch.entity).group, stretch.lane)
 
     def _lane_of(self, stretch: Stretch) -> TrackId:
-        return self._stage.lane(self._stage.actor(stretch.entity).group, stretch.lane)
+        return self._layout.lane(self._layout.actor(stretch.entity).group, stretch.lane)
 
     def _spin_clashed(self, event: ev.SpinClashed) -> None:
         text = f"{event.function}() asks to spin what is being spun"
@@ -259,7 +259,7 @@ class Narrator:
         flows = self._flows.send(event.message, self._order.receivers(Parcel.MESSAGE, event.message))
         track = self._where(event.entity)
         if track is None:
-            track = self._stage.node(event.node)
+            track = self._layout.node(event.node)
         name = f"publish {printable(event.topic)}"
         self._sink.instant(track, event.t, name, "publish", {"message": event.message}, Links(begin=flows))
 
@@ -268,7 +268,7 @@ class Narrator:
         self._say("notices", event.t, f"{printable(event.topic)}: quality of service does not match", facts)
 
     def _request_lost(self, event: ev.RequestLost) -> None:
-        track = self._stage.service(event.service)
+        track = self._layout.service(event.service)
         name = f"nobody offers {printable(event.service)}"
         self._sink.instant(track, event.t, name, "call", {"call": event.call})
 
@@ -277,7 +277,7 @@ class Narrator:
         flows = self._flows.call(event.call) + to_service
         track = self._where(event.entity)
         if track is None:
-            track = self._stage.service(event.service)
+            track = self._layout.service(event.service)
         facts: Facts = {"call": event.call, "request": printable(event.request)}
         self._sink.instant(
             track, event.t, f"call {printable(event.service)}", "call", facts, Links(begin=flows)
@@ -292,22 +292,22 @@ class Narrator:
 
     def _serving(self, service: str) -> TrackId:
         """Where a service answers: on the thread that runs its callback, if one does."""
-        for entity in self._stage.cast.entities.values():
+        for entity in self._layout.participants.entities.values():
             if entity.kind is EntityKind.SERVICE and entity.name == service:
                 track = self._where(entity.id)
                 if track is not None:
                     return track
-        return self._stage.service(service)
+        return self._layout.service(service)
 
     def _where(self, entity: EntityId) -> TrackId | None:
         thread = self._running.thread_of(entity) if entity else None
-        return None if thread is None else self._stage.thread(thread)
+        return None if thread is None else self._layout.thread(thread)
 
     def _call_blocked(self, event: ev.CallBlocked) -> None:
         self._unblock(event.thread, event.t)
         self._blocked[event.thread] = event.call
         name = f"blocked in a call of {printable(event.service)}"
-        self._sink.begin(self._stage.thread(event.thread), event.t, name, "call", {"call": event.call})
+        self._sink.begin(self._layout.thread(event.thread), event.t, name, "call", {"call": event.call})
 
     def _call_unblocked(self, event: ev.CallUnblocked) -> None:
         if self._blocked.get(event.thread) == event.call:
@@ -315,7 +315,7 @@ class Narrator:
 
     def _unblock(self, thread: ThreadId, t: Nanoseconds) -> None:
         if self._blocked.pop(thread, None) is not None:
-            self._sink.end(self._stage.thread(thread), t)
+            self._sink.end(self._layout.thread(thread), t)
 
     # words and the robot
 
@@ -325,9 +325,9 @@ class Narrator:
             "logger": printable(event.logger),
         }
         if event.thread:
-            facts["thread"] = self._stage.thread_name(event.thread)
+            facts["thread"] = self._layout.thread_name(event.thread)
         if event.entity:
-            facts["callback"] = self._stage.actor(event.entity).name
+            facts["callback"] = self._layout.actor(event.entity).name
         self._say("log", event.t, event.text, facts)
 
     def _printed(self, event: ev.Printed) -> None:
@@ -346,10 +346,10 @@ class Narrator:
         self._say("notices", event.t, event.text, {"severity": event.severity.value})
 
     def _say(self, track: str, t: Nanoseconds, text: str, facts: Facts) -> None:
-        self._sink.instant(self._stage.words(track), t, printable(text) or "(empty line)", track, facts)
+        self._sink.instant(self._layout.words(track), t, printable(text) or "(empty line)", track, facts)
 
     def _robot_moved(self, event: ev.RobotMoved) -> None:
-        measure = self._stage.measure
+        measure = self._layout.measure
         measure("x", "m", event.t, event.x)
         measure("y", "m", event.t, event.y)
         measure("yaw", "rad", event.t, event.yaw)
@@ -357,8 +357,8 @@ class Narrator:
         measure("angular velocity", "rad/s", event.t, event.angular)
 
     def _velocity_commanded(self, event: ev.VelocityCommanded) -> None:
-        self._stage.measure("commanded linear velocity", "m/s", event.t, event.linear)
-        self._stage.measure("commanded angular velocity", "rad/s", event.t, event.angular)
+        self._layout.measure("commanded linear velocity", "m/s", event.t, event.linear)
+        self._layout.measure("commanded angular velocity", "rad/s", event.t, event.angular)
 
     # the end
 
@@ -379,5 +379,5 @@ class Narrator:
                 self._lose(entity, t, "still in the queue", flows)
         unanswered = self._flows.unanswered()
         if unanswered:
-            track = self._stage.words("notices")
+            track = self._layout.words("notices")
             self._sink.instant(track, t, "calls without a reply", "call", NO_FACTS, Links(end=unanswered))

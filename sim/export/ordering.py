@@ -1,4 +1,4 @@
-"""Puts a stream of events into order of time, and looks a little ahead in it."""
+"""Sorts a stream of events by time, and looks a short way ahead in it."""
 
 from bisect import bisect_right
 from collections import defaultdict
@@ -58,7 +58,7 @@ class InOrder:
         self._receivers: defaultdict[tuple[Parcel, int], list[EntityId]] = defaultdict(list)
 
     def take(self, events: Sequence[AnyEvent]) -> Sequence[AnyEvent]:
-        """Take in a batch; returns what is now settled."""
+        """Add a batch; return the events whose order is final."""
         held = self._held
         latest, floor = self._latest, self._handed_on
         for event in events:
@@ -81,7 +81,7 @@ class InOrder:
         return self._latest
 
     def rest(self) -> Sequence[AnyEvent]:
-        """What is still held back, at the end of the stream."""
+        """The events that are still held back, at the end of the stream."""
         return self._hand_on(self._latest)
 
     def receivers(self, parcel: Parcel, number: int) -> Sequence[EntityId]:

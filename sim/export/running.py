@@ -1,4 +1,4 @@
-"""Which calls are on which thread while a stream of events goes by."""
+"""The calls in progress on each thread, followed event by event."""
 
 from collections import defaultdict, deque
 from collections.abc import Iterator, Sequence

@@ -1,4 +1,4 @@
-"""What a picture of tracks is made of, whatever file it goes into."""
+"""The interface of trace files: tracks, slices, instants, counters and arrows."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

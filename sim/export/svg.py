@@ -7,11 +7,11 @@ from sim.export import paper
 from sim.export.lanes import Piece, Scale, losses, pieces, rows, ticks
 from sim.export.paper import Box
 from sim.export.texts import seconds, xml
+from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import GroupKind, Reason
 from sim.trace.figures.summary_text import duration
 from sim.trace.model import Entity, Group, Nanoseconds, Span, Thread, Wait, Window
 from sim.trace.timeline import Timeline
-from sim.trace.words import name_of, why_waiting
 
 LABELS = 210.0
 """Pixels for the names at the left."""

@@ -2,14 +2,14 @@
 
 from sim.recording.about import About
 from sim.recording.background import BackgroundRecorder
-from sim.recording.beginning import Beginning
 from sim.recording.recorder import Recorder
 from sim.recording.recording import RecordedMessage, Recording, RecordingError, Topic, read
+from sim.recording.snapshot import RunSnapshot
 
 __all__ = [
     "About",
     "BackgroundRecorder",
-    "Beginning",
+    "RunSnapshot",
     "RecordedMessage",
     "Recorder",
     "Recording",

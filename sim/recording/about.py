@@ -1,15 +1,15 @@
-"""What a recording tells of itself besides its events: which run it is of, and what made it."""
+"""The metadata of a recording: the run that it is of, and the version that made it."""
 
 from collections.abc import Mapping
 
 import msgspec
 
 NAME = "cbtui"
-"""What its metadata record is called."""
+"""Name of the metadata record."""
 
 
 class About(msgspec.Struct, frozen=True, kw_only=True):
-    """Of which run a recording is. What could not be read is empty.
+    """The run that a recording is of. Fields that could not be read are empty.
 
     ``recorded`` is nanoseconds since 1970, ``threads`` what replaced the executors' own number (None:
     nothing), ``programs`` the paths of the files that ran, ``setup`` the whole set-up of the run as JSON.
@@ -26,7 +26,7 @@ class About(msgspec.Struct, frozen=True, kw_only=True):
 
 
 def to_metadata(about: About) -> dict[str, str]:
-    """The texts of a metadata record."""
+    """Encode as the texts of a metadata record."""
     fields = msgspec.structs.asdict(about)
     return {
         name: value if isinstance(value, str) else msgspec.json.encode(value).decode()
@@ -35,7 +35,7 @@ def to_metadata(about: About) -> dict[str, str]:
 
 
 def from_metadata(texts: Mapping[str, str]) -> About | None:
-    """What ``to_metadata`` made texts of; None if they are others."""
+    """Decode the texts of ``to_metadata``; None for other texts."""
     try:
         fields = {
             field.name: text if field.type is str else msgspec.json.decode(text.encode())

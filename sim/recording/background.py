@@ -1,4 +1,4 @@
-"""A recorder on a thread of its own, for whoever must not wait for a disk."""
+"""A recorder on a thread of its own, for callers that must not wait for the disk."""
 
 import atexit
 import threading
@@ -10,18 +10,19 @@ from sim.recording.recorder import APPEARING, Recorder
 from sim.trace.events import AnyEvent, MessageSent, Notice, Severity, TimePassed
 
 _ROOM = 64_000_000
-"""Bytes, as far as can be told, that may wait to be recorded."""
+"""Bytes, estimated, that may wait to be recorded."""
 _EVENT = 200
-"""Bytes that an event takes, besides what a message holds."""
+"""Bytes of an event, estimated, besides the contents of a message."""
 
 _Batch: TypeAlias = Sequence[AnyEvent]
 
 
 class BackgroundRecorder:
-    """Hands what it takes to ``recorder`` on another thread, and ends it.
+    """Queues events for ``recorder``, which runs on another thread.
 
-    What comes while too much waits is left out and counted, but for what tells who takes part; the recording
-    says where. One thread may call ``take`` and, later, ``close``; an interpreter that exits closes it too.
+    Events that come while the queue is full are dropped and counted, except those that introduce
+    participants; a notice in the recording says where. One thread may call ``take`` and, later, ``close``;
+    an interpreter that exits closes the recorder too.
     """
 
     def __init__(self, recorder: Recorder, room: int = _ROOM) -> None:
@@ -29,7 +30,7 @@ class BackgroundRecorder:
         self.count = 0
         """How many events are recorded, or will be."""
         self.lost = 0
-        """How many events were left out."""
+        """How many events were dropped."""
         self._recorder = recorder
         self._room = room
         self._gap = 0
@@ -54,11 +55,11 @@ class BackgroundRecorder:
 
     @property
     def waiting(self) -> int:
-        """Bytes, as far as can be told, that wait to be recorded."""
+        """Bytes, estimated, that wait to be recorded."""
         return self._taken - self._written
 
     def take(self, events: _Batch) -> None:
-        """Record a batch soon; this never waits."""
+        """Queue a batch without blocking."""
         if self.waiting > self._room:
             kept = [event for event in events if isinstance(event, APPEARING)]
             self._gap += len(events) - len(kept)
@@ -73,7 +74,7 @@ class BackgroundRecorder:
             self._waiting.put(events)
 
     def close(self) -> None:
-        """Wait until all is written, and end the recording. May be called again, and from any thread."""
+        """Block until all is written, and finish the recording. Idempotent, for any thread."""
         if not self._closed:
             self._closed = True
             atexit.unregister(self.close)
@@ -88,7 +89,7 @@ class BackgroundRecorder:
 
 
 def _size(events: _Batch) -> int:
-    """Roughly the bytes that a batch takes."""
+    """Estimate the bytes of a batch."""
     held = sum(len(event.data or b"") for event in events if isinstance(event, MessageSent))
     return _EVENT * len(events) + held
 

@@ -1,4 +1,4 @@
-"""How events lie in a recording: as ROS messages of their own, which any reader of MCAP can pass over.
+"""Encodes events as ROS messages of a recording, on a topic that other readers of MCAP can ignore.
 
 A batch of events, packed as for the pipe, is one message of ``/cbtui/events``.
 """
@@ -10,25 +10,25 @@ import msgspec
 from sim.trace.events import AnyEvent, decode, encode
 
 FORMAT = 1
-"""The number that a change gets which older versions cannot read."""
+"""The version of the format, raised when older versions could not read a change."""
 TOPIC = "/cbtui/events"
 TYPE = "cbtui_msgs/msg/EventBatch"
-CAST = "application/x-cbtui-events"
-"""The media type of the attachments that hold, once more, the events by which a run's parts appear."""
+PARTICIPANTS = "application/x-cbtui-events"
+"""The media type of attachments with a copy of the events that introduce the participants."""
 DEFINITION = "uint32 version\nuint8[] events\n"
 
 _MOST = 16_000_000
-"""Bytes that a batch may have; read, its events take many times as much memory."""
+"""Bytes that a batch may have; decoded, its events take many times as much memory."""
 _LITTLE_ENDIAN_CDR = b"\x00\x01\x00\x00"
 _HEAD = struct.Struct("<4sII")
 
 
 class BatchError(Exception):
-    """Bytes that are no batch of events."""
+    """The bytes are not a batch of events."""
 
 
 class NewerFormatError(Exception):
-    """A batch in a format of a later version; ``version`` is its number."""
+    """A batch in the format of a later version of cbtui."""
 
     def __init__(self, version: int) -> None:
         super().__init__(f"format {version}")
@@ -36,17 +36,17 @@ class NewerFormatError(Exception):
 
 
 def pack_batch(events: list[AnyEvent]) -> bytes:
-    """A batch as the CDR of its message."""
+    """Encode a batch as a message in CDR."""
     packed = encode(events)
     return _HEAD.pack(_LITTLE_ENDIAN_CDR, FORMAT, len(packed)) + packed
 
 
 def unpack_batch(data: bytes) -> list[AnyEvent]:
-    """What ``pack_batch`` packed.
+    """Decode what ``pack_batch`` encoded.
 
     Raises:
         NewerFormatError: a later version packed it.
-        BatchError: it is something else.
+        BatchError: the bytes are something else.
     """
     if not _HEAD.size <= len(data) <= _MOST:
         raise BatchError("too short or too long")

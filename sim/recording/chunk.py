@@ -1,4 +1,4 @@
-"""Chunks of an MCAP file: made sure of, unpacked within bounds, and taken apart."""
+"""Chunks of an MCAP file: verified, unpacked within bounds, and split into records."""
 
 import struct
 import sys
@@ -20,22 +20,22 @@ _COMPRESSED_LENGTH = struct.Struct("<Q")
 _MOST = 256_000_000
 """Bytes that a chunk may unpack to: the largest message and a little."""
 _MOST_LZ4 = 255
-"""Times that lz4 can make something smaller."""
+"""The highest compression ratio of lz4."""
 _FEW = 100_000_000
-"""Bytes that any recording may unpack to, however small it is."""
+"""Bytes that any recording may unpack to, whatever its size."""
 
 
 def unpacked_most(size: int) -> int:
-    """Bytes that a recording of a size may unpack to: as many as lz4 can make of it."""
+    """Bytes that a recording may unpack to at most: the highest compression ratio of lz4 times its size."""
     return max(_FEW, _MOST_LZ4 * size)
 
 
 class ChunkError(Exception):
-    """A chunk that is damaged, or cannot be unpacked."""
+    """The chunk is damaged or cannot be unpacked."""
 
 
 def unpack_chunk(chunk: bytes, most: int = _MOST) -> bytes:
-    """What a chunk record contains, of at most so many bytes.
+    """Unpack a chunk record to at most ``most`` bytes.
 
     Raises:
         ChunkError: it is damaged, too large, or compressed in an unknown way.
@@ -58,7 +58,7 @@ def unpack_chunk(chunk: bytes, most: int = _MOST) -> bytes:
 
 
 def _decompress(compression: bytes, packed: bytes, size: int) -> bytes:
-    """At most ``size`` bytes, whatever the packed ones claim."""
+    """Decompress to at most ``size`` bytes, whatever the header claims."""
     try:
         match compression:
             case b"":
@@ -74,7 +74,7 @@ def _decompress(compression: bytes, packed: bytes, size: int) -> bytes:
 
 
 def records_in(content: bytes) -> Iterator[tuple[int, int, int]]:
-    """Opcode, beginning and end of every record in a chunk's content.
+    """Opcode, start and end of every record in a chunk's content.
 
     Raises:
         ChunkError: there is something else in it.

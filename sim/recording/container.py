@@ -1,7 +1,7 @@
-"""The outer layer of an MCAP file, read so that damage costs no more than the records it lies in.
+"""The records of an MCAP file, read so that damage costs no more than the damaged records.
 
-The mcap library's readers stop at the first thing that is wrong. Here a place that holds no record is left
-out, up to the next chunk. Source: the MCAP specification, https://mcap.dev/spec.
+The mcap library's readers stop at the first error. This one skips to the next chunk.
+Source: the MCAP specification, https://mcap.dev/spec.
 """
 
 import re
@@ -14,24 +14,24 @@ from mcap.opcode import Opcode
 from mcap.writer import MCAP0_MAGIC as MAGIC
 
 HEAD = struct.Struct("<BQ")
-"""What every record begins with: its opcode and its length."""
+"""Header of every record: opcode and length."""
 _FOOTER_LENGTH = 20
 _DATA_END_LENGTH = 4
 _CHUNK_FIELDS = struct.Struct("<QQQI")
-"""A chunk's first and last time, the size and the checksum of what is in it."""
+"""First and last time of a chunk, uncompressed size and checksum."""
 _COMPRESSIONS = re.compile(rb"\x03\0\0\0lz4|\x04\0\0\0zstd|\0\0\0\0")
 _NAMED = re.compile(rb"\x03\0\0\0lz4|\x04\0\0\0zstd")
-"""What stands in a chunk after these; chunks that are not compressed cannot be searched for."""
+"""The name of the compression that follows; chunks that are not compressed cannot be searched for."""
 _TO_NAME = HEAD.size + _CHUNK_FIELDS.size
 _WINDOW = 1_000_000
 _FIRST_WINDOWS = 4_000_000
-"""Bytes at the beginning of a file that is none by its first eight, among which a chunk is looked for."""
+"""Bytes in which a chunk is searched for if the first eight bytes are not those of an MCAP file."""
 _PRIVATE = 0x80
 
 
 @dataclass(frozen=True)
 class Record:
-    """A record's kind and where in the file its content is."""
+    """Opcode of a record, and offset and length of its content in the file."""
 
     opcode: int
     offset: int
@@ -40,22 +40,22 @@ class Record:
 
 @dataclass
 class Container:
-    """The records of an open file. What is wrong with it is known when they have been walked through."""
+    """The records of an open file. Its damage is known after ``records`` has ended."""
 
     file: BinaryIO
     size: int = 0
     gaps: list[int] = field(default_factory=list)
-    """Where the file holds something else than a record, and goes on later."""
+    """Offsets at which records are damaged and others follow."""
     whole: bool = False
-    """Whether all records were written."""
+    """Whether the file ends with all its data."""
     indexed: bool = False
-    """Whether the index behind them was."""
+    """Whether it ends with its index."""
 
     def __post_init__(self) -> None:
         self.size = self.file.seek(0, 2)
 
     def records(self) -> Iterator[Record]:
-        """The records in order. A file that is no MCAP file has none."""
+        """The records in order; none for a file that is not an MCAP file."""
         self.file.seek(0)
         place: int | None = len(MAGIC)
         if self.file.read(len(MAGIC)) != MAGIC:
@@ -66,7 +66,7 @@ class Container:
         while place is not None and place < self.size:
             record = self._record_at(place)
             if record is None:
-                # It may be the record before that has a wrong length.
+                # The length of the previous record may be wrong.
                 gap, place = place, self._next_chunk(last + 1, self.size)
                 if place is not None:
                     self.gaps.append(gap)
@@ -106,12 +106,12 @@ class Container:
         return length == _FOOTER_LENGTH and end + len(MAGIC) == self.size and self.file.read() == MAGIC
 
     def _is_chunk(self) -> bool:
-        """Whether the file goes on as a chunk's content does."""
+        """Whether the content at the current offset is that of a chunk."""
         self.file.seek(_CHUNK_FIELDS.size, 1)
         return _COMPRESSIONS.match(self.file.read(8)) is not None
 
     def _next_chunk(self, start: int, end: int) -> int | None:
-        """Where the next chunk begins whose content is compressed."""
+        """The offset of the next compressed chunk."""
         while start < end:
             self.file.seek(start)
             window = self.file.read(_WINDOW + _TO_NAME + 8)

@@ -1,4 +1,4 @@
-"""A file that only ever holds whole writes, also when the disk fills up in the middle of one."""
+"""A file that contains only complete writes, even if the disk fills up during one."""
 
 import errno
 import os
@@ -7,10 +7,10 @@ from io import FileIO
 
 
 class GrowingFile:
-    """Appends to a raw file without a buffer. Of a write that fails, nothing stays in the file.
+    """Appends to a file without a buffer, and truncates it after a failed write.
 
-    With ``end``, a byte, what such a write wrote up to the last ``end`` stays. A pipe or a device cannot be
-    shortened: it keeps what it got. Not thread-safe.
+    With ``end``, a byte such as a newline, the complete lines of a failed write stay. A pipe or a device
+    cannot be truncated. Not thread-safe.
     """
 
     def __init__(self, file: FileIO, end: bytes = b"") -> None:
@@ -32,23 +32,23 @@ class GrowingFile:
                     raise BlockingIOError(errno.EAGAIN, os.strerror(errno.EAGAIN))
                 written += taken
         except OSError:
-            self._shorten(self._length + (data.rfind(self._end, 0, written) + 1 if self._end else 0))
+            self._truncate(self._length + (data.rfind(self._end, 0, written) + 1 if self._end else 0))
             raise
         self._length += written
         return written
 
     def clear(self) -> None:
         """Empty the file."""
-        self._shorten(0)
+        self._truncate(0)
 
     def flush(self) -> None:
-        """Do nothing: whatever was written is with the system already."""
+        """Do nothing: the file has no buffer."""
 
     def close(self) -> None:
-        """Close the file. Raises OSError: some file systems find out now that they are full."""
+        """Close the file. Raises OSError: some file systems only report now that they are full."""
         self._file.close()
 
-    def _shorten(self, length: int) -> None:
+    def _truncate(self, length: int) -> None:
         with suppress(OSError):
             self._file.truncate(length)
             self._length = length

@@ -1,4 +1,4 @@
-"""Writes a recording: chunk by chunk, so that whoever is killed leaves all but the last moment behind."""
+"""Writes a recording chunk by chunk, so that a killed process loses only the last moment."""
 
 import sys
 import threading
@@ -33,19 +33,19 @@ from sim.trace.events import (
 
 LIBRARY = "cbtui"
 EVENTS_CHANNEL = 1
-"""The number that the channel of events has, since it is the first."""
+"""The id of the channel of events, which is registered first."""
 _CHUNK = 256_000
-"""Bytes after which a chunk is written, once there is some recording."""
+"""Bytes of a chunk in a longer recording."""
 _FIRST_CHUNK = 8_000
-"""Bytes after which the first chunk is written: a disk that is nearly full has room for little."""
+"""Bytes of the first chunk: a disk that is nearly full has little room."""
 _AT_STAKE = 0.25
-"""How much of what is in chunks may at most be lost with one more."""
+"""Size of the next chunk relative to all chunks before it: so much may be lost if it cannot be written."""
 _PERIOD = 0.5
-"""Seconds after which whatever has come is written."""
-_CASTS = 10
-"""Times that the cast is told again, while it grows."""
+"""Seconds after which waiting data is written."""
+_COPIES = 10
+"""How often the participants are attached again while more appear."""
 _ROSBAG = ("rosbag2", {"ROS_DISTRO": "jazzy"})
-"""The metadata record by which rosbag2 tells of which ROS 2 a file is."""
+"""The metadata record in which rosbag2 names its ROS 2 distribution."""
 APPEARING = (
     RunStarted,
     ProcessAppeared,
@@ -57,7 +57,7 @@ APPEARING = (
     ArenaShown,
     TopicAppeared,
 )
-"""Events that tell who takes part."""
+"""Events that introduce participants."""
 
 
 class Recorder:
@@ -79,11 +79,11 @@ class Recorder:
         self._batches = 0
         self._channels: dict[TopicId, int] = {}
         self._sent: dict[TopicId, int] = {}
-        self._cast: list[AnyEvent] = []
-        self._cast_told = 0
+        self._participants: list[AnyEvent] = []
+        self._attached = 0
         self._latest = 0
         self._passed: TimePassed | None = None
-        self._casts_left = _CASTS
+        self._copies_left = _COPIES
         self._lock = threading.Lock()
         self._closing = threading.Event()
         self._chunked = 0
@@ -103,24 +103,24 @@ class Recorder:
         return self._file.tell()
 
     def take(self, events: Iterable[AnyEvent]) -> None:
-        """Record a batch: the events as they are, and messages under their topics."""
+        """Record a batch: events on their channel, messages under their topics."""
         self._guarded(lambda: self._take(events))
 
     def flush(self) -> None:
-        """Write what has been taken, so that it is kept whatever happens to this process."""
+        """Write waiting data, so that it survives this process."""
         self._guarded(self._flush)
 
     def close(self) -> None:
-        """Write what is left, and the index that lets readers find their way. May be called again."""
+        """Write the rest and the index. Idempotent."""
         if self._closing.is_set():
             return
         self._closing.set()
         self._flusher.join()
-        self._casts_left = 1
+        self._copies_left = 1
         self.flush()
         self._guarded(lambda: self._sources.attach(self._attach))
-        self._guarded(self._tell_cast)
-        self._guarded(self._tell_end)
+        self._guarded(self._attach_participants)
+        self._guarded(self._record_end)
         self._guarded(self._writer.finish)
         try:
             self._file.close()
@@ -128,7 +128,7 @@ class Recorder:
             self.failure = self.failure or error.strerror
 
     def _guarded(self, step: Callable[[], object]) -> None:
-        """Do something to the file, unless an earlier step failed."""
+        """Run a step on the file unless an earlier one failed; keep its error in ``failure``."""
         with self._lock:
             if self.failure is None:
                 try:
@@ -155,7 +155,7 @@ class Recorder:
             self._add_events(kept)
 
     def _add_events(self, events: list[AnyEvent]) -> None:
-        """Add a batch, in halves if all of it were too much to lose at once."""
+        """Add a batch, in halves if it is larger than a chunk."""
         packed = batch.pack_batch(events)
         if len(packed) > self._chunk_size and len(events) > 1:
             half = len(events) // 2
@@ -174,18 +174,18 @@ class Recorder:
 
     @property
     def _chunk_size(self) -> int:
-        """Bytes after which the next chunk is written: a share of those before it, since it may not fit."""
+        """Bytes of the next chunk: a share of those before it, since it may not fit on the disk."""
         return min(_CHUNK, max(_FIRST_CHUNK, int(_AT_STAKE * self._chunked)))
 
     def _flush(self) -> None:
-        """Write what waits as a chunk; the programs' files, which may be large, follow the first events."""
+        """Write waiting data as a chunk; the programs' files, which may be large, follow the first chunk."""
         self._writer.flush()
         self._chunked += self._waiting
         self._waiting = 0
         if self._chunked:
             self._sources.attach(self._attach)
 
-    # What is looked at; whether it goes among the events too.
+    # Handlers: each returns whether the event goes on the channel of events.
 
     def _run_started(self, event: RunStarted) -> bool:
         self._epoch = event.epoch
@@ -200,7 +200,7 @@ class Recorder:
         return True
 
     def _appeared(self, event: AnyEvent) -> bool:
-        self._cast.append(event)
+        self._participants.append(event)
         return True
 
     def _topic(self, event: TopicAppeared) -> bool:
@@ -225,8 +225,8 @@ class Recorder:
         self._passed = event
         return False
 
-    def _tell_end(self) -> None:
-        """Write down how long a run went on of which nothing more was told."""
+    def _record_end(self) -> None:
+        """Record how long the run went on after its last event."""
         if self._passed is not None and self._passed.t > self._latest:
             self._add_events([self._passed])
 
@@ -235,15 +235,17 @@ class Recorder:
 
     def _flush_for_ever(self) -> None:
         while not self._closing.wait(_PERIOD):
-            self._guarded(self._tell_cast)
+            self._guarded(self._attach_participants)
             self.flush()
 
-    def _tell_cast(self) -> None:
-        """Write down again who takes part: little could be read without, should its chunk be lost."""
-        if len(self._cast) > self._cast_told and self._casts_left > 0:
-            self._casts_left -= 1
-            self._cast_told = len(self._cast)
-            self._writer.add_attachment(0, self._epoch, "cast", batch.CAST, batch.pack_batch(self._cast))
+    def _attach_participants(self) -> None:
+        """Attach the participants again: without them little could be read if their chunk is damaged."""
+        if len(self._participants) > self._attached and self._copies_left > 0:
+            self._copies_left -= 1
+            self._attached = len(self._participants)
+            self._writer.add_attachment(
+                0, self._epoch, "cast", batch.PARTICIPANTS, batch.pack_batch(self._participants)
+            )
 
 
 _LOOKS: dict[type, Callable[[Recorder, Any], bool]] = {

@@ -1,4 +1,4 @@
-"""Reads a recording: whatever of it is there, and one sentence on what is not."""
+"""Reads a recording: the readable part of a damaged or truncated one, with a sentence on what is missing."""
 
 import stat
 import struct
@@ -24,17 +24,17 @@ from sim.trace.events import AnyEvent, RunStarted
 
 ReadableT = TypeVar("ReadableT", Attachment, Channel, Header, Metadata, Schema)
 _Message: TypeAlias = tuple[int, bytes, int, int]
-"""A piece of a recording's content: number of its channel, the bytes it is in, beginning and end."""
+"""A message: id of its channel, content of its chunk, start and end in it."""
 
 _MESSAGE = struct.Struct("<HIQQ")
-"""Channel, number, time of recording and of publication: what stands before a message's data."""
+"""Header of a message: channel, sequence number, times of recording and publication."""
 _CHECKSUM = struct.Struct("<I")
 _LONGEST = 64_000_000
-"""Bytes of a metadata record or an attachment; longer ones are left out."""
+"""Bytes of a metadata record or an attachment at most; longer ones are skipped."""
 
 
 class RecordingError(Exception):
-    """A file of which nothing can be read as a recording; the text is a sentence that says why."""
+    """The file cannot be read as a recording; the text is a sentence that says why."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ def read(path: Path) -> "Recording":
     """Open a recording: its outline is read at once, the rest when it is asked for.
 
     Raises:
-        RecordingError: it is no recording, nothing of it is left, or a later version wrote it.
+        RecordingError: it is not a recording, nothing in it is readable, or a later version wrote it.
     """
     try:
         if stat.S_ISFIFO(path.stat().st_mode):
@@ -74,7 +74,7 @@ def read(path: Path) -> "Recording":
 
 
 class Recording:
-    """What a file holds of a run. Made by ``read``; every method may raise OSError, as any reading may.
+    """The recording of a run in a file, made by ``read``. Every method may raise OSError.
 
     Not thread-safe.
     """
@@ -85,9 +85,9 @@ class Recording:
         self.sources: dict[str, str] = {}
         """The text of the programs' files, by their paths."""
         self._library = ""
-        self._cast: list[AnyEvent] = []
+        self._participants: list[AnyEvent] = []
         self.share = 0.0
-        """How much of the file the latest reading has come through, from 0 to 1."""
+        """How much of the file the latest iteration has read, from 0 to 1."""
         self._chunks: list[Record] = []
         self._damaged: set[int] = set()
         self._unpacked_too_much = False
@@ -104,7 +104,7 @@ class Recording:
         self._indexed = container.indexed
 
     def _outline(self, container: Container, record: Record) -> None:
-        """Take note of a record, and of what is small at once."""
+        """Note a chunk, and parse the small records."""
         if record.opcode == Opcode.CHUNK:
             self._chunks.append(record)
         elif record.opcode in _OUTLINED and record.length <= _LONGEST:
@@ -131,13 +131,13 @@ class Recording:
                 attachment = _parsed(Attachment, content)
                 if _CHECKSUM.unpack(content[-4:]) != (zlib.crc32(content[:-4]),):
                     raise ValueError("its checksum is wrong")
-                if attachment.media_type == batch.CAST:
-                    self._cast = batch.unpack_batch(attachment.data)
+                if attachment.media_type == batch.PARTICIPANTS:
+                    self._participants = batch.unpack_batch(attachment.data)
                 else:
                     self.sources[attachment.name] = attachment.data.decode()
 
     def _introduce(self, opcode: int, content: bytes) -> None:
-        """Learn of a schema or channel; the first of a number counts, since a later one may be damaged."""
+        """Add a schema or channel; the first of an id counts, since a later one may be damaged."""
         if opcode == Opcode.SCHEMA:
             schema = _parsed(Schema, content)
             self._schemas.setdefault(schema.id, schema)
@@ -146,10 +146,10 @@ class Recording:
             self._channels.setdefault(channel.id, channel)
 
     def check(self) -> None:
-        """Make sure that there is something to read here.
+        """Check that the file is a recording and something in it is readable.
 
         Raises:
-            RecordingError: there is not.
+            RecordingError: it is not.
         """
         if self._size == 0:
             raise RecordingError(f"{self.path} is empty")
@@ -164,9 +164,9 @@ class Recording:
     # contents
 
     def batches(self) -> Iterator[list[AnyEvent]]:
-        """The events as they were recorded, batch after batch.
+        """The events as they were recorded, batch by batch.
 
-        Where the beginning is lost, what is known of who takes part comes first.
+        If the beginning is damaged, the known participants come first.
 
         Raises:
             RecordingError: a later version of cbtui wrote them.
@@ -190,9 +190,9 @@ class Recording:
                 yield events
 
     def _lost_beginning(self, events: list[AnyEvent]) -> Iterator[list[AnyEvent]]:
-        """Who had appeared before the first events that are left, unless these tell it."""
+        """The participants from before the first readable events, unless these are from the run's start."""
         if events and not any(isinstance(event, RunStarted) for event in events):
-            known = [event for event in self._cast if event.t <= events[0].t and event not in events]
+            known = [event for event in self._participants if event.t <= events[0].t and event not in events]
             if known:
                 yield known
 
@@ -227,11 +227,11 @@ class Recording:
 
     def _is_events(self, channel: int) -> bool:
         known = self._channels.get(channel)
-        # The chunk that introduces the first channel may be lost.
+        # The chunk with the first channel may be damaged.
         return known.topic == batch.TOPIC if known else channel == EVENTS_CHANNEL
 
     def _messages(self) -> Iterator[_Message]:
-        """Every message of every chunk that is not damaged; counts them when all have been seen."""
+        """Every message of every intact chunk; counts them at the end."""
         counts: Counter[int] = Counter()
         room = unpacked_most(self._size)
         with self.path.open("rb") as file:
@@ -265,7 +265,7 @@ class Recording:
     def damage(self) -> str | None:
         """One sentence on what cannot be read; None if nothing is missing.
 
-        It tells of the outline at once, and of the contents once they have been read to their end.
+        The outline is known at once, the contents once they have been read to their end.
         """
         troubles = []
         parts = len(self._gaps) + len(self._damaged)
@@ -291,11 +291,11 @@ _UNREADABLE = (
     *(struct.error, OverflowError, ValueError, McapError, MemoryError),
     *(batch.BatchError, batch.NewerFormatError),
 )
-"""What the mcap library raises where a record's content is not what it should be."""
+"""Errors of the mcap library and of this package on damaged records."""
 
 
 def _parsed(kind: type[ReadableT], content: bytes) -> ReadableT:
-    """A record by the mcap library, which reads past an end without noticing.
+    """Parse a record with the mcap library, which does not notice reading past the end.
 
     Raises:
         ValueError, struct.error, McapError: it is damaged.

@@ -1,4 +1,4 @@
-"""The source files of a run's programs, taken along in its recording to explain it elsewhere."""
+"""The source files of a run's programs, attached to its recording to explain it elsewhere."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -6,13 +6,13 @@ from pathlib import Path
 from sim.foreign_file import read_bytes
 
 _LONGEST = 500_000
-"""Bytes of a file; longer ones stay behind."""
+"""Bytes of a file at most; longer ones are skipped."""
 _MOST = 5_000_000
-"""Bytes of all files."""
+"""Bytes of all files at most."""
 
 
 class Sources:
-    """The files that are wanted, each once, until they are handed over; as far as there is room."""
+    """A queue of source files to attach, each once and within a limit of bytes."""
 
     def __init__(self) -> None:
         self._seen = {""}
@@ -20,13 +20,13 @@ class Sources:
         self._room = _MOST
 
     def want(self, path: str) -> None:
-        """Take a file along, if it can be read and is not too long."""
+        """Queue a file; it is skipped later if it cannot be read or is too long."""
         if path not in self._seen:
             self._seen.add(path)
             self._wanted.append(path)
 
     def attach(self, attach: Callable[[str, bytes], None]) -> None:
-        """Hand over the path and the text of what has been wanted since the last time."""
+        """Pass path and text of each queued file to ``attach``, and empty the queue."""
         wanted, self._wanted = self._wanted, []
         for path in wanted:
             text = _text_of(Path(path), min(_LONGEST, self._room))

@@ -1,4 +1,4 @@
-"""Which entities did something lately."""
+"""The entities that were active recently."""
 
 from collections.abc import Iterator
 
@@ -10,20 +10,20 @@ _LATE: Nanoseconds = 1_000_000_000
 
 
 class Activity:
-    """When each entity last did anything, those at the end that did it last.
+    """When each entity was last active, in that order.
 
-    A run may have thousands of entities of which a few do something: this finds them without asking the rest.
+    A run may have thousands of entities, few of them active: this finds those without looking at the others.
     """
 
     def __init__(self) -> None:
         self._latest: dict[EntityId, Nanoseconds] = {}
 
     def note(self, entity: EntityId, at: Nanoseconds) -> None:
-        """An entity did something."""
+        """An entity was active."""
         self._latest[entity] = max(at, self._latest.pop(entity, at))
 
     def since(self, at: Nanoseconds) -> Iterator[EntityId]:
-        """The entities that did something at ``at`` or later."""
+        """The entities that were active at ``at`` or later."""
         for entity, latest in reversed(self._latest.items()):
             if latest >= at:
                 yield entity

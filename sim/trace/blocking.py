@@ -1,4 +1,4 @@
-"""Which threads stood still in a call of a service, when and for which answer."""
+"""The times in which threads were blocked in a service call."""
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
@@ -6,15 +6,15 @@ from collections.abc import Iterator, Sequence
 from sim.trace.events import CallBlocked, CallUnblocked, EntityId, ThreadId
 from sim.trace.model import Blocked, Nanoseconds, Window
 from sim.trace.storage.intervals import Answer, Intervals, Lane, Row, end_or_none
-from sim.trace.storage.spill import Spill
+from sim.trace.storage.spill_file import SpillFile
 
 
 class Blocking(Intervals):
-    """The table of all blocked stretches, and a lane of them for each thread and each callback."""
+    """The intervals in which threads were blocked, by thread and by callback."""
 
     THREAD, ENTITY, CALL, SERVICE = range(2, 6)
 
-    def __init__(self, spill: Spill) -> None:
+    def __init__(self, spill: SpillFile) -> None:
         super().__init__(spill, more=4)
         self._services: dict[str, int] = {}
         self._by_thread: defaultdict[ThreadId, Lane] = defaultdict(lambda: Lane(self))
@@ -22,7 +22,7 @@ class Blocking(Intervals):
         self._standing: dict[ThreadId, Row] = {}
 
     def start(self, event: CallBlocked) -> None:
-        """A thread comes to stand still."""
+        """A thread blocks."""
         self.go_on(event.thread, event.t)
         service = self._services.setdefault(event.service, len(self._services))
         row = self.open(event.t, event.thread, event.entity, event.call, service)
@@ -31,28 +31,28 @@ class Blocking(Intervals):
         self._standing[event.thread] = row
 
     def finish(self, event: CallUnblocked) -> None:
-        """A call returned; one that its thread does not stand in is passed over."""
+        """A call returned; ignored if its thread is not blocked in it."""
         row = self._standing.get(event.thread)
         if row is not None and self.table.cell(row, self.CALL) == event.call:
             self.go_on(event.thread, event.t)
 
     def go_on(self, thread: ThreadId, at: Nanoseconds) -> None:
-        """A thread does something, and so stands still no longer: the return of its call may be lost."""
+        """A thread runs again, so it is no longer blocked even if the event of its return was lost."""
         row = self._standing.pop(thread, None)
         if row is not None:
             self.close(row, at)
 
     def on(self, thread: ThreadId, window: Window) -> Sequence[Blocked]:
-        """Blocked stretches of a thread."""
+        """The intervals in which a thread was blocked."""
         return Answer(self._by_thread[thread].overlapping(window), self._blocked)
 
     def at(self, at: Nanoseconds) -> Iterator[Blocked]:
-        """The threads that stand still at ``at``."""
+        """The threads that are blocked at ``at``."""
         for lane in list(self._by_thread.values()):
             yield from map(self._blocked, lane.covering(at))
 
     def beside(self, entity: EntityId, at: Nanoseconds, step: int) -> Iterator[Nanoseconds]:
-        """Starts and ends of stretches inside the entity's callback, with the nearest beside ``at``."""
+        """The nearest start or end of an interval of the entity's callback, after or before ``at``."""
         yield from self._by_entity[entity].starts_beside(at, step)
         yield from self._by_entity[entity].ends_beside(at, step)
 

@@ -6,7 +6,7 @@ from sim.trace.events import CallId, RequestLost, ServiceCalled, ServiceReplied
 from sim.trace.model import Call, Nanoseconds, Window
 from sim.trace.storage.history import History
 from sim.trace.storage.intervals import Answer, Intervals, Lane, Row, end_or_none
-from sim.trace.storage.spill import Spill
+from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import Table
 
 NEWEST_KEPT = 1024
@@ -17,7 +17,7 @@ class Calls(Intervals):
 
     CALL, CALLER, SERVICE, LOST, RESPONSE = range(2, 7)
 
-    def __init__(self, spill: Spill) -> None:
+    def __init__(self, spill: SpillFile) -> None:
         super().__init__(spill, more=5)
         self._services: dict[str, int] = {}
         self._requests = _texts(spill)
@@ -102,7 +102,7 @@ class Calls(Intervals):
         )
 
 
-def _texts(spill: Spill) -> History[str]:
+def _texts(spill: SpillFile) -> History[str]:
     return History(_at_once, str, spill)
 
 

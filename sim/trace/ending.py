@@ -1,4 +1,4 @@
-"""What of a run counts: a program that is told to end may still do things, which say nothing about it."""
+"""Leaves out what a program does after it was told to end, which no check or figure should count."""
 
 from collections.abc import Iterable, Iterator
 
@@ -11,7 +11,7 @@ _KEPT = (Logged, Notice, Printed, RunEnded)
 
 
 class UntilEnding:
-    """Cuts a run's events off at the moment at which its program was told to end.
+    """Ends a run's events at the time at which its program was told to end.
 
     What it logs and prints from there on, notices and the end of the run are kept, as of that moment.
     """
@@ -20,7 +20,7 @@ class UntilEnding:
         self._told_at: Nanoseconds | None = None
 
     def cut(self, events: Iterable[AnyEvent]) -> Iterator[AnyEvent]:
-        """Return what counts of the next events."""
+        """Return those of the next events that count."""
         for event in events:
             if self._told_at is None:
                 yield event

@@ -16,7 +16,7 @@ from sim.trace.events import (
 )
 from sim.trace.model import Nanoseconds, Span, Window
 from sim.trace.storage.intervals import OPEN, Answer, Intervals, Lane, Layer, Row, end_or_none
-from sim.trace.storage.spill import Spill
+from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import Table
 
 ALWAYS = Window(-OPEN, OPEN)
@@ -30,7 +30,7 @@ class Spans(Intervals):
 
     ENTITY, THREAD, MESSAGE, AGE, ERROR, RESUMED = range(2, 8)
 
-    def __init__(self, spill: Spill) -> None:
+    def __init__(self, spill: SpillFile) -> None:
         super().__init__(spill, more=6)
         self._errors = [""]
         self._error_of = {"": 0}
@@ -116,7 +116,7 @@ class Execution:
     suspended first is taken to be the one that goes on.
     """
 
-    def __init__(self, spill: Spill) -> None:
+    def __init__(self, spill: SpillFile) -> None:
         self._spans = Spans(spill)
         self._gaps = Intervals(spill)
         self._threads: defaultdict[ThreadId, ThreadLane] = defaultdict(lambda: ThreadLane(self._spans))

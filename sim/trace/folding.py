@@ -1,4 +1,4 @@
-"""What the events of a run come to: each is folded into the stores that a timeline asks."""
+"""Folds the events of a run into the stores that a timeline queries."""
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable
@@ -9,15 +9,15 @@ from sim.trace import events as ev
 from sim.trace.activity import Activity
 from sim.trace.blocking import Blocking
 from sim.trace.calls import Calls
-from sim.trace.cast import Cast
 from sim.trace.events import AnyEvent, EntityId, EntityKind
 from sim.trace.execution import Execution
 from sim.trace.model import Mark, Nanoseconds, Queue
+from sim.trace.participants import Participants
 from sim.trace.publications import Publications
 from sim.trace.queues import Born, QueueHistory
 from sim.trace.scans import Scans
 from sim.trace.storage.history import History
-from sim.trace.storage.spill import Spill
+from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import Table
 from sim.trace.waiting import Waiting
 
@@ -28,14 +28,14 @@ ShellEvent: TypeAlias = ev.LineGiven | ev.LineSaid | ev.LineEnded | ev.KeyboardA
 
 
 class Folded:
-    """One store for every kind of thing that is known of a run; ``end`` is the time of the latest event.
+    """The stores of a run, one for each kind of data; ``end`` is the time of the latest event.
 
-    Events may come late by a little: the stores stay in order of time. What is old they spill to one
-    temporary file, so that memory does not grow with the run.
+    Events may come a little late: the stores stay in order of time. They keep older data in one temporary
+    file, so that memory does not grow with the run.
     """
 
     def __init__(self) -> None:
-        self.spill = spill = Spill()
+        self.spill = spill = SpillFile()
         self.started: ev.RunStarted | None = None
         self.ended: ev.RunEnded | None = None
         self.arena: ev.ArenaShown | None = None
@@ -43,7 +43,7 @@ class Folded:
         self.lost = 0
         self.contents_lost = 0
         self.end: Nanoseconds = 0
-        self.cast = Cast()
+        self.participants = Participants()
         self.active = Activity()
         self.execution = Execution(spill)
         self.waiting = Waiting(spill)
@@ -83,24 +83,24 @@ class Folded:
         """When came to be what an entity's queue holds; messages and calls are numbered apart."""
         if self._takes_messages(entity):
             return self.publications.time_of
-        if self.cast.entities[entity].kind is EntityKind.SERVICE:
+        if self.participants.entities[entity].kind is EntityKind.SERVICE:
             return self.calls.sent_at
         return _unknown
 
     def _takes_messages(self, entity: EntityId) -> bool:
-        known = self.cast.entities.get(entity)
+        known = self.participants.entities.get(entity)
         return known is None or known.kind is EntityKind.SUBSCRIPTION
 
     def _folding(self) -> dict[type, Callable[[Any], object]]:
         return {
             ev.RunStarted: self._run_started,
             ev.RunEnded: self._run_ended,
-            ev.ProcessAppeared: self.cast.add_process,
-            ev.ProcessEnded: self.cast.end_process,
-            ev.ThreadAppeared: self.cast.add_thread,
-            ev.ExecutorAppeared: self.cast.add_executor,
-            ev.NodeAppeared: self.cast.add_node,
-            ev.GroupAppeared: self.cast.add_group,
+            ev.ProcessAppeared: self.participants.add_process,
+            ev.ProcessEnded: self.participants.end_process,
+            ev.ThreadAppeared: self.participants.add_thread,
+            ev.ExecutorAppeared: self.participants.add_executor,
+            ev.NodeAppeared: self.participants.add_node,
+            ev.GroupAppeared: self.participants.add_group,
             ev.EntityAppeared: self._entity_appeared,
             ev.EntityGone: self._entity_gone,
             ev.EntityReady: self._ready,
@@ -148,7 +148,7 @@ class Folded:
         self.arena = event
 
     def _entity_appeared(self, event: ev.EntityAppeared) -> None:
-        self.cast.add_entity(event)
+        self.participants.add_entity(event)
         self.execution.join(event.entity, event.group)
 
     def _entity_gone(self, event: ev.EntityGone) -> None:
@@ -190,7 +190,7 @@ class Folded:
 
     def _callback_failed(self, event: ev.CallbackFailed) -> None:
         self.execution.fail(event)
-        entity = self.cast.entities.get(event.entity)
+        entity = self.participants.entities.get(event.entity)
         who = entity.spoken_name if entity else "a callback"
         self.marks.add(Mark(event.t, "error", f"{who} raised {event.error}"))
 

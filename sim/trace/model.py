@@ -1,4 +1,4 @@
-"""What a timeline knows about a run: the cast, what ran, what waited, and one moment of it all."""
+"""What a timeline knows about a run: participants, what ran, what waited, and one moment of it all."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field

@@ -2,23 +2,23 @@
 
 from sim.trace.events import MessageId, Published
 from sim.trace.model import Nanoseconds, Publication
-from sim.trace.storage.spill import Spill
+from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import Table
 
 _TIME, _NODE, _ENTITY = range(1, 4)
 
 
 class Publications:
-    """What was published, by number of message."""
+    """The publications of a run, by message id."""
 
     __slots__ = ("_latest", "_table")
 
-    def __init__(self, spill: Spill) -> None:
+    def __init__(self, spill: SpillFile) -> None:
         self._table = Table(spill, 4)
         self._latest: MessageId | None = None
 
     def add(self, event: Published) -> None:
-        """A message was published; of one that is known already the first time counts."""
+        """Add a publication; of a message that is published twice the first one counts."""
         row = [event.message, event.t, event.node, event.entity]
         if self._latest is None or event.message > self._latest:
             self._latest = event.message
@@ -27,12 +27,12 @@ class Publications:
             self._table.add(row)
 
     def time_of(self, message: MessageId) -> Nanoseconds | None:
-        """When a message was published; None for one that is not known to have been."""
+        """When a message was published; None for an unknown message."""
         place = self._place_of(message)
         return None if place is None else self._table.cell(place, _TIME)
 
     def of(self, message: MessageId) -> Publication | None:
-        """How a message was published; None for one that is not known to have been."""
+        """How a message was published; None for an unknown message."""
         place = self._place_of(message)
         if place is None:
             return None

@@ -1,4 +1,4 @@
-"""What waits in the queue of an entity, and what was lost there, as step functions of time."""
+"""The contents and losses of an entity's queue as functions of time."""
 
 from collections import deque
 from collections.abc import Callable, Sequence
@@ -7,7 +7,7 @@ from typing import TypeAlias
 from sim.trace.events import MessageId
 from sim.trace.model import Nanoseconds, Queue, QueuedMessage, Window
 from sim.trace.storage.intervals import Answer
-from sim.trace.storage.spill import Spill
+from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import Table
 
 Born: TypeAlias = Callable[[MessageId], Nanoseconds | None]
@@ -25,7 +25,7 @@ class QueueHistory:
 
     __slots__ = ("_arrived", "_left_early", "_lost_at", "_now", "_steps")
 
-    def __init__(self, spill: Spill) -> None:
+    def __init__(self, spill: SpillFile) -> None:
         self._steps = Table(spill, 2)
         self._arrived = Table(spill, 2)
         self._lost_at = Table(spill, 1)
@@ -33,7 +33,7 @@ class QueueHistory:
         self._left_early = Table(spill, 2)
 
     def arrive(self, at: Nanoseconds, depth: int, message: MessageId) -> None:
-        """Something came, ``depth`` are there now."""
+        """A message arrived; ``depth`` are in the queue now."""
         self._arrived.add([at, message])
         self._now.append(message)
         self._become(at, depth)

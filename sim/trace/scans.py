@@ -1,4 +1,4 @@
-"""What the laser saw, and which of it had reached a callback."""
+"""The laser scans of a run, and which of them callbacks had taken."""
 
 from collections import OrderedDict
 from operator import attrgetter
@@ -6,7 +6,7 @@ from operator import attrgetter
 from sim.trace.events import MessageId, Scanned
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.storage.history import History
-from sim.trace.storage.spill import Spill
+from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import Table
 
 SCANS_IN_BLOCK = 32
@@ -18,7 +18,7 @@ LATEST_KNOWN = 1024
 class Scans:
     """The scans in order of time, and the times at which callbacks took their messages."""
 
-    def __init__(self, spill: Spill) -> None:
+    def __init__(self, spill: SpillFile) -> None:
         self._scans: History[Scanned] = History(attrgetter("t"), Scanned, spill, SCANS_IN_BLOCK)
         self._times = Table(spill, 2)
         self._latest: OrderedDict[MessageId, None] = OrderedDict()
@@ -26,7 +26,7 @@ class Scans:
         self._seen = Table(spill, 2)
 
     def add(self, event: Scanned) -> None:
-        """The laser has looked around."""
+        """Add a scan."""
         self._scans.add(event)
         self._times.add([event.message, event.t])
         self._latest[event.message] = None

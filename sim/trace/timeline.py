@@ -15,7 +15,7 @@ from sim.trace.events import (
     ThreadId,
 )
 from sim.trace.folding import Folded, ShellEvent
-from sim.trace.lookup import Lookup
+from sim.trace.lazy_mapping import LazyMapping
 from sim.trace.model import (
     Blocked,
     Call,
@@ -100,7 +100,7 @@ class Timeline:
         """How many messages were published without their contents being kept."""
         return self._run.contents_lost
 
-    # the cast
+    # participants
 
     @property
     def end(self) -> Nanoseconds:
@@ -110,36 +110,36 @@ class Timeline:
     @property
     def threads(self) -> dict[ThreadId, Thread]:
         """The threads, in order of appearance."""
-        return self._run.cast.threads
+        return self._run.participants.threads
 
     @property
     def processes_ended(self) -> dict[ProcessId, Nanoseconds]:
         """When programs ended, in a run of several."""
-        return self._run.cast.ended
+        return self._run.participants.ended
 
     @property
     def executors(self) -> dict[ExecutorId, Executor]:
         """The executors, in order of appearance."""
-        return self._run.cast.executors
+        return self._run.participants.executors
 
     @property
     def nodes(self) -> dict[NodeId, str]:
         """The names of the nodes, in order of appearance."""
-        return self._run.cast.nodes
+        return self._run.participants.nodes
 
     @property
     def groups(self) -> dict[GroupId, Group]:
         """The callback groups, in order of appearance, which is the order of their letters."""
-        return self._run.cast.groups
+        return self._run.participants.groups
 
     @property
     def entities(self) -> dict[EntityId, Entity]:
         """The entities, in order of appearance; those that are gone stay."""
-        return self._run.cast.entities
+        return self._run.participants.entities
 
     def group_members(self, group: GroupId) -> tuple[Entity, ...]:
         """The entities of a group."""
-        return self._run.cast.members(group)
+        return self._run.participants.members(group)
 
     # intervals
 
@@ -322,7 +322,7 @@ class Timeline:
                 if wait is not None and entity in self.entities
             },
             {blocked.thread: blocked for blocked in self._run.blocking.at(at)},
-            Lookup(self.entities, lambda entity: self.queue(entity, at)),
+            LazyMapping(self.entities, lambda entity: self.queue(entity, at)),
             self._holders(at),
             self._run.calls.pending(at),
             self.logs_until(at),

@@ -1,4 +1,4 @@
-"""Which callbacks were ready and did not run, when and why."""
+"""The waits of ready callbacks, with their reasons."""
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
@@ -6,17 +6,17 @@ from collections.abc import Iterator, Sequence
 from sim.trace.events import EntityId, Reason, WaitStarted
 from sim.trace.model import Nanoseconds, Wait, Window
 from sim.trace.storage.intervals import OPEN, Answer, Intervals, Lane, Row, end_or_none
-from sim.trace.storage.spill import Spill
+from sim.trace.storage.spill_file import SpillFile
 
 _REASONS = tuple(Reason)
 
 
 class Waiting(Intervals):
-    """The table of all waits, and a lane of them for each entity."""
+    """All waits of a run, by entity."""
 
     SINCE, ENTITY, HOLDER, REASON, WORKERS_BUSY = range(2, 7)
 
-    def __init__(self, spill: Spill) -> None:
+    def __init__(self, spill: SpillFile) -> None:
         super().__init__(spill, more=5)
         self._lanes: defaultdict[EntityId, Lane] = defaultdict(lambda: Lane(self))
         self._latest: dict[EntityId, Row] = {}

@@ -25,7 +25,7 @@ from cbtui.screens.replay import ReplayScreen
 from sim.export import CallTable
 from sim.recording import About, read
 from sim.trace.events import AnyEvent
-from sim.trace.storage.tape import Tape
+from sim.trace.storage.event_store import EventStore
 from tests.app.pictures import lines_of, text_of
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
@@ -163,9 +163,9 @@ async def test_no_file_is_ever_replaced(folder: Path, monkeypatch: pytest.Monkey
 
 
 def test_a_file_that_comes_in_between_is_left_alone(folder: Path) -> None:
-    tape = Tape()
-    tape.take(EVENTS)
-    export = LiveExport(Material("run", tape, EVENTS[-1].t), "csv", None)
+    store = EventStore()
+    store.take(EVENTS)
+    export = LiveExport(Material("run", store, EVENTS[-1].t), "csv", None)
     taken = export._path
     taken.write_text("precious")
     assert export.write() == f"Nothing was exported: cannot write {taken}: File exists"
@@ -173,9 +173,9 @@ def test_a_file_that_comes_in_between_is_left_alone(folder: Path) -> None:
 
 
 def test_a_folder_that_takes_no_file_is_told_of(folder: Path) -> None:
-    tape = Tape()
-    tape.take(EVENTS)
-    export = LiveExport(Material("run", tape, EVENTS[-1].t), "svg", None)
+    store = EventStore()
+    store.take(EVENTS)
+    export = LiveExport(Material("run", store, EVENTS[-1].t), "svg", None)
     folder.rmdir()
     assert export.write() == f"Nothing was exported: cannot write {export._path}: No such file or directory"
 
@@ -197,9 +197,9 @@ async def test_a_full_disk_is_told_of_and_leaves_no_file(
 
 
 def test_what_a_tape_does_not_hold_is_said_with_the_file() -> None:
-    tape = Tape()
-    tape.take(EVENTS)
-    export = LiveExport(Material("run", tape, EVENTS[-1].t, "what came later is missing"), "csv", None)
+    store = EventStore()
+    store.take(EVENTS)
+    export = LiveExport(Material("run", store, EVENTS[-1].t, "what came later is missing"), "csv", None)
     assert export.write() == f"Exported to {export._path}; what came later is missing"
 
 
@@ -209,16 +209,16 @@ class SlowDisk:
     def __init__(self, monkeypatch: pytest.MonkeyPatch) -> None:
         self.go_on = Event()
         self.held = Event()
-        batches = Tape.batches
+        batches = EventStore.batches
 
-        def held_back(tape: Tape) -> Iterator[list[AnyEvent]]:
-            events = [event for batch in batches(tape) for event in batch]
+        def held_back(store: EventStore) -> Iterator[list[AnyEvent]]:
+            events = [event for batch in batches(store) for event in batch]
             yield events[:-10]
             self.held.set()
             assert self.go_on.wait(60), "nobody but the test waits for the disk"
             yield events[-10:]
 
-        monkeypatch.setattr(Tape, "batches", held_back)
+        monkeypatch.setattr(EventStore, "batches", held_back)
 
     async def comes(self, pilot: Pilot[None]) -> None:
         """Wait until the export is held back."""

@@ -16,7 +16,7 @@ from cbtui.engines.session import Session
 from cbtui.runs.setup.lesson_setup import setup_for, setup_for_files
 from lessons.catalogue import find
 from sim.engine.setup import RobotUse, RunSetup
-from sim.recording import About, Beginning, Recorder, read
+from sim.recording import About, Recorder, RunSnapshot, read
 from sim.ros.interfaces import to_cdr
 from sim.trace.events import (
     AnyEvent,
@@ -133,10 +133,10 @@ def following(calls: int) -> float:
     """The seconds that an event of a run takes of which nothing is recorded yet."""
     ticks = range(max(1, calls // 8))
     batches = [_tick(tick * _PERIOD, tick) for tick in ticks]
-    beginning = Beginning()
+    snapshot = RunSnapshot()
     began = time.perf_counter()
     for batch in batches:
-        beginning.take(batch)
+        snapshot.take(batch)
     return (time.perf_counter() - began) / (8 * len(batches))
 
 

@@ -18,7 +18,7 @@ from sim.trace.events import (
     WaitStarted,
 )
 from sim.trace.figures.comparison import compare
-from sim.trace.figures.comparison_rows import Row, Verdict, extent, sections
+from sim.trace.figures.comparison_rows import Assessment, ComparisonRow, extent, sections
 from sim.trace.figures.comparison_text import comparison_text
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
@@ -108,7 +108,7 @@ def moved(t: float, travelled: float, *, touching: bool = False, yaw: float = 0.
     return RobotMoved(ns(t), travelled, 0.0, yaw, 1.0, 0.1, 0.0, True, touching, yaw, travelled)
 
 
-def rows_of(first: Timeline, second: Timeline, title: str) -> dict[str, Row]:
+def rows_of(first: Timeline, second: Timeline, title: str) -> dict[str, ComparisonRow]:
     compared = compare(first, second, Window(0, ns(4.0)))
     (section,) = (each for each in sections(compared) if each.title == title)
     return {row.label: row for row in section.rows}
@@ -140,7 +140,7 @@ def test_callbacks_match_by_their_node_as_long_as_that_tells_them_apart() -> Non
 
 def test_a_callback_that_never_ran_is_no_callback_that_is_missing() -> None:
     rows = rows_of(run([ODOM], called(1, 1.0, 1.1)), run([ODOM], []), ODOM)
-    assert rows["calls"] == Row("calls", ("1", "0"), "-1 fewer")
+    assert rows["calls"] == ComparisonRow("calls", ("1", "0"), "-1 fewer")
 
 
 def test_what_only_one_run_has_is_listed_as_such() -> None:
@@ -153,14 +153,14 @@ def test_what_only_one_run_has_is_listed_as_such() -> None:
 
 def test_a_difference_has_a_sign_a_word_and_a_meaning() -> None:
     there, back = rows_of(starved(), healthy(), ODOM), rows_of(healthy(), starved(), ODOM)
-    told = {label: (row.difference, row.verdict) for label, row in there.items()}
+    told = {label: (row.difference, row.assessment) for label, row in there.items()}
     assert told == {
-        "calls": ("+1 more", Verdict.OTHER),
-        "drops": ("-2 fewer", Verdict.BETTER),
-        "wait med/max": ("max -2.0 s shorter", Verdict.BETTER),
-        "age med/max": ("max -1.8 s fresher", Verdict.BETTER),
+        "calls": ("+1 more", Assessment.OTHER),
+        "drops": ("-2 fewer", Assessment.BETTER),
+        "wait med/max": ("max -2.0 s shorter", Assessment.BETTER),
+        "age med/max": ("max -1.8 s fresher", Assessment.BETTER),
     }
-    assert (back["drops"].difference, back["drops"].verdict) == ("+2 more", Verdict.WORSE)
+    assert (back["drops"].difference, back["drops"].assessment) == ("+2 more", Assessment.WORSE)
     assert back["age med/max"].difference == "max +1.8 s older"
 
 
@@ -190,14 +190,14 @@ def test_what_the_robot_did_is_compared_in_words() -> None:
     rows = rows_of(straight, clumsy, "whole program")
     assert rows["robot travelled"].difference == "-0.25 m less far"
     assert rows["robot turned"].difference == "+1.6 rad more"
-    assert rows["collisions"] == Row("collisions", ("0", "2"), "+2 more", Verdict.WORSE)
+    assert rows["collisions"] == ComparisonRow("collisions", ("0", "2"), "+2 more", Assessment.WORSE)
     assert rows["robot at x y"].difference == "0.25 m apart"
     assert rows["heading"].difference == "-90° right"
 
 
 def test_a_run_without_a_robot_has_no_figures_of_one() -> None:
     rows = rows_of(run([], [moved(0.0, 0.0)]), run([], []), "whole program")
-    assert rows["collisions"] == Row("collisions", ("0", "-"))
+    assert rows["collisions"] == ComparisonRow("collisions", ("0", "-"))
     assert "collisions" not in rows_of(run([], []), run([], []), "whole program")
 
 

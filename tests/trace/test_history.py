@@ -9,25 +9,25 @@ from hypothesis import strategies as st
 from sim.trace.events import CommandGiven
 from sim.trace.model import Window
 from sim.trace.storage.history import History
-from sim.trace.storage.spill import Spill
+from sim.trace.storage.spill_file import SpillFile
 
 times = st.integers(-20, 20)
 items = st.lists(st.builds(CommandGiven, times, st.text(max_size=3)), max_size=60)
-spills = st.builds(Spill, at_hand=st.integers(1, 400), entries=st.integers(1, 7))
+spills = st.builds(SpillFile, cache_size=st.integers(1, 400), entries=st.integers(1, 7))
 
 
-class CountingSpill(Spill):
-    """Counts what is put by."""
+class CountingSpillFile(SpillFile):
+    """Counts the blocks that are stored."""
 
     count = 0
 
-    def put(self, data: bytes) -> int:
-        """Take it, and count."""
+    def append(self, data: bytes) -> int:
+        """Store and count a block."""
         self.count += 1
-        return super().put(data)
+        return super().append(data)
 
 
-def history_of(spill: Spill, items: list[CommandGiven]) -> History[CommandGiven]:
+def history_of(spill: SpillFile, items: list[CommandGiven]) -> History[CommandGiven]:
     history: History[CommandGiven] = History(attrgetter("t"), CommandGiven, spill)
     for item in items:
         history.add(item)
@@ -42,7 +42,7 @@ def in_order(items: list[CommandGiven]) -> list[CommandGiven]:
 
 
 @given(spills, items)
-def test_items_stand_in_order_of_time_then_of_arrival(spill: Spill, items: list[CommandGiven]) -> None:
+def test_items_stand_in_order_of_time_then_of_arrival(spill: SpillFile, items: list[CommandGiven]) -> None:
     history, naive = history_of(spill, items), in_order(items)
     assert len(history) == len(naive)
     assert history == naive
@@ -51,13 +51,13 @@ def test_items_stand_in_order_of_time_then_of_arrival(spill: Spill, items: list[
 
 
 @given(spills, items, st.slices(60))
-def test_a_history_is_cut_like_a_list(spill: Spill, items: list[CommandGiven], cut: slice) -> None:
+def test_a_history_is_cut_like_a_list(spill: SpillFile, items: list[CommandGiven], cut: slice) -> None:
     assert history_of(spill, items)[cut] == in_order(items)[cut]
 
 
 @given(spills, items, times, times)
 def test_a_window_and_a_moment_are_found_by_time(
-    spill: Spill, items: list[CommandGiven], start: int, end: int
+    spill: SpillFile, items: list[CommandGiven], start: int, end: int
 ) -> None:
     history, naive = history_of(spill, items), in_order(items)
     assert history.within(Window(start, end)) == [item for item in naive if start <= item.t < end]
@@ -68,7 +68,7 @@ def test_a_window_and_a_moment_are_found_by_time(
 
 
 def test_many_that_come_very_late_do_not_each_have_everything_spilled_anew() -> None:
-    spill = CountingSpill(at_hand=100, entries=4)
+    spill = CountingSpillFile(cache_size=100, entries=4)
     early = [CommandGiven(at, "early") for at in range(400)]
     history = history_of(spill, [CommandGiven(at, "late") for at in range(400, 800)] + early)
     assert spill.count <= 400 // 4

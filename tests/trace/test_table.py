@@ -5,18 +5,18 @@ from bisect import bisect_left, bisect_right, insort_right
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim.trace.storage.spill import Spill
+from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import Table
 
 rows = st.lists(st.tuples(st.integers(-20, 20), st.integers(-(2**63), 2**63 - 1)), max_size=60)
-spills = st.builds(Spill, at_hand=st.integers(1, 400), entries=st.integers(1, 7))
+spills = st.builds(SpillFile, cache_size=st.integers(1, 400), entries=st.integers(1, 7))
 
 
 def key(row: tuple[int, int]) -> int:
     return row[0]
 
 
-def table_of(spill: Spill, rows: list[tuple[int, int]]) -> Table:
+def table_of(spill: SpillFile, rows: list[tuple[int, int]]) -> Table:
     table = Table(spill, 2)
     for row in rows:
         table.add(list(row))
@@ -25,7 +25,7 @@ def table_of(spill: Spill, rows: list[tuple[int, int]]) -> Table:
 
 @given(spills, rows)
 def test_rows_stand_in_order_of_their_first_cell_then_of_arrival(
-    spill: Spill, rows: list[tuple[int, int]]
+    spill: SpillFile, rows: list[tuple[int, int]]
 ) -> None:
     table, naive = table_of(spill, rows), list[tuple[int, int]]()
     for row in rows:
@@ -37,7 +37,7 @@ def test_rows_stand_in_order_of_their_first_cell_then_of_arrival(
 
 
 @given(spills, rows)
-def test_appended_rows_keep_the_numbers_they_got(spill: Spill, rows: list[tuple[int, int]]) -> None:
+def test_appended_rows_keep_the_numbers_they_got(spill: SpillFile, rows: list[tuple[int, int]]) -> None:
     table = Table(spill, 2)
     assert [table.append(list(row)) for row in rows] == list(range(len(rows)))
     assert [(table.cell(number, 0), table.cell(number, 1)) for number in range(len(rows))] == rows
@@ -45,7 +45,7 @@ def test_appended_rows_keep_the_numbers_they_got(spill: Spill, rows: list[tuple[
 
 @given(spills, rows, st.integers(-21, 21))
 def test_a_search_finds_how_many_rows_begin_before_and_until_a_key(
-    spill: Spill, rows: list[tuple[int, int]], at: int
+    spill: SpillFile, rows: list[tuple[int, int]], at: int
 ) -> None:
     table, naive = table_of(spill, rows), sorted(rows, key=key)
     assert table.before(at) == bisect_left(naive, at, key=key)
@@ -54,7 +54,7 @@ def test_a_search_finds_how_many_rows_begin_before_and_until_a_key(
 
 @given(spills, rows, st.slices(60))
 def test_a_column_is_cut_and_walked_like_a_list(
-    spill: Spill, rows: list[tuple[int, int]], cut: slice
+    spill: SpillFile, rows: list[tuple[int, int]], cut: slice
 ) -> None:
     table = Table(spill, 2)
     for row in rows:
@@ -68,7 +68,7 @@ def test_a_column_is_cut_and_walked_like_a_list(
 
 @given(spills, rows, st.lists(st.tuples(st.integers(0, 59), st.integers(0, 1), st.integers(-99, 99))))
 def test_a_changed_cell_stays_changed(
-    spill: Spill, rows: list[tuple[int, int]], changes: list[tuple[int, int, int]]
+    spill: SpillFile, rows: list[tuple[int, int]], changes: list[tuple[int, int, int]]
 ) -> None:
     table, naive = Table(spill, 2), [list(row) for row in rows]
     for row in rows:
@@ -82,7 +82,7 @@ def test_a_changed_cell_stays_changed(
 
 @given(spills, rows, st.integers(0, 10))
 def test_the_newest_cells_are_the_last_ones_of_their_column(
-    spill: Spill, rows: list[tuple[int, int]], count: int
+    spill: SpillFile, rows: list[tuple[int, int]], count: int
 ) -> None:
     table = Table(spill, 2)
     for row in rows:

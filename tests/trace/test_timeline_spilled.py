@@ -30,7 +30,7 @@ from sim.trace.events import (
     WaitStarted,
 )
 from sim.trace.model import Window
-from sim.trace.storage.spill import Spill
+from sim.trace.storage.spill_file import SpillFile
 from sim.trace.timeline import Timeline
 from tests.support.daily import first_daily
 from tests.trace.naive import Naive, overlaps
@@ -51,7 +51,7 @@ ALWAYS = Window(0, 10**15)
 def spilling(entries: int) -> Timeline:
     """A timeline of blocks of so many entries, of which a few are at hand."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(folding, "Spill", partial(Spill, at_hand=300, entries=entries))
+        patch.setattr(folding, "SpillFile", partial(SpillFile, cache_size=300, entries=entries))
         return Timeline()
 
 

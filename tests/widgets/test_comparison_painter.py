@@ -4,22 +4,25 @@ import pytest
 
 from cbtui.looks.theme import Charset, Role
 from cbtui.widgets.comparison_painter import BLOCK, Line, headings, table
-from sim.trace.figures.comparison_rows import Row, Section, Verdict
+from sim.trace.figures.comparison_rows import Assessment, ComparisonRow, Section
 
 CALLBACKS = tuple(
     Section(
         f"{name}_callback",
         (
-            Row("calls", ("79", "399"), "+320 more"),
-            Row("drops", ("310", "0"), "-310 fewer", Verdict.BETTER),
-            Row("wait med/max", ("100 ms / 16.0 s", "0 s / 0 s"), "max -16.0 s shorter", Verdict.BETTER),
+            ComparisonRow("calls", ("79", "399"), "+320 more"),
+            ComparisonRow("drops", ("310", "0"), "-310 fewer", Assessment.BETTER),
+            ComparisonRow(
+                "wait med/max", ("100 ms / 16.0 s", "0 s / 0 s"), "max -16.0 s shorter", Assessment.BETTER
+            ),
         ),
         ("run A waits: group A held by timer_callback",),
     )
     for name in ("odom", "scan")
 )
 WHOLE = Section(
-    "whole program", (Row("heading", ("-60°", "30°"), "+90° left"), Row("at once", ("1", "1"), "same"))
+    "whole program",
+    (ComparisonRow("heading", ("-60°", "30°"), "+90° left"), ComparisonRow("at once", ("1", "1"), "same")),
 )
 SECTIONS = (*CALLBACKS, WHOLE)
 
@@ -77,6 +80,6 @@ def test_an_ascii_table_is_ascii() -> None:
 
 
 def test_what_is_worse_is_in_another_ink_beside_its_sign_and_word() -> None:
-    worse = Section("scan", (Row("drops", ("0", "3"), "+3 more", Verdict.WORSE),))
+    worse = Section("scan", (ComparisonRow("drops", ("0", "3"), "+3 more", Assessment.WORSE),))
     (_, row) = table((worse,), BLOCK, Charset.BRAILLE)
     assert [run.ink.role for run in row if "+3 more" in run.text] == [Role.WARN]

@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 from cbtui.runs.recorded.recording_file import NameTakenError, start_recording
 from sim.engine.setup import RunSetup
-from sim.recording import BackgroundRecorder, Beginning, Recorder
+from sim.recording import BackgroundRecorder, Recorder, RunSnapshot
 from sim.trace.events import AnyEvent
 
 Finish: TypeAlias = Callable[[], str]
@@ -30,7 +30,7 @@ class LiveRecording:
 
     def __init__(self, setup: RunSetup) -> None:
         self._setup = setup
-        self._beginning = Beginning()
+        self._snapshot = RunSnapshot()
         self._recorder: BackgroundRecorder | None = None
 
     @property
@@ -60,7 +60,7 @@ class LiveRecording:
             CannotRecordError: it cannot be made.
         """
         self._recorder = BackgroundRecorder(self._recorder_here(_QUICKER))
-        self._recorder.take(self._beginning.events())
+        self._recorder.take(self._snapshot.events())
         return f"Recording to {self._recorder.path}; {key} again ends it"
 
     def _recorder_here(self, tries: int) -> Recorder:
@@ -73,7 +73,7 @@ class LiveRecording:
 
     def take(self, events: list[AnyEvent]) -> str | None:
         """Follow the run; a sentence if its recording came to an end for it cannot be written."""
-        self._beginning.take(events)
+        self._snapshot.take(events)
         recorder = self._recorder
         if recorder is None:
             return None

@@ -27,11 +27,11 @@ from sim.engine.commands import (
     Type,
 )
 from sim.engine.setup import RunSetup
+from sim.trace.descriptions import name_of
 from sim.trace.events import AnyEvent, CommandGiven, EntityId, KeyboardAsked, Notice, TimeHalted
 from sim.trace.model import Nanoseconds
-from sim.trace.storage.tape import Tape
+from sim.trace.storage.event_store import EventStore
 from sim.trace.timeline import Timeline
-from sim.trace.words import name_of
 
 SPEEDS: tuple[float | None, ...] = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, None)
 """Seconds of a run per real second that can be chosen; None, virtual only, is as fast as the engine can."""
@@ -80,7 +80,7 @@ class LiveRun:
         self.timeline = Timeline(until_ending=setup.until is not None)
         self._room = DiskSpaceWatch(self.timeline)
         self._recording = LiveRecording(setup)
-        self._tape = Tape()
+        self._events = EventStore()
         self.speed = setup.speed if self.virtual else setup.speed or 1.0
         self.loss: str | None = None
         self.paused = False
@@ -138,7 +138,7 @@ class LiveRun:
     def take(self, events: list[AnyEvent]) -> str | None:
         """Add what the session delivered; a sentence on what it could not be kept in, or soon cannot."""
         self.timeline.extend(events)
-        self._tape.take(events)
+        self._events.take(events)
         self._silent = False
         for event in events if not _CHANGES_STATE.isdisjoint(map(type, events)) else ():
             if isinstance(event, Notice):
@@ -202,7 +202,7 @@ class LiveRun:
 
     def material(self) -> Material:
         """What there is to export of the run so far."""
-        return Material(self.setup.title, self._tape, self.timeline.end, self._tape.missing)
+        return Material(self.setup.title, self._events, self.timeline.end, self._events.missing)
 
     def call(self, data: bool) -> None:
         """Call the SetBool service that the run was set up with, or else the program's first."""

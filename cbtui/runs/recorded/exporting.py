@@ -31,7 +31,7 @@ _SECOND = 1_000_000_000
 
 
 class Source(Protocol):
-    """Where events come from: an open recording, or the tape of a run."""
+    """Where events come from: an open recording, or the event store of a live run."""
 
     def batches(self) -> "Iterator[list[AnyEvent]]":
         """The events, batch after batch."""

@@ -7,8 +7,8 @@ from cbtui.text.durations import duration
 from cbtui.widgets.diagnosis import call_note, diagnose
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.details import details_of_selection
+from sim.trace.descriptions import executor_label, name_of, why_waiting
 from sim.trace.model import Nanoseconds
-from sim.trace.words import executor_label, name_of, why_waiting
 
 
 class TakingScreen(SelectingScreen):

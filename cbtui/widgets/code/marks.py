@@ -9,11 +9,11 @@ from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.text.durations import duration
 from cbtui.widgets.code.files import SourceFile, SourceFiles
 from cbtui.widgets.lanes.names import short_thread
+from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId
 from sim.trace.model import Entity, Moment, Nanoseconds, Span, Window
 from sim.trace.roster import roster_of
 from sim.trace.timeline import Timeline
-from sim.trace.words import why_waiting
 
 JUST_NOW: Nanoseconds = 250_000_000
 """How long a callback that has returned stays marked, so that a short one is seen at all."""

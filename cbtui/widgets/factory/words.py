@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from cbtui.text.durations import duration
 from cbtui.widgets.factory.scene import Area, Belt, Scene, Stay, Worker
 from cbtui.widgets.lanes.status import short
+from sim.trace.descriptions import name_of
 from sim.trace.events import EntityKind, GroupKind, Reason
 from sim.trace.model import Entity, Nanoseconds
 from sim.trace.timeline import Timeline
-from sim.trace.words import name_of
 
 _LATE_AT_LEAST: Nanoseconds = 1_000_000
 

@@ -11,10 +11,10 @@ from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.lanes.scale import Scale
 from cbtui.widgets.lanes.selection import Bar, end_of, start_of
 from cbtui.widgets.lanes.status import is_late, short
+from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
 from sim.trace.model import Blocked, Entity, Group, Nanoseconds, Span, Wait
 from sim.trace.timeline import Timeline
-from sim.trace.words import why_waiting
 
 _WAIT_SHOWS_FROM = 2
 """Eighths of a column: shorter waits beside calls are not worth hatching."""

@@ -8,10 +8,10 @@ from cbtui.widgets.lanes.keys import USUAL_KEYS, LaneKeys
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLane, ThreadLane
 from cbtui.widgets.lanes.selection import Bar, Selection
+from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import EntityId, EntityKind
 from sim.trace.model import Call, Entity, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
-from sim.trace.words import name_of, why_waiting
 
 _FIRST_REACH: Nanoseconds = 1_000_000
 _MOST_REASONS = 2

@@ -6,13 +6,13 @@ from dataclasses import dataclass, replace
 from itertools import groupby
 from typing import TypeAlias
 
-from sim.trace.figures.concurrency import threads_in_slices
-from sim.trace.figures.statistics import CallbackStatistics, statistics_in_slices
-from sim.trace.figures.summary import RobotFigures, robot_in_slices, trail_in_parts
+from sim.trace.descriptions import why_waiting
+from sim.trace.figures.concurrency import threads_incrementally
+from sim.trace.figures.statistics import CallbackStatistics, statistics_incrementally
+from sim.trace.figures.summary import RobotFigures, robot_incrementally, trail_in_parts
+from sim.trace.incremental import STEP_SIZE, Incremental, collect, run_to_end
 from sim.trace.model import Entity, Nanoseconds, Wait, Window
-from sim.trace.slices import PIECE, Slices, at_once, listed
 from sim.trace.timeline import Timeline
-from sim.trace.words import why_waiting
 
 Key: TypeAlias = tuple[str, str, str, str, int]
 """What a callback is in any run: node, kind, callback, topic or service, and its number among equals."""
@@ -90,10 +90,10 @@ def compare(first: Timeline, second: Timeline, window: Window) -> Comparison:
     Those that have no such partner match without their node, if that leaves no doubt. Takes time in
     proportion to the calls and waits in the window.
     """
-    return at_once(compare_in_slices(first, second, window))
+    return run_to_end(compare_incrementally(first, second, window))
 
 
-def compare_in_slices(first: Timeline, second: Timeline, window: Window) -> Slices[Comparison]:
+def compare_incrementally(first: Timeline, second: Timeline, window: Window) -> Incremental[Comparison]:
     """The same in small pieces. The runs may go on in between: what comes after the window plays no part."""
     of_first = yield from _sides(first, window)
     of_second = yield from _sides(second, window)
@@ -135,14 +135,14 @@ def _long_name(key: Key) -> str:
     return f"{_short_name(key)} ({place}{f' #{number}' if number > 1 else ''})"
 
 
-def _sides(timeline: Timeline, window: Window) -> Slices[dict[Key, Side]]:
+def _sides(timeline: Timeline, window: Window) -> Incremental[dict[Key, Side]]:
     equals: Counter[tuple[str, str, str, str]] = Counter()
     sides: dict[Key, Side] = {}
     for entity in tuple(timeline.entities.values()):
         alike = _description(entity, timeline)
         equals[alike] += 1
         waits = yield from _wait_figures(timeline.waits_of(entity.id, window), timeline, window)
-        figures = yield from statistics_in_slices(timeline, entity.id, window)
+        figures = yield from statistics_incrementally(timeline, entity.id, window)
         sides[*alike, equals[alike]] = Side(figures, waits)
     return sides
 
@@ -151,10 +151,12 @@ def _description(entity: Entity, timeline: Timeline) -> tuple[str, str, str, str
     return timeline.nodes.get(entity.node, ""), entity.kind.value, entity.callback, entity.name
 
 
-def _wait_figures(waits: Sequence[Wait], timeline: Timeline, window: Window) -> Slices[WaitFigures | None]:
+def _wait_figures(
+    waits: Sequence[Wait], timeline: Timeline, window: Window
+) -> Incremental[WaitFigures | None]:
     """Lengths are of what lies in the window; the waits of one series share the time since when they are."""
     shares: defaultdict[str, int] = defaultdict(int)
-    lengths = yield from listed(
+    lengths = yield from collect(
         (wait.since, why_waiting(wait, timeline), _part(wait, timeline, window)) for wait in waits
     )
     longest = length = latest = 0
@@ -163,7 +165,7 @@ def _wait_figures(waits: Sequence[Wait], timeline: Timeline, window: Window) -> 
         length = length + part if since == latest else part
         latest = since
         longest = max(longest, length)
-        if number % PIECE == 0:
+        if number % STEP_SIZE == 0:
             yield
     if not longest:
         return None
@@ -176,16 +178,16 @@ def _part(wait: Wait, timeline: Timeline, window: Window) -> Nanoseconds:
     return max(0, min(end, window.end) - max(wait.start, window.start))
 
 
-def _run_figures(timeline: Timeline, window: Window) -> Slices[RunFigures]:
+def _run_figures(timeline: Timeline, window: Window) -> Incremental[RunFigures]:
     used = 0
     for thread in tuple(timeline.threads):
         used += bool(timeline.spans_on(thread, window))
         yield
-    robot = yield from robot_in_slices(timeline, window)
+    robot = yield from robot_incrementally(timeline, window)
     before = timeline.robot(window.start)
     if robot is not None and before is not None:
         robot = replace(robot, travelled=robot.travelled - before.travelled)
-    touching = yield from listed(pose.touching for pose in trail_in_parts(timeline, window))
+    touching = yield from collect(pose.touching for pose in trail_in_parts(timeline, window))
     collisions = sum(touches for touches, _ in groupby(touching))
-    most = yield from threads_in_slices(timeline, window)
+    most = yield from threads_incrementally(timeline, window)
     return RunFigures(timeline.end, used, most, robot, collisions)

@@ -1,4 +1,4 @@
-"""A comparison of two runs as the rows of a table: figures, what is different, and which way."""
+"""A comparison of two runs as rows of a table: both figures, the difference, and whether it is better."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -18,8 +18,8 @@ DIFFERENCE = "B against A"
 NOTHING = "-"
 
 
-class Verdict(Enum):
-    """What a difference means: the second run does better, worse, or only otherwise."""
+class Assessment(Enum):
+    """Whether the second run is better than the first, worse, or merely different."""
 
     SAME = auto()
     BETTER = auto()
@@ -28,13 +28,13 @@ class Verdict(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Row:
-    """A figure of both runs, and in words how the second differs from the first: ``-392 fewer``."""
+class ComparisonRow:
+    """One figure of both runs, and the difference in words: ``-392 fewer``."""
 
     label: str
     figures: tuple[str, str]
     difference: str = ""
-    verdict: Verdict = Verdict.OTHER
+    assessment: Assessment = Assessment.OTHER
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class Section:
     """The rows of one callback, or of the runs as a whole; ``notes`` are sentences below them."""
 
     title: str
-    rows: tuple[Row, ...]
+    rows: tuple[ComparisonRow, ...]
     notes: tuple[str, ...] = ()
 
 
@@ -117,7 +117,7 @@ def _seconds(nanoseconds: int) -> str:
     return f"{round(nanoseconds / 1e9, 3):g}" if nanoseconds < 100_000_000_000 else f"{nanoseconds / 1e9:.1f}"
 
 
-def _whole(first: RunFigures, second: RunFigures) -> Iterator[Row]:
+def _whole(first: RunFigures, second: RunFigures) -> Iterator[ComparisonRow]:
     yield _row("threads used", first.threads_used, second.threads_used, _COUNTS)
     yield _row("at once", first.threads_at_once, second.threads_at_once, _COUNTS)
     if first.robot is None and second.robot is None:
@@ -140,14 +140,16 @@ _ROBOT_FIGURES: tuple[tuple[str, Callable[[RobotFigures], Figure], _Words], ...]
 )
 
 
-def _place(first: RobotFigures | None, second: RobotFigures | None) -> Row:
+def _place(first: RobotFigures | None, second: RobotFigures | None) -> ComparisonRow:
     figures = _of_both(lambda robot: f"{_places(robot.x)} {_places(robot.y)} m", first, second)
     label = "robot at x y"
     if first is None or second is None:
-        return Row(label, figures)
+        return ComparisonRow(label, figures)
     if figures[0] == figures[1]:
-        return Row(label, figures, "same", Verdict.SAME)
-    return Row(label, figures, f"{_metres(math.hypot(first.x - second.x, first.y - second.y))} apart")
+        return ComparisonRow(label, figures, "same", Assessment.SAME)
+    return ComparisonRow(
+        label, figures, f"{_metres(math.hypot(first.x - second.x, first.y - second.y))} apart"
+    )
 
 
 def _places(metres: float) -> str:
@@ -155,14 +157,14 @@ def _places(metres: float) -> str:
     return f"{round(metres, 2) + 0.0:.2f}"
 
 
-def _heading(first: RobotFigures | None, second: RobotFigures | None) -> Row:
+def _heading(first: RobotFigures | None, second: RobotFigures | None) -> ComparisonRow:
     figures = _of_both(lambda robot: f"{_degrees(robot.yaw)}°", first, second)
     if first is None or second is None:
-        return Row("heading", figures)
+        return ComparisonRow("heading", figures)
     turned = _degrees(math.remainder(second.yaw - first.yaw, math.tau))
     if turned == 0:
-        return Row("heading", figures, "same", Verdict.SAME)
-    return Row("heading", figures, f"{turned:+}° {'left' if turned > 0 else 'right'}")
+        return ComparisonRow("heading", figures, "same", Assessment.SAME)
+    return ComparisonRow("heading", figures, f"{turned:+}° {'left' if turned > 0 else 'right'}")
 
 
 def _degrees(radians: float) -> int:
@@ -192,7 +194,7 @@ def _section(pair: Pair) -> Section:
     return Section(title, tuple(_rows(first, second)), tuple(notes))
 
 
-def _rows(first: Side | None, second: Side | None) -> Iterator[Row]:
+def _rows(first: Side | None, second: Side | None) -> Iterator[ComparisonRow]:
     for label, figure, words in _FIGURES:
         one, other = _asked(figure, first), _asked(figure, second)
         if one is not None or other is not None:
@@ -233,24 +235,26 @@ _SPREADS: tuple[tuple[str, Callable[[Side], _Spread | None], _Words], ...] = (
 )
 
 
-def _row(label: str, first: Figure, second: Figure, words: _Words) -> Row:
+def _row(label: str, first: Figure, second: Figure, words: _Words) -> ComparisonRow:
     figures = _of_both(words.write, first, second)
     if first is None or second is None:
-        return Row(label, figures)
-    return Row(label, figures, *_difference(first, second, words))
+        return ComparisonRow(label, figures)
+    return ComparisonRow(label, figures, *_difference(first, second, words))
 
 
-def _spread_row(label: str, first: _Spread | None, second: _Spread | None, words: _Words) -> Row:
+def _spread_row(label: str, first: _Spread | None, second: _Spread | None, words: _Words) -> ComparisonRow:
     """A row of two spreads; what differs is told of the highest, and of the usual if only that differs."""
     figures = _of_both(lambda spread: _spread_text(spread, words), first, second)
     if first is None or second is None:
-        return Row(label, figures)
+        return ComparisonRow(label, figures)
     which = "max"
-    text, verdict = _difference(first.most, second.most, words)
-    if verdict is Verdict.SAME and first.median is not None and second.median is not None:
+    text, assessment = _difference(first.most, second.most, words)
+    if assessment is Assessment.SAME and first.median is not None and second.median is not None:
         which = "med"
-        text, verdict = _difference(first.median, second.median, words)
-    return Row(label, figures, text if verdict is Verdict.SAME else f"{which} {text}", verdict)
+        text, assessment = _difference(first.median, second.median, words)
+    return ComparisonRow(
+        label, figures, text if assessment is Assessment.SAME else f"{which} {text}", assessment
+    )
 
 
 def _spread_text(spread: _Spread, words: _Words) -> str:
@@ -258,13 +262,13 @@ def _spread_text(spread: _Spread, words: _Words) -> str:
     return f"{median} / {words.write(spread.most)}"
 
 
-def _difference(first: float, second: float, words: _Words) -> tuple[str, Verdict]:
+def _difference(first: float, second: float, words: _Words) -> tuple[str, Assessment]:
     """In words, as exactly as the figures themselves are written."""
     if words.write(first) == words.write(second):
-        return "same", Verdict.SAME
+        return "same", Assessment.SAME
     step = second - first
     sign, word = ("+", words.higher) if step > 0 else ("-", words.lower)
-    verdict = Verdict.OTHER
+    assessment = Assessment.OTHER
     if words.more_is_worse:
-        verdict = Verdict.WORSE if step > 0 else Verdict.BETTER
-    return f"{sign}{words.write(abs(step))} {word}", verdict
+        assessment = Assessment.WORSE if step > 0 else Assessment.BETTER
+    return f"{sign}{words.write(abs(step))} {word}", assessment

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from sim.trace.figures.comparison import Comparison
-from sim.trace.figures.comparison_rows import DIFFERENCE, RUNS, Row, Section, extent, sections
+from sim.trace.figures.comparison_rows import DIFFERENCE, RUNS, ComparisonRow, Section, extent, sections
 
 _GAP = "  "
 
@@ -11,7 +11,7 @@ _GAP = "  "
 def comparison_text(comparison: Comparison, first: str, second: str) -> str:
     """The whole comparison, ending in a newline; ``first`` and ``second`` are what the runs are called."""
     shown = sections(comparison)
-    head = Row("", RUNS, DIFFERENCE)
+    head = ComparisonRow("", RUNS, DIFFERENCE)
     rows = [head, *(row for section in shown for row in section.rows)]
     widths = (
         max(len(row.label) for row in rows) + len(_GAP),
@@ -32,7 +32,7 @@ def _lines(section: Section, widths: tuple[int, int, int]) -> Iterator[str]:
         yield f"{_GAP}{note}"
 
 
-def _line(row: Row, widths: tuple[int, int, int]) -> str:
+def _line(row: ComparisonRow, widths: tuple[int, int, int]) -> str:
     label, first, second = widths
     cells = (
         f"{_GAP if row.label else ''}{row.label}".ljust(label),

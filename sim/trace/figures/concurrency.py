@@ -5,8 +5,8 @@ from collections.abc import Iterator, Sequence
 from enum import IntEnum
 from operator import itemgetter
 
+from sim.trace.incremental import Incremental, run_to_end, split
 from sim.trace.model import Nanoseconds, Span, Window
-from sim.trace.slices import Slices, at_once, parts
 from sim.trace.timeline import Timeline
 
 _SETTLED_AFTER: Nanoseconds = 1_000_000_000
@@ -44,13 +44,13 @@ class Concurrency:
 
 def threads_at_once(timeline: Timeline, window: Window) -> int:
     """Return the most threads that ran callbacks at one moment of the window."""
-    return at_once(threads_in_slices(timeline, window))
+    return run_to_end(threads_incrementally(timeline, window))
 
 
-def threads_in_slices(timeline: Timeline, window: Window) -> Slices[int]:
+def threads_incrementally(timeline: Timeline, window: Window) -> Incremental[int]:
     """The same in small pieces."""
     best = 0
-    for part in parts(window, sum(timeline.calls_of(entity, window) for entity in timeline.entities)):
+    for part in split(window, sum(timeline.calls_of(entity, window) for entity in timeline.entities)):
         rises = _rises(timeline, part, best)
         best = rises[-1][1] if rises else best
         yield

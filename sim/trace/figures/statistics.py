@@ -16,8 +16,8 @@ import numpy as np
 
 from sim.trace.events import EntityId, EntityKind, ThreadId
 from sim.trace.figures.concurrency import threads_at_once
+from sim.trace.incremental import STEP_SIZE, Incremental, collect, run_to_end, split
 from sim.trace.model import Entity, Nanoseconds, Window
-from sim.trace.slices import PIECE, Slices, at_once, listed, parts
 from sim.trace.timeline import Timeline
 
 _Ranked: TypeAlias = np.ndarray[Any, np.dtype[np.int64]]
@@ -102,10 +102,12 @@ def statistics_of(timeline: Timeline, entity: EntityId, window: Window) -> Callb
     Raises:
         KeyError: the timeline knows no such entity.
     """
-    return at_once(statistics_in_slices(timeline, entity, window))
+    return run_to_end(statistics_incrementally(timeline, entity, window))
 
 
-def statistics_in_slices(timeline: Timeline, entity: EntityId, window: Window) -> Slices[CallbackStatistics]:
+def statistics_incrementally(
+    timeline: Timeline, entity: EntityId, window: Window
+) -> Incremental[CallbackStatistics]:
     """The same in small pieces; the run may go on in between, after the window.
 
     Raises:
@@ -116,7 +118,7 @@ def statistics_in_slices(timeline: Timeline, entity: EntityId, window: Window) -
     # Numbers and no spans: hundreds of thousands of objects would keep the garbage collector busy.
     lengths, starts, ages = array("q"), array("q"), array("q")
     errors = 0
-    for part in parts(window, timeline.calls_of(entity, window)):
+    for part in split(window, timeline.calls_of(entity, window)):
         begun = [span for span in timeline.spans_of(entity, part) if span.start >= part.start]
         lengths.extend(span.end - span.start for span in begun if span.end is not None)
         errors += sum(bool(span.error) for span in begun)
@@ -140,10 +142,10 @@ def statistics_in_slices(timeline: Timeline, entity: EntityId, window: Window) -
 
 def distribution(values: Iterable[Nanoseconds]) -> Distribution | None:
     """The distribution of values; None for none."""
-    return at_once(_distributed(values))
+    return run_to_end(_distributed(values))
 
 
-def _distributed(values: Iterable[Nanoseconds]) -> Slices[Distribution | None]:
+def _distributed(values: Iterable[Nanoseconds]) -> Incremental[Distribution | None]:
     ranked = yield from _ranked(values)
     if not len(ranked):
         return None
@@ -151,12 +153,12 @@ def _distributed(values: Iterable[Nanoseconds]) -> Slices[Distribution | None]:
     return Distribution(len(ranked), least, median, p95, most)
 
 
-def _ranked(values: Iterable[Nanoseconds]) -> Slices[_Ranked]:
+def _ranked(values: Iterable[Nanoseconds]) -> Incremental[_Ranked]:
     """Values in ascending order; an hour's are sorted within milliseconds."""
     found = array("q")
     for value in values:
         found.append(value)
-        if len(found) % PIECE == 0:
+        if len(found) % STEP_SIZE == 0:
             yield
     return np.sort(np.frombuffer(found, dtype=np.int64))
 
@@ -173,14 +175,14 @@ def _known(timeline: Timeline, window: Window) -> Window:
 
 def _waited(
     timeline: Timeline, entity: EntityId, starts: Sequence[Nanoseconds], window: Window
-) -> Slices[Distribution | None]:
+) -> Incremental[Distribution | None]:
     """How long the callback had been ready before each call."""
     if not starts:
         return None
     # A wait that ends with the window's first moment is one for a call that begins then.
     waits = timeline.waits_of(entity, Window(window.start - 1, window.end))
-    known = yield from listed((wait.since, wait.end) for wait in waits)
-    over = yield from listed(_over(known))
+    known = yield from collect((wait.since, wait.end) for wait in waits)
+    over = yield from collect(_over(known))
     return (yield from _distributed(_waits(starts, over)))
 
 
@@ -210,7 +212,7 @@ def _over(
 
 def _jitter(
     entity: Entity, starts: Sequence[Nanoseconds], ages: Sequence[Nanoseconds]
-) -> Slices[Distribution | None]:
+) -> Incremental[Distribution | None]:
     if entity.kind is EntityKind.TIMER:
         steps = (after - before for before, after in pairwise(starts))
         return (yield from _distributed(abs(step - entity.period) for step in steps))

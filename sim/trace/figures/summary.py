@@ -5,12 +5,12 @@ from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from itertools import groupby, pairwise
 
+from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId, RobotMoved
 from sim.trace.figures.concurrency import threads_at_once
+from sim.trace.incremental import STEP_SIZE, Incremental, collect, run_to_end, split
 from sim.trace.model import Call, Entity, Nanoseconds, Wait, Window
-from sim.trace.slices import PIECE, Slices, at_once, listed, parts
 from sim.trace.timeline import Timeline
-from sim.trace.words import why_waiting
 
 TURNING = 0.02
 """From how many rad/s on the robot counts as turning, and not as drifting while it drives straight."""
@@ -164,22 +164,22 @@ def _services(calls: Iterable[Call]) -> Iterator[ServiceFigures]:
 
 def robot_in(timeline: Timeline, window: Window) -> RobotFigures | None:
     """What the robot did in a window; ``travelled`` counts from the run's beginning."""
-    return at_once(robot_in_slices(timeline, window))
+    return run_to_end(robot_incrementally(timeline, window))
 
 
-def robot_in_slices(timeline: Timeline, window: Window) -> Slices[RobotFigures | None]:
+def robot_incrementally(timeline: Timeline, window: Window) -> Incremental[RobotFigures | None]:
     """The same in small pieces."""
     last = timeline.robot(window.end - 1)
     if last is None or last.t < window.start:
         return None
     timed = (step for step in pairwise(trail_in_parts(timeline, window)) if step[0].t < step[1].t)
-    steps = yield from listed((_direction(*step), step[1].turned - step[0].turned) for step in timed)
+    steps = yield from collect((_direction(*step), step[1].turned - step[0].turned) for step in timed)
     angles = yield from _angles(steps)
     turns = [abs(angle) for angle in angles if abs(angle) > TURN]
     return RobotFigures(len(turns), sum(turns), last.travelled, last.x, last.y, last.yaw)
 
 
-def _angles(steps: Iterable[tuple[int, float]]) -> Slices[list[float]]:
+def _angles(steps: Iterable[tuple[int, float]]) -> Incremental[list[float]]:
     """The signed angles, in radians, of the stretches in which the robot turned in one direction."""
     found: list[float] = []
     latest = 0
@@ -189,14 +189,14 @@ def _angles(steps: Iterable[tuple[int, float]]) -> Slices[list[float]]:
         elif direction:
             found.append(angle)
         latest = direction
-        if number % PIECE == 0:
+        if number % STEP_SIZE == 0:
             yield
     return found
 
 
 def trail_in_parts(timeline: Timeline, window: Window) -> Iterator[RobotMoved]:
     """Where the robot was in a window, looked up bit by bit."""
-    for part in parts(window, window.length // _BETWEEN_POSES):
+    for part in split(window, window.length // _BETWEEN_POSES):
         yield from timeline.trail(part)
 
 

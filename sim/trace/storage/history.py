@@ -1,4 +1,4 @@
-"""Things that happened, kept in order of time and found by bisection, the older ones spilled."""
+"""Items in order of time, found by bisection; the older ones are kept in a temporary file."""
 
 from bisect import bisect_left, bisect_right, insort_right
 from collections.abc import Callable, Iterator, Sequence
@@ -7,26 +7,26 @@ from typing import Any, Generic, TypeVar, overload
 import msgspec
 
 from sim.trace.model import Nanoseconds, Window
-from sim.trace.storage.blocks import Blocks
 from sim.trace.storage.intervals import Answer
-from sim.trace.storage.spill import Spill
+from sim.trace.storage.spill_file import SpillFile
+from sim.trace.storage.spilled_blocks import SpilledBlocks
 
 Item = TypeVar("Item")
 
 ITEMS_IN_BLOCK = 256
 
-_SWELLING = 4
-"""About how many times the memory of their encoding objects take."""
+_MEMORY_FACTOR = 4
+"""Roughly how much more memory items take than their encoding."""
 
 _encoder = msgspec.msgpack.Encoder()
 
 
 class History(Sequence[Item], Generic[Item]):
-    """Items in order of the time that ``when`` reads from them; of one time, in order of arrival.
+    """Items sorted by the time that ``when`` returns; items of the same time keep their order of arrival.
 
-    ``kind`` is the type of the items, one that msgspec can encode, of values that never change. Adding the
-    newest is an append; one that comes late finds its place. The newest one or two blocks stay in memory,
-    more after one that came very late; the others are spilled, and made anew when they are asked for.
+    ``kind`` is the type of the items: immutable, and one that msgspec can encode. Adding the newest item
+    appends it; a late one is inserted. The newest one or two blocks stay in memory, more after an insertion
+    far back; the others are written to the spill file and decoded when they are read.
     """
 
     __slots__ = ("_blocks", "_full", "_items_in_block", "_spilled", "_tail", "_when")
@@ -35,7 +35,7 @@ class History(Sequence[Item], Generic[Item]):
         self,
         when: Callable[[Item], Nanoseconds],
         kind: Any,
-        spill: Spill,
+        spill: SpillFile,
         items_in_block: int = ITEMS_IN_BLOCK,
     ) -> None:
         self._when = when
@@ -43,19 +43,19 @@ class History(Sequence[Item], Generic[Item]):
         self._full = 2 * self._items_in_block
         self._spilled = 0
         self._tail: list[Item] = []
-        self._blocks: Blocks[list[Item]] = Blocks(
-            spill, _encoder.encode, msgspec.msgpack.Decoder(list[kind]).decode, _SWELLING
+        self._blocks: SpilledBlocks[list[Item]] = SpilledBlocks(
+            spill, _encoder.encode, msgspec.msgpack.Decoder(list[kind]).decode, _MEMORY_FACTOR
         )
 
     def add(self, item: Item) -> None:
-        """Take in an item."""
+        """Add an item."""
         tail = self._tail
         if tail and self._when(item) < self._when(tail[-1]):
             self._add_late(item)
             return
         tail.append(item)
         if len(tail) >= self._full:
-            self._put_by()
+            self._spill_oldest()
 
     def until(self, at: Nanoseconds) -> int:
         """How many items there are at or before ``at``."""
@@ -133,10 +133,10 @@ class History(Sequence[Item], Generic[Item]):
         while self._spilled and at < self._when(self._tail[0]):
             self._tail[0:0] = self._blocks.pop()
             self._spilled -= self._items_in_block
-        # What was taken back stays until newer items come: the next is often as late.
+        # These blocks stay in memory until newer items come: the next item is often as late.
         insort_right(self._tail, item, key=self._when)
 
-    def _put_by(self) -> None:
+    def _spill_oldest(self) -> None:
         block = self._tail[: self._items_in_block]
         del self._tail[: self._items_in_block]
         self._blocks.push(self._when(block[0]), block)

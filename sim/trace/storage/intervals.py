@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import TypeAlias, TypeVar, overload
 
 from sim.trace.model import Nanoseconds, Window
-from sim.trace.storage.spill import Spill
+from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import Table
 
 Row: TypeAlias = int
@@ -60,7 +60,7 @@ class Intervals:
 
     START, END = range(2)
 
-    def __init__(self, spill: Spill, more: int = 0) -> None:
+    def __init__(self, spill: SpillFile, more: int = 0) -> None:
         self.spill = spill
         self.table = Table(spill, 2 + more)
 
@@ -96,7 +96,7 @@ class Layer(Table):
 
     START, ROW = range(2)
 
-    def __init__(self, spill: Spill) -> None:
+    def __init__(self, spill: SpillFile) -> None:
         super().__init__(spill, 2)
 
     def start(self, place: int) -> Nanoseconds:

@@ -1,67 +1,67 @@
-"""Rows of integers, the newest in memory and the older ones spilled."""
+"""A table of integers; the older rows are kept in a temporary file."""
 
 from array import array
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator, Sequence
 from typing import overload
 
-from sim.trace.storage.blocks import Blocks
-from sim.trace.storage.spill import Spill
+from sim.trace.storage.spill_file import SpillFile
+from sim.trace.storage.spilled_blocks import SpilledBlocks
 
 _LARGEST = 2**63 - 1
 """The largest number that a cell holds."""
 
 
 class Table:
-    """Rows of so many 64-bit integers each; a row number stands for one of them.
+    """Rows of ``width`` 64-bit integers each, addressed by row number.
 
-    Searches go by the first column, in which the rows then have to ascend: ``add`` sees to that. The newest
-    one or two blocks stay in memory, so that what comes a little late finds its place there, and more of them
-    after what came very late.
+    Searches use the first column, which has to ascend; ``add`` keeps it so. The newest one or two blocks stay
+    in memory, so that a row that comes a little late is inserted there, and more of them after an insertion
+    far back.
     """
 
     __slots__ = ("_blocks", "_cells", "_full", "_rows_in_block", "_spilled", "_tail", "_width")
 
-    def __init__(self, spill: Spill, width: int) -> None:
+    def __init__(self, spill: SpillFile, width: int) -> None:
         self._width = width
         self._rows_in_block = spill.entries
         self._cells = spill.entries * width
         self._full = 2 * self._cells
         self._spilled = 0
         self._tail = array("q")
-        self._blocks: Blocks[array[int]] = Blocks(spill, _packed, _unpacked)
+        self._blocks: SpilledBlocks[array[int]] = SpilledBlocks(spill, _packed, _unpacked)
 
     def __len__(self) -> int:
         return self._spilled + len(self._tail) // self._width
 
     def append(self, row: list[int]) -> int:
-        """Add a row behind all others; returns its number."""
+        """Append a row and return its number."""
         tail = self._tail
         number = self._spilled + len(tail) // self._width
         _put(row, tail)
         if len(tail) >= self._full:
-            self._put_by()
+            self._spill_oldest()
         return number
 
     def add(self, row: list[int]) -> None:
-        """Add a row where its first cell belongs, behind its equals."""
+        """Insert a row by its first cell, behind rows with the same one."""
         tail = self._tail
         if not tail or tail[-self._width] <= row[0]:
             _put(row, tail)
             if len(tail) >= self._full:
-                self._put_by()
+                self._spill_oldest()
         else:
             self.insert(self.until(row[0]), row)
 
     def insert(self, place: int, row: list[int]) -> None:
-        """Add a row in front of the one with that number; dear if that one is old."""
+        """Insert a row in front of another one; expensive if that one is old."""
         while place < self._spilled:
             self._tail[0:0] = self._blocks.pop()
             self._spilled -= self._rows_in_block
         cell = (place - self._spilled) * self._width
         cells = array("q")
         _put(row, cells)
-        # What was taken back stays until newer rows come: the next is often as late.
+        # These blocks stay in memory until newer rows come: the next row is often as late.
         self._tail[cell:cell] = cells
 
     def row(self, number: int) -> "array[int]":
@@ -86,7 +86,7 @@ class Table:
         return self._blocks[block][place * self._width + column]
 
     def change(self, number: int, column: int, value: int) -> None:
-        """Give a cell another value."""
+        """Set a cell."""
         place = number - self._spilled
         if place >= 0:
             self._tail[place * self._width + column] = value
@@ -116,16 +116,16 @@ class Table:
         return number * self._rows_in_block + bisect_left(self._firsts(block), key, key=block.__getitem__)
 
     def newest(self, column: int, count: int) -> "array[int]":
-        """The cells of a column in so many rows at the end, or as many as a block has if that is fewer."""
+        """The cells of a column in the last ``count`` rows, at most those of one block."""
         count = min(count, self._rows_in_block) * self._width
         return self._tail[max(0, len(self._tail) - count) + column :: self._width]
 
     def column(self, column: int, rows: range) -> "Column":
-        """The cells of a column in so many rows, looked up when asked for."""
+        """The cells of a column in some rows, read on access."""
         return Column(self, column, rows)
 
     def chunks(self, column: int, rows: range) -> Iterator["array[int]"]:
-        """The cells of a column in rows that follow each other, block by block."""
+        """The cells of a column in consecutive rows, block by block."""
         start = rows.start
         while start < rows.stop:
             block, cell = self._found(start)
@@ -138,13 +138,13 @@ class Table:
         return range(0, len(block), self._width)
 
     def _found(self, number: int) -> "tuple[array[int], int]":
-        """The block that has a row, and where in it the row begins."""
+        """The block of a row, and the offset of the row in it."""
         if number >= self._spilled:
             return self._tail, (number - self._spilled) * self._width
         block, place = divmod(number, self._rows_in_block)
         return self._blocks[block], place * self._width
 
-    def _put_by(self) -> None:
+    def _spill_oldest(self) -> None:
         block = self._tail[: self._cells]
         del self._tail[: self._cells]
         self._blocks.push(block[0], block)
@@ -192,7 +192,7 @@ def _unpacked(data: bytes) -> "array[int]":
 
 
 def _put(row: list[int], cells: "array[int]") -> None:
-    """Put a row behind the cells; a number that no cell holds, as bad files have them, as near as can be."""
+    """Append a row; a number beyond 64 bits, as damaged files have them, is clamped."""
     try:
         cells.fromlist(row)
     except OverflowError:

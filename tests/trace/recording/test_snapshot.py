@@ -4,7 +4,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim.recording import Beginning
+from sim.recording import RunSnapshot
 from sim.trace.events import (
     AnyEvent,
     CallbackStarted,
@@ -22,10 +22,10 @@ from tests.trace.systems import legal_runs
 
 def begun_at(events: list[AnyEvent], cut: int) -> list[AnyEvent]:
     """What a recording holds that begins after so many events."""
-    beginning = Beginning()
+    snapshot = RunSnapshot()
     for event in events[:cut]:
-        beginning.take([event])
-    return [*beginning.events(), *events[cut:]]
+        snapshot.take([event])
+    return [*snapshot.events(), *events[cut:]]
 
 
 @given(legal_runs(), st.integers(0, 100))
@@ -67,8 +67,8 @@ def test_a_message_that_expired_before_an_older_one_is_not_told_again() -> None:
 
 
 def test_topics_are_told_again_and_what_is_gone_is_not() -> None:
-    beginning = Beginning()
-    beginning.take([*CAST, *TOPICS, EntityGone(5, 1)])
-    told = beginning.events()
+    snapshot = RunSnapshot()
+    snapshot.take([*CAST, *TOPICS, EntityGone(5, 1)])
+    told = snapshot.events()
     assert [event for event in told if isinstance(event, TopicAppeared)] == TOPICS
     assert len(told) == len(CAST) + len(TOPICS) - 1

@@ -1,4 +1,4 @@
-"""What a recording needs to know of a run that was going on when it began."""
+"""A snapshot of a running run, with which a recording that starts later begins."""
 
 from collections import Counter, defaultdict, deque
 from collections.abc import Callable, Hashable, Iterable
@@ -11,17 +11,17 @@ from sim.trace import events as ev
 from sim.trace.events import AnyEvent, EntityId, MessageId, ThreadId
 
 _MOST_QUEUED = 1000
-"""Messages of a queue that are remembered: as many as the deepest usual one holds."""
+"""Messages that are kept for each queue: the depth of the deepest usual queue."""
 _MOST_ON_THE_WAY = 100
-"""Messages that are remembered since they may arrive yet."""
+"""Published messages that are kept because they may not have arrived yet."""
 
 _Placed: TypeAlias = tuple[int, Any]
-"""An event and its place in the run."""
+"""The sequence number of an event in the run, and the event."""
 
 
 @dataclass
-class _Activation:
-    """A callback that has begun: where it was suspended last, and where it went on."""
+class _Call:
+    """A call of a callback in progress: its start, its last suspension and resumption."""
 
     start: _Placed
     thread: ThreadId
@@ -30,14 +30,14 @@ class _Activation:
 
     @property
     def is_suspended(self) -> bool:
-        """Whether it awaits something."""
+        """Whether it is suspended now."""
         return self.suspended is not None and self.resumed is None
 
     def events(self) -> list[_Placed]:
-        """What has to be known of it."""
+        """The events that describe it."""
         told = [self.start]
         if self.suspended is not None:
-            # In between it may have been on other threads.
+            # The suspension may have come on another thread than the start.
             place, event = self.suspended
             told.append((place, replace(event, thread=self.start[1].thread)))
         if self.resumed is not None:
@@ -45,12 +45,12 @@ class _Activation:
         return told
 
 
-class Beginning:
-    """Follows a run, and tells at any time those of its events that later ones build on.
+class RunSnapshot:
+    """Follows a run, and returns at any time those of its events on which later ones depend.
 
-    That is who takes part, what runs, waits and is queued now, which calls are out, and what was last seen of
-    the robot, and all inputs, which a repetition needs; finished
-    calls, log lines and the like are not among them. Not thread-safe.
+    These are its participants, the callbacks that run, wait or are suspended, the queues, the pending service
+    calls, the last state of the robot, and all inputs, which a repetition needs. Finished calls, log lines
+    and the like are left out. Not thread-safe.
     """
 
     def __init__(self) -> None:
@@ -58,7 +58,7 @@ class Beginning:
         self._latest: dict[Hashable, _Placed] = {}
         self._queued: defaultdict[EntityId, deque[_Placed]] = defaultdict(lambda: deque(maxlen=_MOST_QUEUED))
         self._published: dict[MessageId, _Placed] = {}
-        self._running: defaultdict[EntityId, list[_Activation]] = defaultdict(list)
+        self._running: defaultdict[EntityId, list[_Call]] = defaultdict(list)
         self._waits: dict[EntityId, list[_Placed]] = {}
 
     def take(self, events: Iterable[AnyEvent]) -> None:
@@ -75,9 +75,9 @@ class Beginning:
         placed = [*self._latest.values(), *self._published.values()]
         for queue in self._queued.values():
             placed += queue
-        for activations in self._running.values():
-            for activation in activations:
-                placed += activation.events()
+        for calls in self._running.values():
+            for call in calls:
+                placed += call.events()
         for waits in self._waits.values():
             placed += waits
         return _with_depths(event for _, event in sorted(placed, key=lambda each: each[0]))
@@ -111,7 +111,7 @@ class Beginning:
         self._latest.pop(("line", event.line), None)
 
     def _take_start(self, event: ev.CallbackStarted) -> None:
-        self._running[event.entity].append(_Activation((self._place, event), event.thread))
+        self._running[event.entity].append(_Call((self._place, event), event.thread))
         self._leave_queue(event)
 
     def _take_suspension(self, event: ev.CallbackSuspended) -> None:
@@ -129,15 +129,15 @@ class Beginning:
         if over is not None:
             self._running[event.entity].remove(over)
 
-    def _here(self, event: ev.CallbackSuspended | ev.CallbackEnded) -> _Activation | None:
-        """The activation that runs on the event's thread."""
+    def _here(self, event: ev.CallbackSuspended | ev.CallbackEnded) -> _Call | None:
+        """The innermost running call on the event's thread."""
         for each in reversed(self._running[event.entity]):
             if each.thread == event.thread and not each.is_suspended:
                 return each
         return None
 
-    def _awaiting(self, entity: EntityId) -> _Activation | None:
-        """The activation that was suspended first."""
+    def _awaiting(self, entity: EntityId) -> _Call | None:
+        """The call that has been suspended longest."""
         suspended = (each for each in self._running[entity] if each.is_suspended)
         return min(suspended, key=lambda each: each.suspended or each.start, default=None)
 
@@ -149,7 +149,7 @@ class Beginning:
             self._leave_queue(event)
 
     def _leave_queue(self, event: ev.CallbackStarted | ev.MessageDropped) -> None:
-        """A message leaves: mostly the oldest, but a newer one may expire before it."""
+        """Remove a message: mostly the oldest, but a newer one may expire first."""
         queue = self._queued[event.entity]
         gone = next((each for each in queue if each[1].message == event.message), None)
         if gone is not None:
@@ -162,7 +162,7 @@ class Beginning:
             queue.popleft()
 
     def _take_wait(self, event: Any) -> None:
-        """Keep the first event of a wait besides its latest: it tells when a change of the reason came."""
+        """Keep the first and the latest event of a wait: the first has its start, the latest its reason."""
         known = self._waits.get(event.entity, [])
         goes_on = isinstance(event, ev.WaitEnded) or _is_same_wait(known, event)
         if goes_on and not known:
@@ -186,7 +186,7 @@ def _is_same_wait(known: list[_Placed], event: ev.WaitStarted) -> bool:
 
 
 def _with_depths(events: Iterable[Any]) -> list[AnyEvent]:
-    """The events with the depths that queues have when only these messages ever came."""
+    """The events with the queue depths that result from these messages alone."""
     counts: Counter[EntityId] = Counter()
     told: list[AnyEvent] = []
     for event in events:
@@ -201,21 +201,21 @@ def _with_depths(events: Iterable[Any]) -> list[AnyEvent]:
     return told
 
 
-_LOOKS: dict[type, Callable[[Beginning, Any], None]] = {
-    ev.CallbackStarted: Beginning._take_start,
-    ev.CallbackSuspended: Beginning._take_suspension,
-    ev.CallbackResumed: Beginning._take_resumption,
-    ev.CallbackEnded: Beginning._take_end,
-    ev.EntityReady: Beginning._take_queue,
-    ev.MessageDropped: Beginning._take_queue,
-    ev.WaitStarted: Beginning._take_wait,
-    ev.WaitEnded: Beginning._take_wait,
-    ev.Published: Beginning._take_published,
-    ev.EntityGone: Beginning._take_gone,
-    ev.ServiceReplied: Beginning._take_reply,
-    ev.CallUnblocked: Beginning._take_unblocked,
-    ev.InputGiven: Beginning._take_input,
-    ev.LineEnded: Beginning._take_line_end,
+_LOOKS: dict[type, Callable[[RunSnapshot, Any], None]] = {
+    ev.CallbackStarted: RunSnapshot._take_start,
+    ev.CallbackSuspended: RunSnapshot._take_suspension,
+    ev.CallbackResumed: RunSnapshot._take_resumption,
+    ev.CallbackEnded: RunSnapshot._take_end,
+    ev.EntityReady: RunSnapshot._take_queue,
+    ev.MessageDropped: RunSnapshot._take_queue,
+    ev.WaitStarted: RunSnapshot._take_wait,
+    ev.WaitEnded: RunSnapshot._take_wait,
+    ev.Published: RunSnapshot._take_published,
+    ev.EntityGone: RunSnapshot._take_gone,
+    ev.ServiceReplied: RunSnapshot._take_reply,
+    ev.CallUnblocked: RunSnapshot._take_unblocked,
+    ev.InputGiven: RunSnapshot._take_input,
+    ev.LineEnded: RunSnapshot._take_line_end,
 }
 _KEYS: dict[type, tuple[str, str]] = {
     ev.RunStarted: ("run", ""),
@@ -239,4 +239,4 @@ _KEYS: dict[type, tuple[str, str]] = {
     ev.EventsLost: ("lost", ""),
     ev.ContentsLost: ("contents lost", ""),
 }
-"""How events are told apart of which the latest counts: what they are of, and the field with its number."""
+"""Events of which only the latest counts: the kind of its subject, and the field with the subject's id."""

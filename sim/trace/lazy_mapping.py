@@ -1,4 +1,4 @@
-"""A mapping whose values are made when they are asked for."""
+"""A mapping that computes its values on access."""
 
 from collections.abc import Callable, Collection, Iterator, Mapping
 from typing import TypeVar
@@ -7,10 +7,10 @@ Key = TypeVar("Key")
 Value = TypeVar("Value")
 
 
-class Lookup(Mapping[Key, Value]):
-    """For each of some keys what a function makes of it, so that asking for one costs nothing for the others.
+class LazyMapping(Mapping[Key, Value]):
+    """Maps each of ``keys`` to ``make(key)``, computed on every access.
 
-    It is as thread-safe as the function and the collection of keys, which may grow.
+    The collection of keys may grow. As thread-safe as the function and the collection.
     """
 
     __slots__ = ("_keys", "_make")

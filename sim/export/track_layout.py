@@ -4,9 +4,9 @@ from dataclasses import dataclass, field
 
 from sim.export.sink import Sink, Track, TrackId, TrackKind
 from sim.export.texts import printable
-from sim.trace.cast import Cast
 from sim.trace.events import EntityId, EntityKind, GroupId, NodeId, ProcessId, ThreadAppeared, ThreadId
 from sim.trace.model import Entity, Nanoseconds
+from sim.trace.participants import Participants
 
 GROUPS = "callback groups"
 ROBOT = "robot"
@@ -44,11 +44,11 @@ class Lanes:
         return len(self.busy)
 
 
-class Stage:
+class TrackLayout:
     """Gives the ids of tracks, and shows a track to the sink when it is first needed."""
 
     def __init__(self, sink: Sink) -> None:
-        self.cast = Cast()
+        self.participants = Participants()
         self._sink = sink
         self._made = 0
         self._title = "program"
@@ -65,7 +65,7 @@ class Stage:
 
     def add_thread(self, event: ThreadAppeared) -> None:
         """A thread appears, under its process, with the name that rclpy gives it."""
-        self.cast.add_thread(event)
+        self.participants.add_thread(event)
         self._threads[event.thread] = self._add(TrackKind.THREAD, event.name, self._process(event.process))
 
     def thread(self, thread: ThreadId) -> TrackId:
@@ -77,11 +77,11 @@ class Stage:
 
     def thread_name(self, thread: ThreadId) -> str:
         """What a thread is called, among several processes with its process."""
-        known = self.cast.threads.get(thread)
+        known = self.participants.threads.get(thread)
         return f"thread {thread}" if known is None else printable(known.name)
 
     def add_group(self, group: GroupId) -> None:
-        """A group that the cast knows appears."""
+        """A known group appears."""
         self._lanes(group)
 
     def enter(self, group: GroupId) -> int:
@@ -106,7 +106,7 @@ class Stage:
         """An entity; one that did not appear gets a name of its number."""
         known = self._actors.get(entity)
         if known is None:
-            known = self._actors[entity] = self._actor(entity, self.cast.entities.get(entity))
+            known = self._actors[entity] = self._actor(entity, self.participants.entities.get(entity))
         return known
 
     def waits(self, actor: Actor) -> TrackId:
@@ -132,7 +132,7 @@ class Stage:
         """The track of what a node publishes outside callbacks; 0 is the robot's driver."""
         if node == 0:
             return self._lane_in(ROBOT, "published by the robot")
-        return self._lane_in(NODES, self.cast.nodes.get(node, f"node {node}"))
+        return self._lane_in(NODES, self.participants.nodes.get(node, f"node {node}"))
 
     def words(self, name: str) -> TrackId:
         """The track of the log, the commands or the notices."""
@@ -154,15 +154,15 @@ class Stage:
         facts: dict[str, str | int | float] = {"entity": known.kind.value}
         if known.name:
             facts["topic"] = printable(known.name)
-        group = self.cast.groups.get(known.group)
+        group = self.participants.groups.get(known.group)
         if group is not None:
             facts["group"] = group.letter
-        facts["node"] = printable(self.cast.nodes.get(known.node, f"node {known.node}"))
+        facts["node"] = printable(self.participants.nodes.get(known.node, f"node {known.node}"))
         return Actor(printable(known.spoken_name), known.group, known.kind, known.depth, facts)
 
     def _process(self, process: ProcessId) -> TrackId:
         if process not in self._processes:
-            name = self.cast.processes.get(process, self._title)
+            name = self.participants.processes.get(process, self._title)
             self._processes[process] = self._add(TrackKind.PROCESS, name)
         return self._processes[process]
 
@@ -176,10 +176,10 @@ class Stage:
         return self._lanes(group).tracks[0]
 
     def _group_name(self, group: GroupId) -> str:
-        known = self.cast.groups.get(group)
+        known = self.participants.groups.get(group)
         if known is None:
             return "unknown group"
-        node = self.cast.nodes.get(known.node, f"node {known.node}")
+        node = self.participants.nodes.get(known.node, f"node {known.node}")
         return f"{known.letter} {known.kind.value} {node}"
 
     def _folder(self, name: str) -> TrackId:

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from sim.trace.storage import spill as module
-from sim.trace.storage.spill import Spill
+from sim.trace.storage import spill_file as module
+from sim.trace.storage.spill_file import SpillFile
 
 
 def unchanged(data: bytes) -> bytes:
@@ -17,37 +17,37 @@ def unchanged(data: bytes) -> bytes:
 
 
 def test_bytes_are_read_back_from_their_place() -> None:
-    spill = Spill(at_hand=1)
+    spill = SpillFile(cache_size=1)
     lengths = range(1, 9)
-    places = [spill.put(bytes([length]) * length) for length in lengths]
+    places = [spill.append(bytes([length]) * length) for length in lengths]
     for place, length in reversed(list(zip(places, lengths, strict=True))):
-        assert spill.look_up(place, length, unchanged) == bytes([length]) * length
+        assert spill.read(place, length, unchanged) == bytes([length]) * length
 
 
 def test_bytes_in_the_place_of_others_are_read_back() -> None:
-    spill = Spill(at_hand=1)
-    first, second = spill.put(b"abc"), spill.put(b"def")
+    spill = SpillFile(cache_size=1)
+    first, second = spill.append(b"abc"), spill.append(b"def")
     spill.replace(first, b"xyz")
-    assert [spill.look_up(place, 3, unchanged) for place in (first, second)] == [b"xyz", b"def"]
+    assert [spill.read(place, 3, unchanged) for place in (first, second)] == [b"xyz", b"def"]
 
 
 def test_what_was_looked_up_last_is_decoded_once() -> None:
-    spill = Spill(at_hand=2)
+    spill = SpillFile(cache_size=2)
     decoded: list[bytes] = []
 
     def decode(data: bytes) -> bytes:
         decoded.append(data)
         return data
 
-    a, b, c = (spill.put(data) for data in (b"a", b"b", b"c"))
+    a, b, c = (spill.append(data) for data in (b"a", b"b", b"c"))
     for place in (a, b, a, c, a, b):
-        spill.look_up(place, 1, decode)
+        spill.read(place, 1, decode)
     assert decoded == [b"a", b"b", b"c", b"b"]
 
 
 def test_no_file_is_made_before_there_is_something_to_spill(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "TemporaryFile", lambda **_: pytest.fail("made a file"))
-    Spill()
+    SpillFile()
 
 
 def test_the_file_has_no_name_and_is_closed_with_its_owner(
@@ -60,8 +60,8 @@ def test_the_file_has_no_name_and_is_closed_with_its_owner(
         return files[-1]
 
     monkeypatch.setattr(module, "TemporaryFile", make)
-    spill = Spill()
-    spill.put(b"abc")
+    spill = SpillFile()
+    spill.append(b"abc")
     (file,) = files
     was_closed = [file.closed]
     del spill
@@ -75,10 +75,10 @@ def test_where_no_file_can_be_made_bytes_stay_in_memory(monkeypatch: pytest.Monk
         raise FileNotFoundError(errno.ENOENT, "No usable temporary directory found")
 
     monkeypatch.setattr(module, "TemporaryFile", refuse)
-    spill = Spill(at_hand=1)
-    first, second = spill.put(b"abc"), spill.put(b"def")
+    spill = SpillFile(cache_size=1)
+    first, second = spill.append(b"abc"), spill.append(b"def")
     spill.replace(second, b"xyz")
-    assert [spill.look_up(place, 3, unchanged) for place in (first, second)] == [b"abc", b"xyz"]
+    assert [spill.read(place, 3, unchanged) for place in (first, second)] == [b"abc", b"xyz"]
 
 
 class SmallDisk:
@@ -97,7 +97,7 @@ class SmallDisk:
 
 def test_what_a_full_disk_does_not_take_stays_in_memory(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(module, "TemporaryFile", lambda **_: SmallDisk())
-    spill = Spill(at_hand=1)
-    places = [spill.put(data) for data in (b"12345678", b"abcdefgh", b"ABCDEFGH")]
+    spill = SpillFile(cache_size=1)
+    places = [spill.append(data) for data in (b"12345678", b"abcdefgh", b"ABCDEFGH")]
     spill.replace(places[0], b"87654321")
-    assert [spill.look_up(place, 8, unchanged) for place in places] == [b"87654321", b"abcdefgh", b"ABCDEFGH"]
+    assert [spill.read(place, 8, unchanged) for place in places] == [b"87654321", b"abcdefgh", b"ABCDEFGH"]

@@ -1,12 +1,12 @@
-"""How things of a run are called in a sentence."""
+"""Entities and waits described in words."""
 
-from sim.trace.cast import Cast
 from sim.trace.events import EntityId, Reason
 from sim.trace.model import Wait
+from sim.trace.participants import Participants
 from sim.trace.timeline import Timeline
 
 
-def why_waiting(wait: Wait, timeline: Timeline | Cast) -> str:
+def why_waiting(wait: Wait, timeline: Timeline | Participants) -> str:
     """The reason of a wait in words: ``group A held by timer_callback``."""
     if wait.reason is not Reason.GROUP_HELD:
         return wait.reason.value
@@ -16,8 +16,8 @@ def why_waiting(wait: Wait, timeline: Timeline | Cast) -> str:
     return f"{what} held by {name_of(wait.holder, timeline)}"
 
 
-def name_of(entity: EntityId, timeline: Timeline | Cast) -> str:
-    """The spoken name of an entity by its id."""
+def name_of(entity: EntityId, timeline: Timeline | Participants) -> str:
+    """The name of an entity in a sentence."""
     known = timeline.entities.get(entity)
     return "another callback" if known is None else known.spoken_name
 

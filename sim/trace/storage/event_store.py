@@ -1,4 +1,4 @@
-"""Keeps all events of a run as they came, in a temporary file, for whoever wants them again later."""
+"""Keeps all events of a live run in a temporary file, from which exports read them."""
 
 from collections.abc import Iterator, Sequence
 from io import FileIO
@@ -12,31 +12,31 @@ from lz4 import frame
 from sim.trace.events import AnyEvent, MessageSent, decode, encode
 from sim.trace.model import Nanoseconds
 
-MOST = 512_000_000
-"""Bytes that a tape's file may have, unless it is told otherwise: millions of events take a tenth of it."""
+SIZE_LIMIT = 512_000_000
+"""Bytes that the file may have by default: millions of events take a tenth of it."""
 _BLOCK = 128_000
-"""Bytes of events that are put into the file at once."""
+"""Bytes of packed events that are compressed and written together."""
 _LENGTH = 4
-"""Bytes before each batch, and in the file before each block, that tell how long it is."""
+"""Bytes of the length prefix of each batch, and of each block in the file."""
 
 
-class Tape:
-    """The events of a run from its beginning, packed, in a file without a name that is gone with the tape.
+class EventStore:
+    """The events of a run from its beginning, compressed, in a temporary file without a name.
 
-    The file lies in the system's folder for temporary files and is made when it is needed. A tape that is
-    full, since it has ``most`` bytes or its folder has no more room, takes nothing more and says so. What
-    messages contain is not kept: that is for recordings.
-    One thread may call ``take``; ``batches`` may be called, and gone through, on any other meanwhile.
+    The file is made in the system's folder for temporary files with the first block, and closed with the
+    store. When it has ``size_limit`` bytes or the disk is full, later events are dropped, and ``missing``
+    says so. Contents of messages are not kept: recordings have those. One thread may call ``take`` while
+    another one iterates over ``batches``.
     """
 
-    def __init__(self, most: int = MOST) -> None:
-        self._most = most
+    def __init__(self, size_limit: int = SIZE_LIMIT) -> None:
+        self._size_limit = size_limit
         self._lock = Lock()
         self._file: FileIO | None = None
         self._length = 0
         self._waiting = bytearray()
         self._ended_at: Nanoseconds | None = None
-        self._why = ""
+        self._full_because = ""
 
     @property
     def size(self) -> int:
@@ -48,21 +48,21 @@ class Tape:
         """One sentence on what is missing; empty if nothing is."""
         if self._ended_at is None:
             return ""
-        return f"what came after {self._ended_at / 1e9:.3f} s is missing, since {self._why}"
+        return f"what came after {self._ended_at / 1e9:.3f} s is missing, since {self._full_because}"
 
     def take(self, events: Sequence[AnyEvent]) -> None:
-        """Keep a batch, unless the tape is full."""
+        """Store a batch, unless the store is full."""
         if not events or self._ended_at is not None:
             return
         packed = encode([each for each in events if not isinstance(each, MessageSent) or each.data is None])
         with self._lock:
             self._waiting += len(packed).to_bytes(_LENGTH) + packed
-            full = len(self._waiting) >= _BLOCK and not self._put_by()
+            full = len(self._waiting) >= _BLOCK and not self._write_block()
         if full:
             self._ended_at = events[-1].t
 
     def batches(self) -> Iterator[list[AnyEvent]]:
-        """What has been taken until now, batch after batch; what comes meanwhile is not among it.
+        """The batches stored before this call, in order.
 
         Raises:
             OSError: the file cannot be read.
@@ -75,27 +75,27 @@ class Tape:
             yield from _unpacked(block)
         yield from _unpacked(waiting)
 
-    def _put_by(self) -> bool:
-        """Write what waits to the file; whether the tape can take more."""
+    def _write_block(self) -> bool:
+        """Write the waiting batches as a block; False if the store is full."""
         block = frame.compress(bytes(self._waiting))
         try:
             file = self._opened()
             file.seek(self._length)
             data = len(block).to_bytes(_LENGTH) + block
-            if self._length + len(data) > self._most:
-                self._why = f"no more than {self._most // 1_000_000} MB of a run are kept"
+            if self._length + len(data) > self._size_limit:
+                self._full_because = f"no more than {self._size_limit // 1_000_000} MB of a run are kept"
             elif file.write(data) != len(data):
-                self._why = "the folder for temporary files is full"
+                self._full_because = "the folder for temporary files is full"
         except OSError as error:
-            self._why = f"the temporary file cannot be written: {error.strerror}"
-        if self._why:
+            self._full_because = f"the temporary file cannot be written: {error.strerror}"
+        if self._full_because:
             return False
         self._length += len(data)
         self._waiting.clear()
         return True
 
     def _block(self, place: int) -> tuple[bytes, int]:
-        """The block at a place, and the place behind it."""
+        """The block at an offset, and the offset of the next one."""
         with self._lock:
             file = self._opened()
             file.seek(place)
@@ -112,7 +112,7 @@ class Tape:
 
 
 def _unpacked(block: bytes) -> Iterator[list[AnyEvent]]:
-    """The batches of a block."""
+    """Decode the batches of a block."""
     place = 0
     while place < len(block):
         start = place + _LENGTH

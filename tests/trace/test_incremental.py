@@ -8,11 +8,11 @@ from types import FrameType
 import pytest
 from msgspec.structs import replace
 
-from sim.trace import slices
+from sim.trace import incremental
 from sim.trace.events import AnyEvent, WaitStarted
-from sim.trace.figures.comparison import compare, compare_in_slices
+from sim.trace.figures.comparison import compare, compare_incrementally
+from sim.trace.incremental import Incremental, collect, run_to_end, split
 from sim.trace.model import Window
-from sim.trace.slices import Slices, at_once, listed, parts
 from sim.trace.timeline import Timeline
 from tests.support.runs import shared_group_run, split_groups_run
 
@@ -34,7 +34,7 @@ def told(events: Sequence[AnyEvent], times: int = 1) -> Timeline:
     return timeline
 
 
-def dearest(work: Slices[object]) -> int:
+def dearest(work: Incremental[object]) -> int:
     """How many functions are called in the slice that calls most."""
     called = 0
     most = 0
@@ -57,18 +57,18 @@ def test_no_slice_of_a_comparison_grows_with_the_length_of_the_runs() -> None:
     costs = []
     for times in (1, 4):
         timeline = told(EVENTS, times)
-        costs.append(dearest(compare_in_slices(timeline, timeline, Window(0, timeline.end))))
+        costs.append(dearest(compare_incrementally(timeline, timeline, Window(0, timeline.end))))
     assert costs[1] < 1.5 * costs[0]
-    assert costs[1] < 60 * slices.PIECE
+    assert costs[1] < 60 * incremental.STEP_SIZE
 
 
 @pytest.mark.parametrize("piece", [1, 7, 100])
 def test_figures_are_the_same_however_small_the_slices(monkeypatch: pytest.MonkeyPatch, piece: int) -> None:
     first, second = told(EVENTS), told(split_groups_run().events)
     window = Window(1_500_000_000, 12_300_000_000)
-    monkeypatch.setattr(slices, "PIECE", 10**9)
+    monkeypatch.setattr(incremental, "STEP_SIZE", 10**9)
     whole = compare(first, second, window)
-    monkeypatch.setattr(slices, "PIECE", piece)
+    monkeypatch.setattr(incremental, "STEP_SIZE", piece)
     assert compare(first, second, window) == whole
 
 
@@ -76,10 +76,10 @@ def test_what_comes_in_between_plays_no_part() -> None:
     timeline = told([event for event in EVENTS if event.t <= 5_000_000_000])
     window = Window(0, 4_000_000_000)
     before = compare(timeline, timeline, window)
-    work = compare_in_slices(timeline, timeline, window)
+    work = compare_incrementally(timeline, timeline, window)
     next(work)
     timeline.extend([event for event in EVENTS if event.t > 5_000_000_000])
-    after = at_once(work)
+    after = run_to_end(work)
     assert after.callbacks == before.callbacks
 
 
@@ -87,13 +87,13 @@ def test_what_comes_in_between_plays_no_part() -> None:
     ("length", "things"), [(0, 0), (1, 5000), (10, 0), (10**9 + 1, 999), (10**9, 10_000)]
 )
 def test_parts_make_up_the_whole(length: int, things: int) -> None:
-    found = list(parts(Window(5, 5 + length), things))
+    found = list(split(Window(5, 5 + length), things))
     assert found[0].start == 5
     assert found[-1].end == 5 + length
     assert all(one.end == other.start for one, other in pairwise(found))
 
 
 def test_a_list_is_the_whole_of_what_it_is_made_of() -> None:
-    work = listed(range(3 * slices.PIECE + 1))
+    work = collect(range(3 * incremental.STEP_SIZE + 1))
     assert len(list(work)) == 3
-    assert at_once(listed("abc")) == ["a", "b", "c"]
+    assert run_to_end(collect("abc")) == ["a", "b", "c"]

@@ -1,0 +1,42 @@
+"""Long computations in small steps, so that a screen can answer keys in between."""
+
+from collections.abc import Generator, Iterable, Iterator
+from typing import TypeAlias, TypeVar
+
+from sim.trace.model import Window
+
+T = TypeVar("T")
+
+Incremental: TypeAlias = Generator[None, None, T]
+"""A computation that yields after every step, and returns its result."""
+
+STEP_SIZE = 250
+"""Items that are processed in a step, which takes from 0.1 ms to a few milliseconds."""
+
+
+def run_to_end(work: Incremental[T]) -> T:
+    """Run a computation to its end without pauses, and return its result."""
+    while True:
+        try:
+            next(work)
+        except StopIteration as over:
+            result: T = over.value
+            return result
+
+
+def collect(things: Iterable[T]) -> Incremental[list[T]]:
+    """Collect items into a list, step by step."""
+    found: list[T] = []
+    for thing in things:
+        found.append(thing)
+        if len(found) % STEP_SIZE == 0:
+            yield
+    return found
+
+
+def split(window: Window, things: int) -> Iterator[Window]:
+    """Split a window that has so many things into windows with about one step's worth of them each."""
+    step = window.length // (things // STEP_SIZE + 1) + 1
+    yield Window(window.start, min(window.start + step, window.end))
+    for start in range(window.start + step, window.end, step):
+        yield Window(start, min(start + step, window.end))
