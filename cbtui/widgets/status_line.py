@@ -12,8 +12,8 @@ from cbtui.runs.live.playhead import Playhead
 from cbtui.text.cells import fit
 from cbtui.text.durations import duration
 from cbtui.widgets.painted import Painted
+from sim.trace.descriptions import executor_label
 from sim.trace.model import Nanoseconds
-from sim.trace.words import executor_label
 
 _PLAIN = Ink(Role.TEXT)
 _STRONG = Ink(Role.STRONG)

@@ -8,10 +8,10 @@ from cbtui.widgets.diagnosis_line import diagnosis_row, diagnosis_rows
 from sim.diagnosis import RULES, Explanation, Finding
 from sim.diagnosis import Weight as RuleWeight
 from sim.engine.setup import ProgramSetup, RunSetup
+from sim.trace.descriptions import executor_label
 from sim.trace.events import Reason, Severity
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.timeline import Timeline
-from sim.trace.words import executor_label
 from tests.support.builder import Run, ns
 from tests.support.fake_session import FakeEngines
 from tests.support.runs import (

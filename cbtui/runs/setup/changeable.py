@@ -7,11 +7,11 @@ from cbtui.runs.setup.quantities import USUAL_SENSOR_RATE, Quantity
 from cbtui.runs.setup.subject import Subject
 from lessons.lesson import number_after
 from sim.engine.setup import RobotUse, RunSetup
+from sim.trace.descriptions import executor_label
 from sim.trace.events import EntityKind
 from sim.trace.model import Entity, Nanoseconds
 from sim.trace.roster import HOUSEKEEPING
 from sim.trace.timeline import Timeline
-from sim.trace.words import executor_label
 
 
 @dataclass(frozen=True, slots=True)
