@@ -38,6 +38,8 @@ class Rages(NamedTuple):
 
 FAULTS = {
     "loops for ever": Rages("while True: pass"),
+    "logs as fast as it can": Rages("while True: self.get_logger().info('x')"),
+    "prints as fast as it can": Rages("while True: print('x')"),
     "loops for ever on virtual time": Rages("while True: pass", "virtual"),
     "prints 100 MB": Rages(HUNDRED_MB),
     "publishes 1 MB at 1 kHz": Rages(
