@@ -10,7 +10,7 @@ from typing import TypeAlias
 import msgspec
 
 from cbtui.engines.session import Session
-from cbtui.runs.live.live_run import LiveRun
+from cbtui.runs.live.live_run import ShownRun
 from cbtui.runs.recorded.repeat import CannotRepeatError, repeated
 from cbtui.runs.setup.changes import Changes
 from cbtui.text.output import complain, say
@@ -119,7 +119,7 @@ class Gathered:
     window: Window
 
 
-def side_of(run: LiveRun, changes: Changes) -> Side:
+def side_of(run: ShownRun, changes: Changes) -> Side:
     """A run of the console's as one side; called by its ``changes``, which is what two runs differ in."""
     service = run.setup.service
     return Side(

@@ -7,6 +7,7 @@ from typing import ClassVar
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import BindingType
+from textual.screen import Screen, ScreenResultCallbackType, ScreenResultType
 
 from cbtui.keys.actions import Scope, bindings_of
 from cbtui.keys.keymap import keymap_of
@@ -14,13 +15,15 @@ from cbtui.looks.theme import Charset, Ink, Role, Run
 from cbtui.runs.compared_runs import Side
 from cbtui.runs.live.playhead import SPANS, Playhead
 from cbtui.screens.layout import Layout
-from cbtui.screens.lesson import FRAMES_A_SECOND
-from cbtui.screens.moment import MomentScreen
+from cbtui.screens.parts.bars import BarSelection
+from cbtui.screens.parts.frames import FRAMES_A_SECOND
+from cbtui.screens.parts.navigation import TimeNavigation
+from cbtui.screens.parts.part import Parts
 from cbtui.screens.sized import SizedScreen
 from cbtui.text.durations import duration
 from cbtui.widgets.comparison import ComparisonHeadings, ComparisonTable, Words
 from cbtui.widgets.key_bar import KeyBar
-from cbtui.widgets.lanes import Lanes, Selection, start_of
+from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.keys import lane_keys
 from sim.trace.descriptions import executor_label
 from sim.trace.figures.comparison import compare_incrementally
@@ -65,7 +68,15 @@ class CompareScreen(SizedScreen[None]):
         self._charset = charset
         self._bounds = bounds
         self._whole = True
-        self._playhead = Playhead() if bounds is None else _at_the_end_of(bounds, self._end)
+        self.navigation = TimeNavigation(
+            self, lambda: [side.timeline for side in self._sides], lambda: self._end, self._moved
+        )
+        if bounds is not None:
+            self.navigation.playhead = _at_the_end_of(bounds, self._end)
+        self.bars = BarSelection(
+            lambda: list(self.query(Lanes)), self.navigation, lambda: self.query_one(KeyBar).changed()
+        )
+        self._parts = Parts(self, Scope.COMPARE, self.navigation, self.bars)
         self._drawn: tuple[object, ...] = ()
         self._compared: Window | None = None
         self._comparing = False
@@ -81,6 +92,19 @@ class CompareScreen(SizedScreen[None]):
         yield ComparisonHeadings(self._charset)
         yield ComparisonTable(self._charset)
         yield KeyBar(Scope.COMPARE, self._charset)
+
+    @property
+    def charset(self) -> Charset:
+        """What the terminal can show."""
+        return self._charset
+
+    def ask(
+        self,
+        question: Screen[ScreenResultType],
+        take: ScreenResultCallbackType[ScreenResultType] | None,
+    ) -> None:
+        """Lay another screen over this one; ``take`` gets what it comes to."""
+        self.app.push_screen(question, take)
 
     def on_mount(self) -> None:
         """Begin to draw, and say what cannot be trusted."""
@@ -98,7 +122,7 @@ class CompareScreen(SizedScreen[None]):
     def draw(self) -> None:
         """Show the moment that the playhead is at, if that or a run has changed."""
         ends = tuple((side.timeline.end, side.alive()) for side in self._sides)
-        now = (self._playhead, ends, self.layout_now)
+        now = (self.navigation.playhead, ends, self.layout_now)
         if self.layout_now is Layout.SMALL:
             return
         if now != self._drawn:
@@ -112,7 +136,7 @@ class CompareScreen(SizedScreen[None]):
         self._drawn = ()
 
     def _draw_runs(self) -> None:
-        at, shown = self._playhead.now(self._end), self._playhead.window(self._end)
+        at, shown = self.navigation.now, self.navigation.window
         self.query_one("#status", Words).words = (
             Run(" Two runs", _STRONG),
             Run(f"   t {at / 1e9:.3f} s", _STRONG),
@@ -186,7 +210,7 @@ class CompareScreen(SizedScreen[None]):
     def _asked(self) -> Window:
         """What the table is to be about, whether or not both runs have it."""
         if not self._whole:
-            return self._playhead.window(self._end)
+            return self.navigation.window
         return self._bounds or Window(0, max(side.timeline.end for side in self._sides))
 
     def _common(self, asked: Window) -> Window:
@@ -206,115 +230,26 @@ class CompareScreen(SizedScreen[None]):
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer what has a meaning now."""
-        playhead = self._playhead
-        meaningless = {
-            "live": playhead.follows,
-            "deselect": self._selected is None,
-            "later": playhead.at is None,
-            "step": playhead.at is None,
-            "earlier": playhead.now(self._end) == 0,
-            "pan_earlier": playhead.window(self._end).start == 0,
-            "pan_later": playhead.follows or playhead.window(self._end).end > self._end,
-            "step_back": playhead.now(self._end) == 0,
-            "zoom_in": playhead.span == SPANS[0],
-            "zoom_out": playhead.span == SPANS[-1],
-        }
-        return not meaningless.get(action, False)
-
-    def action_earlier(self) -> None:
-        """Move the cursor back."""
-        self._move(self._playhead.moved(-1, self._end))
-
-    def action_later(self) -> None:
-        """Move the cursor on."""
-        self._move(self._playhead.moved(1, self._end))
-
-    def action_pan_earlier(self) -> None:
-        """Show an earlier stretch."""
-        self._move(self._playhead.panned(-1, self._end))
-
-    def action_pan_later(self) -> None:
-        """Show a later stretch."""
-        self._move(self._playhead.panned(1, self._end))
-
-    def action_step(self) -> None:
-        """Go to the next event of either run."""
-        self._step(1)
-
-    def action_step_back(self) -> None:
-        """Go to the event before, of either run."""
-        self._step(-1)
-
-    def _step(self, step: int) -> None:
-        now = self._playhead.now(self._end)
-        beside = [side.timeline.neighbour(now, None, step) for side in self._sides]
-        found = [at for at in beside if at is not None]
-        if found:
-            self._move(self._playhead.sought(min(found) if step > 0 else max(found), self._end))
-        elif step > 0:
-            self._move(self._playhead.live())
-
-    def action_go_to_time(self) -> None:
-        """Ask for a moment."""
-        question = MomentScreen(self._playhead.now(self._end), self._end, False, self._charset)
-        self.app.push_screen(question, self._go_to_time)
-
-    def _go_to_time(self, moment: Nanoseconds | None) -> None:
-        if moment is not None:
-            self._move(self._playhead.sought(moment, self._end))
-
-    def action_live(self) -> None:
-        """Go to the end."""
-        self._move(self._playhead.live())
-
-    def action_zoom_in(self) -> None:
-        """Show a shorter stretch of time."""
-        self._move(self._playhead.zoomed(-1, self._end))
-
-    def action_zoom_out(self) -> None:
-        """Show a longer stretch of time."""
-        self._move(self._playhead.zoomed(1, self._end))
+        match action:
+            case "deselect":
+                return self.bars.selection is not None
+            case "earlier":
+                return self.navigation.now > 0
+        return self._parts.offer(action, parameters)
 
     @on(Lanes.Picked)
-    def _pick_moment(self, message: Lanes.Picked) -> None:
-        self._select(message.control, message.selection)
-        self._move(self._playhead.sought(message.at, self._end))
-
-    # what is selected: a bar of either run
-
-    @property
-    def _selected(self) -> Lanes | None:
-        return next((lanes for lanes in self.query(Lanes) if lanes.selection is not None), None)
-
-    def _select(self, chosen: Lanes, selection: Selection | None) -> None:
-        for lanes in self.query(Lanes):
-            lanes.selection = selection if lanes is chosen else None
-
-    def action_previous_event(self) -> None:
-        """Go back to the bar before the cursor, on the selected lane."""
-        self._go_to_bar(-1)
-
-    def action_next_event(self) -> None:
-        """Go on to the selected lane's next bar."""
-        self._go_to_bar(1)
-
-    def _go_to_bar(self, step: int) -> None:
-        lanes = self._selected or self._lanes(0)
-        found = lanes.bar_beside(step)
-        if found is not None and found.bar is not None:
-            self._select(lanes, found)
-            self._move(self._playhead.sought(start_of(found.bar), self._end))
-
-    def action_deselect(self) -> None:
-        """Select nothing."""
-        self._select(self._lanes(0), None)
+    def _pick_bar(self, message: Lanes.Picked) -> None:
+        self.bars.pick(message)
 
     @on(Lanes.Turned)
     def _turn(self, message: Lanes.Turned) -> None:
-        self._move(self._playhead.zoomed(message.steps, self._end))
+        self.navigation.zoom(message.steps)
 
-    def _move(self, playhead: Playhead) -> None:
-        self._playhead = playhead
+    def action_deselect(self) -> None:
+        """Select nothing."""
+        self.bars.select(None)
+
+    def _moved(self) -> None:
         if self._comparing and not self._whole:
             self._forget_comparison()
         self.draw()

@@ -2,7 +2,6 @@
 
 import asyncio
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from pathlib import Path
 from typing import ClassVar
 
@@ -16,50 +15,41 @@ from cbtui.keys.actions import CHECKS, PANES, Scope
 from cbtui.keys.keymap import STANDARD, Keymap, keymap_of
 from cbtui.learning.lesson_page import page_of_exercise
 from cbtui.looks.theme import Charset
-from cbtui.runs.judged.checking import Checked, Observed, over
+from cbtui.runs.judged.checking import Observed, over
 from cbtui.runs.judged.run_budget import Allowance
-from cbtui.runs.live.file_watch import CANNOT_WATCH, content_of, contents
+from cbtui.runs.live.file_watch import CANNOT_WATCH, contents
+from cbtui.runs.live.live_recording import LiveRecording
 from cbtui.runs.live.live_run import LiveRun, OpenSession
+from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.subject import of_exercise
-from cbtui.screens.lesson import LessonScreen
+from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey
+from cbtui.screens.parts.exercise_help import ExerciseHelp
+from cbtui.screens.parts.judging import Judging
+from cbtui.screens.parts.learning import Learning, signs
+from cbtui.screens.parts.restarts import Restarts
+from cbtui.screens.parts.runs import RunController
+from cbtui.screens.run import RunScreen
 from cbtui.widgets.checks import ChecksView, Sheet, Standing
 from cbtui.widgets.checks.exercise_sheet import ExerciseWords, Keys
 from cbtui.widgets.diagnosis import Diagnosis, Weight
-from cbtui.widgets.shell import Prompt
-from cbtui.widgets.tabs import title_of
-from lessons.judge import Judge
 from lessons.lesson import Lesson
 
 _LOOK = 0.2
 """Seconds after which it is looked whether a run has taken too much."""
-_REFUSED = frozenset(
-    {
-        "call_service",
-        "call_service_off",
-        "prompt",
-        "type",
-        "reset_world",
-        "threads",
-        "group",
-        "set_up",
-        "exercise",
-    }
-)
-"""Actions that would make the run another than the one that is judged."""
 
 
-class ExerciseScreen(LessonScreen):
+class ExerciseScreen(RunScreen[LiveRun]):
     """Shows the run of a learner's file that a lesson's checks are about, and what came of them.
 
     The run gets what the lesson says and nothing from the person: what is on the lanes is what was judged.
     """
 
     CSS_PATH: ClassVar[list[Path]] = [  # type: ignore[assignment]  # a list is as good as one path
-        Path(__file__).parent / "lesson" / "lesson.tcss",
+        Path(__file__).with_name("run.tcss"),
         Path(__file__).with_name("exercise.tcss"),
     ]
     PANES_HERE = (*PANES, CHECKS)
-    FIRST_SPEED = None
+    FIRST_PANE = CHECKS
     AUTO_FOCUS = f"#{CHECKS}"
 
     class Saved(Message):
@@ -82,184 +72,165 @@ class ExerciseScreen(LessonScreen):
         Raises:
             BadLesson: its checks cannot be read.
         """
-        self._judge = Judge(lesson)
-        self._judged_lesson = lesson
-        self._file = file
-        self._content: bytes | None = None
-        self._gone = False
-        self._judged_sheet: Sheet | None = None
-        super().__init__(of_exercise(lesson, lessons, file), open_session, charset)
-        self._pane = CHECKS
+        subject = of_exercise(lesson, lessons, file)
+        self._open_session = open_session
+        self._judging = Judging(lesson, subject.following, file)
+        runs = RunController(self._make_run, self.post)
+        super().__init__(subject, charset, runs, live=lambda: runs.run)
+        self._learning = Learning(
+            self,
+            self,
+            self.panes,
+            lesson,
+            lambda standing: page_of_exercise(lesson, standing, signs(), self._task_in_words),
+        )
+        self.restarts = Restarts(self, runs, Changes(), self.begun_anew, speed=lambda: None, at_any_time=True)
+        self.put_together(
+            PaceKeys(self, runs),
+            RecordingKey(self, runs, self.finisher),
+            self.restarts,
+            ExerciseHelp(
+                self,
+                self,
+                self._learning,
+                file,
+                is_readable=lambda _: True,
+                is_done=lambda: self._sheet.standing is Standing.PASSED,
+            ),
+            lesson=lambda: self.console.open_lesson(lesson),
+        )
+        runs.begin(speed=None)
+
+    @property
+    def live_run(self) -> LiveRun:
+        """The run on screen."""
+        return self.runs.run
+
+    @property
+    def recording(self) -> LiveRecording | None:
+        """What records the run."""
+        return self.runs.run.recording
 
     @property
     def is_judged(self) -> bool:
         """Whether it is known what came of the run on screen."""
-        return self._judged_sheet is not None
+        return self._judging.sheet is not None
 
-    # the panes
+    def _make_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
+        self._judging.begin()
+        title = f"{self._judging.file.name}, run {self.runs.number}"
+        setup = msgspec.structs.replace(self.subject.set_up(None, speed), title=title)
+        return LiveRun(setup, self._open_session, deliver, ended)
 
-    def _panes(self) -> Iterator[Widget]:
-        checks = ChecksView(self._sheet, id=CHECKS)
-        checks.border_title = title_of(CHECKS)
-        checks.add_class("pane")
-        yield checks
-        yield from super()._panes()
+    # what is shown
+
+    def compose_panes(self) -> Iterator[Widget]:
+        """Yield the panes, the checks first: where there is room for all, they come before the code."""
+        yield ChecksView(self._sheet, id=CHECKS)
+        yield from super().compose_panes()
 
     def on_mount(self) -> None:
-        """Watch the file and the run; there is nobody to type a line for."""
-        prompt = self.query_one(Prompt)
-        prompt.disabled = True
-        prompt.display = False
-        checks = self.query_one(ChecksView)
-        self.watch(checks, "note", self._entitle)
-        self.watch(checks, "picked", self._redraw)
+        """Watch the file and the run."""
         self.set_interval(_LOOK, self.look_at_allowance)
         self.run_worker(self._watch_file(), group="file")
 
-    def _show(self, pane: str) -> None:
-        self._widget(CHECKS).set_class(pane == "guide", "-behind", update=False)
-        super()._show(pane)
-
-    def _draw_pane(self, name: str) -> None:
-        if name == CHECKS:
-            self.query_one(ChecksView).show(self._sheet)
+    def draw_pane(self, pane: Widget) -> None:
+        """Show the moment on screen on one pane."""
+        if isinstance(pane, ChecksView):
+            pane.show(self._sheet)
         else:
-            super()._draw_pane(name)
+            super().draw_pane(pane)
 
-    @property
-    def _notes(self) -> dict[str, str]:
-        return super()._notes | {CHECKS: self.query_one(ChecksView).note}
+    def page(self) -> Mapping[str, str]:
+        """Return the task, the hints, and what was explained already."""
+        return self._learning.page()
 
-    @on(ChecksView.MomentPicked)
-    def _look_there(self, message: ChecksView.MomentPicked) -> None:
-        self._move(self._playhead.sought(message.at, self._run.timeline.end))
-
-    @property
-    def _page(self) -> Mapping[str, str]:
-        lesson, task = self._judged_lesson, self._words_in(STANDARD, Charset.ASCII).page(self._file)
-        return page_of_exercise(lesson, self._standing_in(lesson), self._signs, task)
-
-    # what there is to say
-
-    @property
-    def _words(self) -> ExerciseWords:
-        return self._words_in(keymap_of(self.app), self._charset)
-
-    def _words_in(self, keymap: Keymap, charset: Charset) -> ExerciseWords:
-        """Sentences that name the keys of a keymap; the guide shows the registry's as those in force."""
-        actions = ("open_source", "watch", "lesson", "next_lesson")
-        keys = Keys(*(keymap.sign(Scope.LESSON, action, charset) for action in actions))
-        following = self._subject.following
-        return ExerciseWords(self._judged_lesson, self._judge.checks, self._file.name, following, keys)
-
-    @property
-    def _sheet(self) -> Sheet:
-        sheet = self._judged_sheet or self._words.running(self._run.timeline.end)
-        return replace(sheet, news=self._words.gone, standing=Standing.FAILED) if self._gone else sheet
-
-    def _verdict(self) -> Diagnosis:
-        if self._playhead.at is not None or self._run.alive:
-            return super()._verdict()
+    def diagnosis(self) -> Diagnosis:
+        """Return what to say of the moment on screen; of a run that is over, what came of it."""
+        if self.navigation.playhead.at is not None or self.runs.run.alive:
+            return super().diagnosis()
         sheet = self._sheet
         if sheet.standing is Standing.FAILED and not sheet.note:
             return Diagnosis(sheet.news, Weight.TROUBLE, stays=True)
         return Diagnosis(sheet.news, Weight.FINE)
 
+    @property
+    def _words(self) -> ExerciseWords:
+        return self._words_in(keymap_of(self.app), self.charset)
+
+    def _words_in(self, keymap: Keymap, charset: Charset) -> ExerciseWords:
+        actions = ("open_source", "watch", "lesson", "next_lesson")
+        return self._judging.words(Keys(*(keymap.sign(Scope.LESSON, action, charset) for action in actions)))
+
+    @property
+    def _task_in_words(self) -> str:
+        """The task, with the registry's keys: the guide shows those in force."""
+        return self._words_in(STANDARD, Charset.ASCII).page(self._judging.file)
+
+    @property
+    def _sheet(self) -> Sheet:
+        return self._judging.sheet_at(self.runs.timeline.end, self._words)
+
     # runs
 
-    def _begin(self, speed: float | None) -> None:
-        self._content = content_of(self._file)
-        self._allowance = Allowance()
-        self._judged_sheet = None
-        super()._begin(speed)
+    @on(RunController.Delivered)
+    def _count(self, message: RunController.Delivered) -> None:
+        if message.run == self.runs.number:
+            self._judging.allowance.write(message.events)
 
-    def _new_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
-        title = f"{self._file.name}, run {self._runs}"
-        setup = msgspec.structs.replace(self._subject.set_up(None, speed), title=title)
-        return LiveRun(setup, self._open_session, deliver, ended)
-
-    @on(LessonScreen.Delivered)
-    def _count(self, message: LessonScreen.Delivered) -> None:
-        if message.run == self._runs:
-            self._allowance.write(message.events)
-
-    @on(LessonScreen.Over)
-    def _judge_when_over(self, message: LessonScreen.Over) -> None:
-        if message.run == self._runs:
-            self._come_to_an_end(over(self._run.timeline, self._file.name, message.loss))
+    @on(RunController.Over)
+    def _judge_when_over(self, message: RunController.Over) -> None:
+        if message.run == self.runs.number:
+            self._come_to_an_end(over(self.runs.timeline, self._judging.file.name, message.trouble))
 
     def allow(self, allowance: Allowance) -> None:
         """Let the run on screen take this much."""
-        self._allowance = allowance
+        self._judging.allowance = allowance
 
     def look_at_allowance(self) -> None:
         """End the run if it has taken too much."""
-        run, allowance = self._run, self._allowance
-        if not run.alive:
-            return
-        if run.paused or (run.virtual and run.speed is not None):
-            allowance.rest()
-        else:
-            allowance.pass_time()
-        sentence = allowance.spent(run.timeline, self._file.name)
+        sentence = self._judging.spent(self.runs.run)
         if sentence is not None:
             self._break_off(sentence)
 
     def _break_off(self, sentence: str) -> None:
         """End a run that has taken too much; what its engine still sends no longer counts."""
-        self._runs += 1
-        run = self._run
-        self._finish(run.over(sentence))
+        self.runs.disown()
+        run = self.runs.run
+        self.finisher.finish(run.over(sentence))
         self.run_worker(asyncio.to_thread(run.stop), group="stop")
         self._come_to_an_end(Observed(run.timeline, sentence, broken_off=True))
 
     def _come_to_an_end(self, observed: Observed) -> None:
-        self.run_worker(self._judge_run(self._runs, observed), group="judge", exclusive=True)
+        self.run_worker(self._judge(self.runs.number, observed), group="judge", exclusive=True)
 
-    async def _judge_run(self, number: int, observed: Observed) -> None:
-        """Judge a run that is over, here where it is drawn from: others may not read it meanwhile."""
-        judged = []
-        if observed.trouble is None:
-            for check in self._judge.checks:
-                judged.append(self._judge.judge(check, observed.timeline))
-                await asyncio.sleep(0)
-        checked = Checked(tuple(judged), len(self._judge.checks), observed)
-        if number != self._runs:
+    async def _judge(self, number: int, observed: Observed) -> None:
+        checked = await self._judging.judge(observed)
+        if number != self.runs.number:
             return
-        self._judged_sheet = self._words.judged(checked)
+        self._judging.sheet = self._words.judged(checked)
         self.look_for_findings()
         if checked.good:
-            self._progress.passes(self._judged_lesson.id)
-            await self._learnt()
+            self._learning.store.passes(self._learning.lesson.id)
+            await self._learning.learnt()
 
     # the file
 
     async def _watch_file(self) -> None:
+        file = self._judging.file
         try:
-            async for content in contents(self._file):
+            async for content in contents(file):
                 self.post_message(self.Saved(content))
         except CANNOT_WATCH:
-            self._tell(f"{self._file.parent} cannot be watched, so saving is not noticed there.")
+            self.tell(f"{file.parent} cannot be watched, so saving is not noticed there.")
 
     @on(Saved)
     async def _take_saved(self, message: Saved) -> None:
-        gone = message.content is None
-        if gone != self._gone:
-            self._gone = gone
-            self._stale = True
-        if not gone and message.content != self._content:
-            await self.action_run_again()
+        if self._judging.is_changed_by(message.content):
+            await self.restarts.action_run_again()
+        else:
+            self.redraw()
 
-    # the keys
-
-    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer what leaves the run as it is judged; running again is always possible."""
-        if action in _REFUSED or (action == "hint" and self._sheet.standing is Standing.PASSED):
-            return False
-        if action in {"run_again", "watch", "lesson", "show_pane"}:
-            return True
-        return super().check_action(action, parameters)
-
-    async def action_run_again(self) -> None:
-        """Run the file again and judge it, as fast as that goes."""
-        await self._start_over(self._changes, self.FIRST_SPEED)
+    async def action_watch(self) -> None:
+        """Run the file again at the pace of real time."""
+        await self.restarts.start(Changes(), speed=1.0)

@@ -8,7 +8,7 @@ from cbtui.keys.actions import Scope
 from cbtui.keys.keymap import STANDARD, Keymap
 from cbtui.looks.theme import Charset
 from cbtui.runs.live.findings import Told
-from cbtui.runs.live.live_run import LiveRun, State
+from cbtui.runs.live.live_run import ShownRun, State
 from cbtui.runs.live.playhead import Playhead
 from cbtui.text.durations import duration
 from sim.trace.descriptions import name_of
@@ -52,7 +52,7 @@ class Diagnosis:
 
 
 def verdict(
-    run: LiveRun, playhead: Playhead, concurrency: Concurrency, keymap: Keymap = STANDARD
+    run: ShownRun, playhead: Playhead, concurrency: Concurrency, keymap: Keymap = STANDARD
 ) -> Diagnosis:
     """Return what to say of the moment on screen; at a run's end, how it ended and how to go on."""
     timeline = run.timeline
@@ -71,7 +71,7 @@ def verdict(
     return moment
 
 
-def way_on(run: LiveRun, keymap: Keymap) -> str:
+def way_on(run: ShownRun, keymap: Keymap) -> str:
     """Return how to go on with a run in which callbacks wait for ever; "" for one that is over."""
     return f"{_key('start_over', keymap)} starts over" if run.alive else ""
 

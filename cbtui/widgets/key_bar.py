@@ -49,9 +49,11 @@ class KeyBar(Painted):
         self._scope = scope
         self.changed()
 
-    def working(self, labels: Sequence[str]) -> list[Action]:
-        """Return the actions with some labels that have a meaning now."""
-        return [action for action in self._working() if action.label in labels]
+    def working(self) -> list[Action]:
+        """Return the actions that have a meaning now, with the keys in force."""
+        working = [action for action in actions_of(self._scope) if self._works(action)]
+        working.sort(key=lambda action: action.label not in self.first)
+        return keymap_of(self.app).of(working)
 
     def rows(self, size: Size) -> Sequence[Sequence[Run]]:
         """Paint the keys."""
@@ -73,13 +75,7 @@ class KeyBar(Painted):
             start += entry.width
 
     def _entries(self, width: int) -> list[Entry]:
-        return choose(entries(self._working(), self._charset), width - 1)
-
-    def _working(self) -> list[Action]:
-        """The actions that have a meaning now, with the keys in force."""
-        working = [action for action in actions_of(self._scope) if self._works(action)]
-        working.sort(key=lambda action: action.label not in self.first)
-        return keymap_of(self.app).of(working)
+        return choose(entries(self.working(), self._charset), width - 1)
 
     def _works(self, action: Action) -> bool:
         return self.screen.check_action(*method_of(action)) is not False

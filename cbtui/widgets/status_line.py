@@ -7,7 +7,8 @@ from textual.geometry import Size
 from textual.reactive import reactive
 
 from cbtui.looks.theme import Charset, Ink, Role, Run
-from cbtui.runs.live.live_run import LiveRun, State
+from cbtui.runs.live.live_recording import LiveRecording
+from cbtui.runs.live.live_run import ShownRun, State
 from cbtui.runs.live.playhead import Playhead
 from cbtui.text.cells import fit
 from cbtui.text.durations import duration
@@ -51,7 +52,12 @@ class Status:
 
 
 def status_of(
-    title: str, run: LiveRun, playhead: Playhead, usual_executor: str, exported: int | None = None
+    title: str,
+    run: ShownRun,
+    playhead: Playhead,
+    usual_executor: str,
+    recording: LiveRecording | None = None,
+    exported: int | None = None,
 ) -> Status:
     """Return what the line tells of a run; until its executor appears, what the lesson says of it."""
     timeline = run.timeline
@@ -65,14 +71,14 @@ def status_of(
         executor=executor_label(timeline) or usual_executor,
         dropped=timeline.dropped(at),
         lost=timeline.lost,
-        recorded=run.recorded,
-        unrecorded=run.unrecorded,
-        recorded_bytes=run.recorded_bytes,
+        recorded=None if recording is None else recording.count,
+        unrecorded=0 if recording is None else recording.lost,
+        recorded_bytes=0 if recording is None else recording.size,
         exported=exported,
     )
 
 
-def _pace(run: LiveRun) -> str:
+def _pace(run: ShownRun) -> str:
     if not run.virtual:
         return "real: computing goes on" if run.state is State.PAUSED else f"real ×{run.speed:.1f}"
     return "virtual max" if run.speed is None else f"virtual ×{run.speed:.1f}"

@@ -114,7 +114,7 @@ async def test_both_runs_have_the_same_stretch_and_cursor_whatever_is_pressed() 
                 await press(app, pilot, key)
             first, second = lanes(app)
             assert first.window == second.window
-            cursor = app.comparison._playhead.now(first.timeline.end)
+            cursor = app.comparison.navigation.playhead.now(first.timeline.end)
             assert (first.now, second.now) == (cursor, min(cursor, second.timeline.end))
             assert first.picture is not None
             assert second.picture is not None
@@ -396,9 +396,9 @@ async def test_keys_are_answered_while_a_comparison_goes_on(monkeypatch: pytest.
     async with app.run_test(size=WIDE) as pilot:
         await pilot.pause()
         app.comparison.draw()
-        before = app.comparison._playhead
+        before = app.comparison.navigation.playhead
         await pilot.press("left_square_bracket")
-        assert app.comparison._playhead != before
+        assert app.comparison.navigation.playhead != before
         assert "Comparing, 0 s so far" in text_of(app)
         assert app.comparison._comparing
         monkeypatch.setattr(compare, "_SLICE", 10.0)

@@ -4,9 +4,10 @@ import asyncio
 from time import monotonic
 
 import pytest
+from textual.message import Message
 
 from cbtui.runs.live.live_run import LiveRun
-from cbtui.screens.lesson import LessonScreen
+from cbtui.screens.parts.runs import RunController
 from sim.trace.events import AnyEvent, Printed
 from tests.support.builder import ns
 from tests.support.console import WIDE, RecordedConsole, settle
@@ -25,7 +26,7 @@ async def test_a_long_batch_is_taken_in_parts_and_in_order(monkeypatch: pytest.M
         await settle(pilot)
         monkeypatch.setattr(LiveRun, "take", take)
         batch: list[AnyEvent] = [Printed(ns(5) + number, "x" * 4096, error=False) for number in range(2000)]
-        app.lesson_screen._deliver(app.lesson_screen._runs, batch)
+        app.lesson_screen.runs.deliver(app.lesson_screen.runs.number, batch)
         await settle(pilot)
     assert [event for part in taken for event in part] == batch
     assert max(map(len, taken)) <= 256
@@ -40,23 +41,24 @@ async def test_after_each_part_a_session_rests_for_as_long_as_the_machine_let_it
         waits.append(all(part.taken.is_set() for part in handed_over))
         return 0.05
 
-    monkeypatch.setattr("cbtui.screens.lesson.running.waited", waited)
-    handed_over: list[LessonScreen.Delivered] = []
+    monkeypatch.setattr("cbtui.screens.parts.runs.waited", waited)
+    handed_over: list[RunController.Delivered] = []
     app = RecordedConsole("shared-group", shared_group_run().events, 5.0)
     async with app.run_test(size=WIDE) as pilot:
         await settle(pilot)
         screen = app.lesson_screen
-        post = screen.post_message
+        post = screen.post
 
-        def hand_over(message: LessonScreen.Delivered) -> None:
-            handed_over.append(message)
+        def hand_over(message: Message) -> None:
+            if isinstance(message, RunController.Delivered):
+                handed_over.append(message)
             post(message)
 
-        monkeypatch.setattr(screen, "_hand_over", hand_over)
+        monkeypatch.setattr(screen.runs, "_post", hand_over)
         logs = len(screen.live_run.timeline.logs)
         batch: list[AnyEvent] = [Printed(ns(5) + number, "x", error=False) for number in range(3 * 256)]
         began = monotonic()
-        await asyncio.to_thread(screen._deliver, screen._runs, batch)
+        await asyncio.to_thread(screen.runs.deliver, screen.runs.number, batch)
         assert monotonic() - began >= 3 * 0.05
         assert waits == [True] * 3
         assert len(screen.live_run.timeline.logs) == logs + len(batch)
@@ -71,32 +73,4 @@ async def test_a_session_may_deliver_a_long_batch_to_a_screen_that_is_gone() -> 
         await until(pilot, lambda: not screen.is_attached)
         batch: list[AnyEvent] = [Printed(ns(5) + number, "x", error=False) for number in range(2 * 256)]
         # As on the session's own thread, which knows no app: asyncio.to_thread would hand it on.
-        await asyncio.get_running_loop().run_in_executor(None, screen._deliver, screen._runs, batch)
-
-
-async def test_frames_that_nobody_asked_for_wait_on_a_busy_machine_and_those_of_keys_do_not(
-    monkeypatch: pytest.MonkeyPatch,
-) -> None:
-    monkeypatch.setattr("cbtui.screens.lesson.screen.waited", lambda _since: 60.0)
-    monkeypatch.setattr("cbtui.screens.lesson.screen._LONGEST_REST", 60.0)
-    drawn: list[bool] = []
-    app = RecordedConsole("shared-group", shared_group_run().events, 5.0)
-    async with app.run_test(size=WIDE) as pilot:
-        await settle(pilot)
-        screen = app.lesson_screen
-        draw_lanes = screen.draw_lanes
-
-        def note() -> None:
-            drawn.append(screen._stale)
-            draw_lanes()
-
-        while screen._rests_until < monotonic():
-            screen._grown = True
-            await pilot.pause(0.02)
-        monkeypatch.setattr(screen, "draw_lanes", note)
-        screen._grown = True
-        await pilot.pause(0.2)
-        assert not drawn
-        await pilot.press("left_square_bracket")
-        while not drawn:
-            await pilot.pause(0.01)
+        await asyncio.get_running_loop().run_in_executor(None, screen.runs.deliver, screen.runs.number, batch)

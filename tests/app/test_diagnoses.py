@@ -167,7 +167,7 @@ async def test_the_rules_look_at_most_once_a_second_whatever_is_drawn(
         began = monotonic()
         for _ in range(50):
             app.lesson_screen.draw()
-            app.lesson_screen._draw_if_stale()
+            app.lesson_screen._draw_if_due()
         await pilot.pause()
         assert looks <= monotonic() - began + 1
 

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from textual.pilot import Pilot
 
+from cbtui.app import CbtuiApp
 from cbtui.runs.judged.run_budget import Allowance
 from cbtui.screens.compare import CompareScreen
 from cbtui.screens.exercise import ExerciseScreen
@@ -71,7 +72,11 @@ async def judge(app: ExerciseConsole, engines: Engines, pilot: Pilot[None]) -> N
 
 
 def offered(app: ExerciseConsole) -> set[str]:
-    return {action.id for action in app.screen.query_one(KeyBar)._working()}
+    return {action.id for action in app.screen.query_one(KeyBar).working()}
+
+
+def kind_of_screen(app: CbtuiApp) -> type[object]:
+    return type(app.screen)
 
 
 def started(engines: Engines, number: int) -> bool:
@@ -93,14 +98,14 @@ async def test_e_puts_the_starter_here_and_goes_to_the_exercise(here: Path) -> N
         await settle(pilot)
         await pilot.press("e")
         await settle(pilot)
-        assert type(app.lesson_screen) is ExerciseScreen
+        assert kind_of_screen(app) is ExerciseScreen
         assert (here / FILE).read_bytes() == STARTER.read_bytes()
         (told,) = app._notifications
         assert told.message == f"{FILE} is in {here} now, and is yours: it is checked whenever you save it."
         assert app.engines.latest.setup.programs[0].path == str(here / FILE)
         await pilot.press("e")
         await settle(pilot)
-        assert type(app.lesson_screen) is LessonScreen
+        assert kind_of_screen(app) is LessonScreen
 
 
 @pytest.mark.slow

@@ -187,7 +187,7 @@ async def test_n_opens_the_next_lesson_and_ends_this_run() -> None:
     async with console() as (app, pilot):
         predict(app, lessons()[2].id)
         await press(pilot, "n")
-        assert app.lesson_screen.lesson == lessons()[2]
+        assert app.lesson_screen.subject.lesson == lessons()[2]
         assert app.engines.sessions[0].stopped
         assert not app.engines.latest.stopped
 
@@ -197,7 +197,7 @@ async def test_the_last_lesson_has_no_next_one() -> None:
     async with console(size=WIDE, lesson=lessons()[-1].id) as (app, pilot):
         assert "n next" not in lines_of(app)[-1]
         await press(pilot, "n")
-        assert app.lesson_screen.lesson == lessons()[-1]
+        assert app.lesson_screen.subject.lesson == lessons()[-1]
 
 
 async def test_q_ends_the_run_and_goes_back_to_the_menu() -> None:

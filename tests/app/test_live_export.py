@@ -20,7 +20,7 @@ from cbtui.keys.keymap import Keymap
 from cbtui.runs.live.live_export import LiveExport, Material
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.screens.export import CHOICES, ExportScreen
-from cbtui.screens.lesson import exporting
+from cbtui.screens.parts import exporting
 from cbtui.screens.replay import ReplayScreen
 from sim.export import CallTable
 from sim.recording import About, read
@@ -142,7 +142,7 @@ async def test_the_other_formats_are_written_too() -> None:
 async def test_a_picture_shows_the_stretch_on_screen_or_the_whole_run() -> None:
     async with console() as (app, pilot):
         await press(pilot, *["greater_than_sign"] * 3)
-        window = app.lesson_screen._playhead.window(app.lesson_screen.live_run.timeline.end)
+        window = app.lesson_screen.navigation.window
         assert window.start > 0
         picture = await exported(app, pilot, "p")
         ElementTree.parse(picture)

@@ -9,7 +9,6 @@ from sim.engine.commands import (
     ResetWorld,
     Resume,
     RunUntil,
-    RunUntilCallback,
     SetSpeed,
     Step,
 )
@@ -61,10 +60,8 @@ def test_a_step_that_is_told_of_after_one_has_gone_on_does_not_pause_the_run(run
     assert state_of(run) is State.LIVE
 
 
-@pytest.mark.parametrize("goal", [RunUntil(5), RunUntilCallback(1, "timer")])
-def test_a_run_that_goes_on_to_a_moment_is_not_paused_by_the_step_before(
-    run: LiveRun, goal: RunUntil | RunUntilCallback
-) -> None:
+def test_a_run_that_goes_on_to_a_moment_is_not_paused_by_the_step_before(run: LiveRun) -> None:
+    goal = RunUntil(5)
     run.step()
     run.run_until(5)
     run.take([RunStarted(0, "x", "virtual", 0), TimeHalted(1, "step"), CommandGiven(1, in_words(goal))])
@@ -156,9 +153,7 @@ def test_a_run_that_goes_on_to_a_goal_is_live_until_the_engine_says_that_time_st
     assert state_of(run) is State.PAUSED
     run.step()
     assert state_of(run) is State.PAUSED
-    run.run_until_callback(3)
-    assert state_of(run) is State.LIVE
-    assert session.commands == [Pause(), RunUntil(9), Step(), RunUntilCallback(3, "another callback")]
+    assert session.commands == [Pause(), RunUntil(9), Step()]
 
 
 def test_the_real_clock_has_speeds_but_none_without_limit() -> None:

@@ -11,7 +11,7 @@ from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
 from cbtui.keys.actions import PANES
-from cbtui.screens.lesson import LessonScreen
+from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.log import LogFilter
@@ -172,10 +172,10 @@ async def test_the_editor_is_opened_at_the_line_and_the_run_goes_on(
         await press(pilot, CODE, "down")
         line = code.place.line
         # The pilot waits for a screen that is drawn, which none is meanwhile.
-        app.lesson_screen.action_open_source()
+        app.lesson_screen.panes.action_open_source()
         while not told.exists():
             await asyncio.sleep(0.01)
-        app.lesson_screen.post_message(LessonScreen.Delivered(1, LATER))
+        app.lesson_screen.post_message(RunController.Delivered(1, LATER))
         while app.lesson_screen.live_run.timeline.end < ns(13.9):
             await asyncio.sleep(0.01)
         go.touch()
@@ -198,7 +198,7 @@ async def test_a_file_that_changed_on_disk_is_run_again_as_it_is_now(tmp_path: P
         app.screen.query_one(CodeView).look_at_disk()
         await settle(pilot)
         assert "2 Code node.py · changed on disk ─" in text_of(app)
-        app.screen.post_message(LessonScreen.Over(1, None))
+        app.screen.post_message(RunController.Over(1, None))
         await settle(pilot)
         assert "2 Code node.py · changed; r runs it again" in text_of(app)
         await press(pilot, "r")

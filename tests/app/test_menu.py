@@ -32,7 +32,7 @@ def menu() -> CbtuiApp:
 def opened(app: CbtuiApp) -> str | None:
     """The lesson that lies over the menu, whatever lies over that."""
     screens = [screen for screen in app.screen_stack if isinstance(screen, LessonScreen)]
-    lesson = screens[0].lesson if screens else None
+    lesson = screens[0].subject.lesson if screens else None
     return None if lesson is None else lesson.id
 
 

@@ -49,8 +49,8 @@ async def test_digits_are_words_too_and_enter_opens_what_is_highlighted() -> Non
         await pilot.press("slash", *"2 threads", "down")
         await pilot.press("enter")
         assert isinstance(app.screen, LessonScreen)
-        assert app.screen.lesson is not None
-        assert app.screen.lesson.id == "reentrant-2-threads"
+        assert app.screen.subject.lesson is not None
+        assert app.screen.subject.lesson.id == "reentrant-2-threads"
 
 
 async def test_a_search_stays_when_a_lesson_is_left_until_it_is_ended() -> None:

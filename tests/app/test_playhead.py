@@ -4,7 +4,7 @@ from hypothesis import strategies as st
 from cbtui.runs.live.playhead import SPANS, Playhead
 from sim.trace.model import Window
 from tests.support.builder import ns
-from tests.support.runs import dummy_server_run
+from tests.support.runs import dummy_server_run, shared_group_run
 from tests.widgets.pictures import told
 
 SECOND = 1_000_000_000
@@ -148,7 +148,7 @@ def test_a_moment_is_sought_between_the_beginning_and_the_end() -> None:
 def test_events_are_gone_through_one_by_one_both_ways() -> None:
     timeline = told(dummy_server_run())
     back, places = Playhead(), []
-    while (further := back.beside(timeline, -1)) != back:
+    while (further := back.beside([timeline], timeline.end, -1)) != back:
         back = further
         places.append(back.at)
     assert places == sorted(places, key=lambda at: -(at or 0))
@@ -156,13 +156,13 @@ def test_events_are_gone_through_one_by_one_both_ways() -> None:
     forth = []
     while back.at is not None:
         forth.append(back.at)
-        back = back.beside(timeline, 1)
+        back = back.beside([timeline], timeline.end, 1)
     assert forth == places[::-1]
 
 
-def test_events_of_one_callback_are_gone_through_alone() -> None:
-    timeline = told(dummy_server_run())
-    entity = next(iter(timeline.entities))
-    found = timeline.neighbour(ns(5.0), entity, -1)
-    assert found is not None
-    assert Playhead(at=ns(5.0)).beside(timeline, -1, entity).at == found
+def test_events_of_two_runs_are_gone_through_together() -> None:
+    first, second = told(dummy_server_run()), told(shared_group_run())
+    end = max(first.end, second.end)
+    both = [timeline.neighbour(ns(5.0), None, -1) for timeline in (first, second)]
+    assert Playhead(at=ns(5.0)).beside([first, second], end, -1).at == max(at or 0 for at in both)
+    assert len(set(both)) == 2

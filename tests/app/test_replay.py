@@ -9,11 +9,10 @@ import pytest
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
-from cbtui.runs.live.replay import ReplaySession, of_recording
+from cbtui.runs.live.replay import RecordingReader, of_recording
 from cbtui.runs.recorded.recording_file import about
 from cbtui.screens.replay import ReplayScreen
 from cbtui.widgets.shell import Prompt
-from sim.engine.commands import Pause
 from sim.engine.setup import ProgramSetup, RunSetup
 from sim.recording import About, Recording, read
 from sim.trace.events import AnyEvent, RunEnded
@@ -64,9 +63,9 @@ async def press(pilot: Pilot[None], *keys: str) -> None:
 async def test_a_recording_opens_at_its_end_with_every_pane_alive(tmp_path: Path) -> None:
     events = shared_group_run().events
     async with replayed(recording(tmp_path)) as (screen, pilot):
-        assert screen.live_run.timeline.end == timeline_of([events]).end
+        assert screen.replay_run.timeline.end == timeline_of([events]).end
         assert "‖ REPLAY" in status(pilot)
-        assert f"t {screen.live_run.timeline.end / 1e9:.3f} s" in status(pilot)
+        assert f"t {screen.replay_run.timeline.end / 1e9:.3f} s" in status(pilot)
         picture = text_of(pilot.app)
         assert "Recording of shared-group" in picture
         assert "␣ go on" in picture
@@ -86,7 +85,7 @@ async def test_at_its_end_it_tells_how_the_run_ended(tmp_path: Path) -> None:
 
 async def test_it_can_be_scrubbed_both_ways(tmp_path: Path) -> None:
     async with replayed(recording(tmp_path)) as (screen, pilot):
-        timeline = screen.live_run.timeline
+        timeline = screen.replay_run.timeline
         before = timeline.neighbour(timeline.end, None, -1)
         assert before is not None
         await press(pilot, "comma")
@@ -140,7 +139,7 @@ async def test_what_cannot_be_read_is_said_in_one_sentence_and_the_rest_is_shown
     cut = tmp_path / "cut.mcap"
     cut.write_bytes(whole.read_bytes()[: whole.stat().st_size // 2])
     async with replayed(read(cut)) as (screen, pilot):
-        assert 0 < screen.live_run.timeline.end < timeline_of([events]).end
+        assert 0 < screen.replay_run.timeline.end < timeline_of([events]).end
         assert screen.replay_run.damage is not None
         assert "breaks off at byte" in screen.replay_run.damage
         assert "breaks off at byte" in text_of(pilot.app)
@@ -184,18 +183,12 @@ def test_recorded_texts_are_shown_as_texts(tmp_path: Path) -> None:
     assert str(subject.node_path) == "/ab"
 
 
-def test_a_recording_refuses_commands_by_their_names(tmp_path: Path) -> None:
-    session = ReplaySession(recording(tmp_path), lambda _: None, lambda _: None)
-    with pytest.raises(NotImplementedError, match="no commands, and so no Pause"):
-        session.send(Pause())
-
-
 def test_a_recording_that_goes_away_while_it_is_read_ends_with_a_sentence(tmp_path: Path) -> None:
     shown = recording(tmp_path)
     shown.path.unlink()
     ended: list[str | None] = []
     delivered: list[list[AnyEvent]] = []
-    session = ReplaySession(shown, delivered.append, ended.append)
+    session = RecordingReader(shown, delivered.append, ended.append)
     session.start()
     session.stop()
     assert ended == [f"{shown.path} cannot be read to its end: No such file or directory"]

@@ -70,7 +70,7 @@ async def test_g_gives_the_selected_callback_another_group_and_keeps_the_run_bef
         await press(pilot, "o")
         assert app.lesson_screen.live_run.setup.groups == (ODOM_OWN,)
         assert [session.stopped for session in sessions(app)] == [True, False]
-        kept = app.lesson_screen._before
+        kept = app.lesson_screen.restarts.before
         assert kept is not None
         assert kept.timeline is before.timeline
         assert kept.name == "shared-group, as written"
@@ -176,8 +176,8 @@ async def test_several_changes_make_one_run_that_is_compared_with_the_one_before
         setup = app.lesson_screen.live_run.setup
         assert (setup.groups, setup.threads) == ((ODOM_OWN,), 4)
         assert len(sessions(app)) == 2
-        assert app.lesson_screen._before is not None
-        assert app.lesson_screen._before.name == "shared-group, as written"
+        assert app.lesson_screen.restarts.before is not None
+        assert app.lesson_screen.restarts.before.name == "shared-group, as written"
         assert notes(app) == ["changed: odom own group, 4 threads"]
 
 

@@ -107,12 +107,12 @@ async def test_time_goes_on_on_screen_and_in_the_recording_while_a_callback_does
     async with console_on(node_with(folder, fault)) as console:
         await console.until(lambda live: bool(live.timeline.notices))
         console.app.simulate_key("R")
-        await console.until(lambda live: live.recorded is not None)
+        await console.until(lambda live: live.recording.count is not None)
         last = console.screen.live_run.timeline.notices[-1].t
         await console.until(lambda live: live.timeline.end > last + SECOND)
         assert any(float(runs) > 3.5 for runs in re.findall(r"runs (\d+\.\d) s", text_of(console.app)))
         console.app.simulate_key("R")
-        await console.until(lambda live: live.recorded is None)
+        await console.until(lambda live: live.recording.count is None)
     (path,) = folder.glob("*.mcap")
     assert timeline_of(read(path).batches()).end > last + SECOND
 

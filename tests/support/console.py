@@ -17,7 +17,9 @@ from cbtui.keys.keymap import Keymap
 from cbtui.learning.outcome import Observe
 from cbtui.looks.colour_themes import STANDARD
 from cbtui.runs.judged.checking import Observed
+from cbtui.screens.exercise import ExerciseScreen
 from cbtui.screens.lesson import LessonScreen
+from cbtui.screens.run import RunScreen
 from cbtui.widgets.lanes import Lanes
 from lessons.catalogue import find
 from sim.engine.setup import RunSetup
@@ -61,9 +63,9 @@ class RecordedConsole(CbtuiApp):
         predict(self, lesson)
 
     @property
-    def lesson_screen(self) -> LessonScreen:
-        """The lesson on screen; nothing else may lie over it."""
-        assert isinstance(self.screen, LessonScreen)
+    def lesson_screen(self) -> LessonScreen | ExerciseScreen:
+        """The lesson or its exercise on screen; nothing else may lie over it."""
+        assert isinstance(self.screen, LessonScreen | ExerciseScreen)
         return self.screen
 
 
@@ -91,7 +93,7 @@ _LIMIT = 60.0
 async def settle(pilot: Pilot[None]) -> None:
     """Let everything that was delivered or pressed reach the screen; to be ``run_before`` of a snapshot."""
     await pilot.pause()
-    if isinstance(pilot.app.screen, LessonScreen):
+    if isinstance(pilot.app.screen, RunScreen):
         pilot.app.screen.look_for_findings()
         pilot.app.screen.draw()
     await pilot.pause()

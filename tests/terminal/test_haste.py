@@ -17,10 +17,10 @@ pytestmark = pytest.mark.skipif(
 _OPEN, _LEAVE = "\r", "q"
 _PALETTE, _PAGE_DOWN = "\x10", "\x1b[6~"
 _FAULTY = """\
-from cbtui.screens.lesson.screen import LessonScreen
+from cbtui.screens.parts.engine_keys import WorldKeys
 def fail(self):
     raise ZeroDivisionError("[red]as planted[/red]")
-LessonScreen.action_call_service = fail
+WorldKeys.action_call_service = fail
 from cbtui.__main__ import command
 raise SystemExit(command())
 """

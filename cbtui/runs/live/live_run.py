@@ -1,6 +1,6 @@
-"""A run as the console holds it: its timeline, its session, and what the person has asked of it."""
+"""A run as screens show it, and the run of an engine: its timeline, its session, and what was asked of it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from enum import Enum, auto
 from itertools import count
 from typing import Protocol, TypeAlias
@@ -21,14 +21,12 @@ from sim.engine.commands import (
     Resume,
     RunLine,
     RunUntil,
-    RunUntilCallback,
     SetSpeed,
     Step,
     Type,
 )
 from sim.engine.setup import RunSetup
-from sim.trace.descriptions import name_of
-from sim.trace.events import AnyEvent, CommandGiven, EntityId, KeyboardAsked, Notice, TimeHalted
+from sim.trace.events import AnyEvent, CommandGiven, KeyboardAsked, Notice, TimeHalted
 from sim.trace.model import Nanoseconds
 from sim.trace.storage.event_store import EventStore
 from sim.trace.timeline import Timeline
@@ -43,17 +41,21 @@ _CHANGES_STATE = {Notice, TimeHalted, CommandGiven}
 """Events that say whether time goes on; most batches have none."""
 
 
-class Session(Protocol):
-    """One engine process. ``deliver`` and ``ended`` are called on a thread of the session's own."""
+class EventSource(Protocol):
+    """What the events of a run come from; they are delivered on a thread of its own."""
 
     def start(self) -> str | None:
-        """Start the process; a sentence if something about it does not work."""
+        """Start to deliver; a sentence if something about it does not work."""
+
+    def stop(self) -> None:
+        """Deliver no more, within a second; may be called again."""
+
+
+class Session(EventSource, Protocol):
+    """One engine process."""
 
     def send(self, command: Command) -> None:
         """Tell the engine something; ignored once it has ended."""
-
-    def stop(self) -> None:
-        """End the process, within a second; may be called again."""
 
 
 OpenSession: TypeAlias = Callable[[RunSetup, Deliver, Ended], Session]
@@ -72,6 +74,75 @@ class State(Enum):
     REPLAY_PLAYS = auto()
 
 
+class ShownRun(Protocol):
+    """A run as screens show it, whether an engine makes it now or it was recorded.
+
+    It belongs to the UI thread; only ``stop`` may be called from any. ``loss`` says how the engine was lost.
+    """
+
+    setup: RunSetup
+    timeline: Timeline
+    loss: str | None
+    paused: bool
+    speed: float | None
+
+    @property
+    def state(self) -> State:
+        """How far it has come."""
+
+    @property
+    def alive(self) -> bool:
+        """Whether an engine can still be told something."""
+
+    @property
+    def asked(self) -> KeyboardAsked | None:
+        """How a program waits for the keyboard now; None if none does."""
+
+    @property
+    def virtual(self) -> bool:
+        """Whether it runs on virtual time."""
+
+    @property
+    def speeds(self) -> tuple[float | None, ...]:
+        """The speeds that can be chosen."""
+
+    @property
+    def can_be_paced(self) -> bool:
+        """Whether it can be paused, resumed and given another speed."""
+
+    def start(self) -> str | None:
+        """Start the source of its events; a sentence if not all of it works."""
+
+    def take(self, events: list[AnyEvent]) -> str | None:
+        """Add what the source delivered; a sentence on what goes wrong meanwhile."""
+
+    def over(self, trouble: str | None) -> Finish | None:
+        """Note that no more events come; ``trouble`` says why, if that should not be.
+
+        Returns what is left to do and then tells of it, None if there is nothing.
+        """
+
+    def stop(self) -> str | None:
+        """End the source, and say what was saved. Blocks for up to a second, and for a recording's file."""
+
+    def material(self) -> Material:
+        """What there is to export of the run so far."""
+
+    def pause(self) -> None:
+        """Let time stand."""
+
+    def resume(self) -> None:
+        """Let time go on."""
+
+    def change_speed(self, steps: int) -> None:
+        """Go up (> 0) or down in ``speeds``."""
+
+
+def beside(speed: float | None, speeds: Sequence[float | None], steps: int) -> float | None:
+    """Return the speed so many steps up (> 0) or down; the last one in that direction has none beside it."""
+    return speeds[max(0, min(speeds.index(speed) + steps, len(speeds) - 1))]
+
+
 class LiveRun:
     """A run in progress. It belongs to the UI thread: what the session delivers is handed over there."""
 
@@ -79,7 +150,7 @@ class LiveRun:
         self.setup = setup
         self.timeline = Timeline(until_ending=setup.until is not None)
         self._room = DiskSpaceWatch(self.timeline)
-        self._recording = LiveRecording(setup)
+        self.recording = LiveRecording(setup)
         self._events = EventStore()
         self.speed = setup.speed if self.virtual else setup.speed or 1.0
         self.loss: str | None = None
@@ -125,6 +196,16 @@ class LiveRun:
         """The speeds that can be chosen for this run."""
         return SPEEDS if self.virtual else SPEEDS[:-1]
 
+    @property
+    def can_be_paced(self) -> bool:
+        """Whether the engine is there to be paced."""
+        return self.alive
+
+    @property
+    def can_step(self) -> bool:
+        """Whether time stands, and can go on to the next scheduling decision."""
+        return self.virtual and self.state is State.PAUSED
+
     def start(self) -> str | None:
         """Start the engine, one that cannot be started counts as lost; a sentence if not all of it works."""
         try:
@@ -147,19 +228,19 @@ class LiveRun:
                 self.paused = True
             elif isinstance(event, CommandGiven) and self._goes_on and event.text.startswith(_LETS_GO):
                 self.paused = False
-        failure = self._recording.take(events)
+        failure = self.recording.take(events)
         if failure is not None:
             self._session.send(KeepContents(wanted=False))
-        return failure or self._room.news(self._recording.path, self._recording.size)
+        return failure or self._room.news(self.recording.path, self.recording.size)
 
-    def over(self, loss: str | None) -> Finish | None:
-        """Note that the engine is gone; ``loss`` says how, if it should not be.
+    def over(self, trouble: str | None) -> Finish | None:
+        """Note that the engine is gone; ``trouble`` says how, if it should not be.
 
         Returns what finishes a recording and tells of it, None if there is none.
         """
         self._over = True
-        self.loss = loss
-        return self._recording.part()
+        self.loss = trouble
+        return self.recording.part()
 
     def stop(self) -> str | None:
         """End the engine and a recording, and say what that holds.
@@ -168,22 +249,7 @@ class LiveRun:
         """
         if self._started:
             self._session.stop()
-        return self._recording.end()
-
-    @property
-    def recorded(self) -> int | None:
-        """How many events have been recorded; None if the run is not being recorded."""
-        return self._recording.count
-
-    @property
-    def recorded_bytes(self) -> int:
-        """How large the recording is by now."""
-        return self._recording.size
-
-    @property
-    def unrecorded(self) -> int:
-        """How many events came too fast to be recorded."""
-        return self._recording.lost
+        return self.recording.end()
 
     def record(self, key: str = "R") -> str:
         """Begin a recording in the current folder, and say so; ``key`` is what ends it.
@@ -191,14 +257,14 @@ class LiveRun:
         Raises:
             CannotRecordError: it cannot be made.
         """
-        sentence = self._recording.begin(key)
+        sentence = self.recording.begin(key)
         self._session.send(KeepContents(wanted=True))
         return sentence
 
     def end_recording(self) -> Finish | None:
         """Record no more; return what finishes the recording and tells of it, None if there is none."""
         self._session.send(KeepContents(wanted=False))
-        return self._recording.part()
+        return self.recording.part()
 
     def material(self) -> Material:
         """What there is to export of the run so far."""
@@ -245,18 +311,11 @@ class LiveRun:
         self.paused, self._goes_on = False, True
         self._session.send(RunUntil(moment))
 
-    def run_until_callback(self, entity: EntityId) -> None:
-        """Go on to the next event of an entity; time stands again there."""
-        self.paused, self._goes_on = False, True
-        self._session.send(RunUntilCallback(entity, name_of(entity, self.timeline)))
-
     def reset_world(self) -> None:
         """Put the robot back to its start."""
         self._session.send(ResetWorld())
 
     def change_speed(self, steps: int) -> None:
         """Go up (> 0) or down in ``speeds``."""
-        speeds = self.speeds
-        place = max(0, min(speeds.index(self.speed) + steps, len(speeds) - 1))
-        self.speed = speeds[place]
+        self.speed = beside(self.speed, self.speeds, steps)
         self._session.send(SetSpeed(self.speed))

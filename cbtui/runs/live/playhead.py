@@ -1,8 +1,8 @@
 """Which moment and which stretch of a run is on screen."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from sim.trace.events import EntityId
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -63,11 +63,12 @@ class Playhead:
         at = max(0, at)
         return replace(self, at=at, start=self._start_that_shows(at, end))
 
-    def beside(self, timeline: Timeline, step: int, entity: EntityId | None = None) -> "Playhead":
-        """Go to the event before (``step`` < 0) or after, of an entity or of any; after the last is live."""
-        found = timeline.neighbour(self.now(timeline.end), entity, step)
-        if found is not None:
-            return self.sought(found, timeline.end)
+    def beside(self, timelines: Sequence[Timeline], end: Nanoseconds, step: int) -> "Playhead":
+        """Go to the event before (``step`` < 0) or after, of any of the runs; after the last is live."""
+        neighbours = [timeline.neighbour(self.now(end), None, step) for timeline in timelines]
+        found = [at for at in neighbours if at is not None]
+        if found:
+            return self.sought(min(found) if step > 0 else max(found), end)
         return self.live() if step > 0 else self
 
     def live(self) -> "Playhead":

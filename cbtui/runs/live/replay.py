@@ -1,4 +1,4 @@
-"""A recording as the console shows it: its subject, the session that reads it, and the run it tells of."""
+"""A recording as the console shows it: its subject, what reads its events, and the run that they tell of."""
 
 import threading
 from collections.abc import Iterator
@@ -6,19 +6,20 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 from cbtui.engines.session import Deliver, Ended
+from cbtui.runs.live.disk_space import DiskSpaceWatch
 from cbtui.runs.live.live_export import Material
 from cbtui.runs.live.live_recording import Finish
-from cbtui.runs.live.live_run import SPEEDS, LiveRun, State
+from cbtui.runs.live.live_run import SPEEDS, State, beside
 from cbtui.runs.live.playhead import Playhead
 from cbtui.runs.recorded.recording_file import setup_of
 from cbtui.runs.setup.own_files import PROGRAMS
 from cbtui.runs.setup.subject import Subject
-from sim.engine.commands import Command
 from sim.engine.setup import RunSetup
 from sim.foreign_file import read_text
 from sim.recording import About, Recording, RecordingError, read
 from sim.trace.events import AnyEvent
 from sim.trace.model import Nanoseconds
+from sim.trace.timeline import Timeline
 
 _SECOND = 1_000_000_000
 _DELIVERED = 2000
@@ -40,8 +41,8 @@ Every pane shows the moment that the status line tells.
 """
 
 
-class ReplaySession:
-    """Delivers a recording instead of a run; shaped like ``cbtui.engines.session.Session``.
+class RecordingReader:
+    """A recording as a source of events.
 
     ``deliver`` and ``ended`` are called on a thread of its own; what ``ended`` gets is one sentence on what
     of the recording cannot be read, or None.
@@ -57,14 +58,6 @@ class ReplaySession:
     def start(self) -> None:
         """Start to read."""
         self._reader.start()
-
-    def send(self, command: Command) -> None:
-        """Refuse a command: what was recorded cannot be told anything.
-
-        Raises:
-            NotImplementedError: always.
-        """
-        raise NotImplementedError(f"a recording takes no commands, and so no {type(command).__name__}")
 
     def stop(self) -> None:
         """Read no further. May be called again."""
@@ -111,20 +104,30 @@ class _ReadAgain:
         yield from read(self._path).batches()
 
 
-class ReplayRun(LiveRun):
+class RecordedRun:
     """A recorded run. It is played by moving the moment on screen, never by an engine.
 
     ``damage`` is one sentence on what cannot be read of it, once it has been read to its end.
     """
 
+    alive = False
+    asked = None
+    can_be_paced = True
+    speeds = SPEEDS[:-1]
+    """The speeds at which it can be played."""
+
     def __init__(self, recording: Recording, setup: RunSetup, deliver: Deliver, ended: Ended) -> None:
-        super().__init__(
-            setup, lambda _, deliver, ended: ReplaySession(recording, deliver, ended), deliver, ended
-        )
-        self._path = recording.path
-        self.speed = 1.0
+        self.setup = setup
+        self.timeline = Timeline(until_ending=setup.until is not None)
+        self.loss: str | None = None
         self.paused = True
+        self.speed: float | None = 1.0
         self.damage: str | None = None
+        self.is_read = False
+        """Whether it has been read to its end."""
+        self._path = recording.path
+        self._disk_space = DiskSpaceWatch(self.timeline)
+        self._reader = RecordingReader(recording, deliver, ended)
 
     @property
     def state(self) -> State:
@@ -132,29 +135,32 @@ class ReplayRun(LiveRun):
         return State.REPLAY_STANDS if self.paused else State.REPLAY_PLAYS
 
     @property
-    def is_read(self) -> bool:
-        """Whether it has been read to its end."""
-        return self._over
+    def virtual(self) -> bool:
+        """Whether it ran on virtual time."""
+        return self.setup.clock == "virtual"
 
-    @property
-    def speeds(self) -> tuple[float | None, ...]:
-        """The speeds at which it can be played."""
-        return SPEEDS[:-1]
+    def start(self) -> None:
+        """Start to read."""
+        self._reader.start()
 
     def take(self, events: list[AnyEvent]) -> str | None:
-        """Add what was read; there is nothing to record of it."""
+        """Add what was read."""
         self.timeline.extend(events)
-        return self._room.news(None, 0)
+        return self._disk_space.news(None, 0)
+
+    def over(self, trouble: str | None) -> Finish | None:
+        """Note that it has been read to its end; what tells of what cannot be read, if there is such."""
+        self.is_read = True
+        self.damage = trouble
+        return None if trouble is None else lambda: trouble
+
+    def stop(self) -> None:
+        """Read no further."""
+        self._reader.stop()
 
     def material(self) -> Material:
         """What there is to export: all of the recording, however much of it has been read."""
         return Material(self.setup.title, _ReadAgain(self._path), self.timeline.end)
-
-    def over(self, loss: str | None) -> Finish | None:
-        """Note that it has been read to its end; what tells of what cannot be read, if there is such."""
-        super().over(None)
-        self.damage = loss
-        return None if loss is None else lambda: loss
 
     def pause(self) -> None:
         """Let the moment on screen stand."""
@@ -166,8 +172,7 @@ class ReplayRun(LiveRun):
 
     def change_speed(self, steps: int) -> None:
         """Go up (> 0) or down in ``speeds``."""
-        place = max(0, min(self.speeds.index(self.speed) + steps, len(self.speeds) - 1))
-        self.speed = self.speeds[place]
+        self.speed = beside(self.speed, self.speeds, steps)
 
     def played(self, playhead: Playhead, elapsed: Nanoseconds) -> Playhead:
         """Move a playhead on by what is played in ``elapsed`` real time; at the end it stands."""

@@ -8,7 +8,7 @@ from queue import Queue
 import msgspec
 import pytest
 
-from cbtui.runs.live.replay import ReplaySession
+from cbtui.runs.live.replay import RecordingReader
 from cbtui.runs.setup.lesson_setup import setup_for
 from lessons.catalogue import find
 from sim.engine.setup import TimedCall
@@ -51,7 +51,7 @@ def read_from_file(path: Path) -> Timeline:
 
 def read_by_the_console(path: Path) -> Timeline:
     news: Queue[list[AnyEvent] | str | None] = Queue()
-    session = ReplaySession(read(path), news.put, news.put)
+    session = RecordingReader(read(path), news.put, news.put)
     session.start()
     timeline = Timeline()
     try:

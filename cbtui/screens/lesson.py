@@ -1,0 +1,152 @@
+"""A lesson, or a program of one's own, on screen: it is commanded, changed, predicted and explained."""
+
+from collections.abc import Iterator, Mapping
+
+import msgspec
+from textual import on
+
+from cbtui.engines.session import Deliver, Ended
+from cbtui.learning.lesson_page import Part as PagePart
+from cbtui.learning.lesson_page import page_of
+from cbtui.looks.theme import Charset
+from cbtui.runs.live.live_recording import LiveRecording
+from cbtui.runs.live.live_run import LiveRun, OpenSession
+from cbtui.runs.setup.changes import Changes
+from cbtui.runs.setup.subject import Subject
+from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey, TypingKeys, WorldKeys
+from cbtui.screens.parts.exercise_help import ExerciseHelp
+from cbtui.screens.parts.learning import Learning, signs
+from cbtui.screens.parts.part import Part
+from cbtui.screens.parts.predictions import Predictions
+from cbtui.screens.parts.restarts import Restarts, SetUpKeys
+from cbtui.screens.parts.runs import RunController
+from cbtui.screens.prediction import Way
+from cbtui.screens.run import RunScreen
+from cbtui.widgets.shell import ProgramKeyboard, Prompt, ShellView
+from lessons.lesson import Lesson
+from sim.engine.setup import Keyboard
+
+
+class LessonScreen(RunScreen[LiveRun]):
+    """Runs a program, and lets the person do to it whatever an engine can do.
+
+    Where the program is a lesson's, it is predicted before the run and explained after it.
+    """
+
+    def __init__(
+        self,
+        subject: Subject,
+        open_session: OpenSession,
+        charset: Charset,
+        changes: Changes | None = None,
+    ) -> None:
+        self._open_session = open_session
+        runs = RunController(self._make_run, self.post)
+        super().__init__(subject, charset, runs, live=lambda: runs.run)
+        self.restarts = Restarts(
+            self, runs, changes or Changes(), self.begun_anew, speed=lambda: runs.run.speed
+        )
+        self._learning: Learning | None = None
+        self._predictions: Predictions | None = None
+        lesson, more = subject.lesson, {}
+        if lesson is not None and lesson.exercise is not None:
+            more["exercise"] = lambda: self.console.open_exercise(lesson)
+        self.put_together(
+            PaceKeys(self, runs),
+            RecordingKey(self, runs, self.finisher),
+            WorldKeys(runs),
+            TypingKeys(runs, self.panes, lambda: self.query_one(ShellView)),
+            self.restarts,
+            SetUpKeys(self, runs, self.restarts, self.selection, subject),
+            *([] if lesson is None else self._teaching_parts(lesson)),
+            **more,
+        )
+        runs.begin(speed=1.0)
+
+    def _teaching_parts(self, lesson: Lesson) -> Iterator[Part]:
+        learning = self._learning = Learning(
+            self, self, self.panes, lesson, lambda standing: page_of(lesson, standing, signs())
+        )
+        self._predictions = Predictions(self, self, self.runs, learning)
+        yield self._predictions
+        if lesson.exercise is not None:
+            yield ExerciseHelp(
+                self, self, learning, file=None, is_readable=lambda standing: standing.progress.seen
+            )
+
+    @property
+    def live_run(self) -> LiveRun:
+        """The run on screen."""
+        return self.runs.run
+
+    @property
+    def changes(self) -> Changes:
+        """What the run has other than its program says."""
+        return self.restarts.changes
+
+    @property
+    def recording(self) -> LiveRecording | None:
+        """What records the run."""
+        return self.runs.run.recording
+
+    def page(self) -> Mapping[str, str]:
+        """Return the parts of the guide that can be read now."""
+        return super().page() if self._learning is None else self._learning.page()
+
+    def _make_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
+        changes = self.changes
+        setup = changes.applied(self.subject.set_up(changes.threads, speed))
+        setup = msgspec.structs.replace(setup, keyboard=Keyboard.LIVE)
+        return LiveRun(setup, self._open_session, deliver, ended)
+
+    # the lesson
+
+    def start(self) -> None:
+        """Let time begin when the questions are done with: those are about the node as it is written."""
+        predictions = self._predictions
+        if predictions is not None and predictions.can_predict and not self.changes.words:
+            predictions.ask(self._start_after)
+        else:
+            super().start()
+
+    async def _start_after(self, way: Way | None) -> None:
+        learning = self._learning
+        if way is Way.ON and learning is not None:
+            await learning.learnt()
+            learning.guide.go_to(PagePart.TASK)
+            super().start()
+        else:
+            self.action_leave()
+
+    def drawn(self) -> None:
+        """Unlock what comes after the run when enough of it was seen."""
+        if self._predictions is not None:
+            self._predictions.look_whether_watched()
+
+    @on(Predictions.Found)
+    async def _take_outcome(self, message: Predictions.Found) -> None:
+        if self._predictions is not None:
+            await self._predictions.take(message)
+
+    async def on_unmount(self) -> None:
+        """Leave no engine behind."""
+        if self._predictions is not None:
+            await self._predictions.leave()
+
+    # what is typed
+
+    @on(Prompt.Given)
+    def _give_line(self, message: Prompt.Given) -> None:
+        self.runs.run.give_line(message.text)
+
+    @on(Prompt.Interrupted)
+    def _interrupt_line(self) -> None:
+        self.runs.run.interrupt_line()
+
+    @on(Prompt.CompletionWanted)
+    def _complete_line(self, message: Prompt.CompletionWanted) -> None:
+        self.runs.run.complete_line(message.text, message.cursor)
+
+    @on(ProgramKeyboard.Given)
+    def _type(self, message: ProgramKeyboard.Given) -> None:
+        self.runs.run.type(message.text)

@@ -1,0 +1,55 @@
+"""Which bar on a screen's lanes is selected, and the keys that go from bar to bar."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from cbtui.screens.parts.navigation import TimeNavigation
+from cbtui.screens.parts.part import Part
+from cbtui.widgets.lanes import Lanes, Selection, start_of
+
+
+@dataclass
+class BarSelection(Part):
+    """Selects one bar or lane, on one of the screen's lanes; ``changed`` is called when another one is."""
+
+    lanes: Callable[[], Sequence[Lanes]]
+    navigation: TimeNavigation
+    changed: Callable[[], object]
+
+    @property
+    def selection(self) -> Selection | None:
+        """What is selected."""
+        return self._chosen.selection
+
+    @property
+    def _chosen(self) -> Lanes:
+        """The lanes on which something is selected; the first, if nothing is."""
+        every = self.lanes()
+        return next((lanes for lanes in every if lanes.selection is not None), every[0])
+
+    def select(self, selection: Selection | None, on: Lanes | None = None) -> None:
+        """Select something on some lanes, on the first where none are given; None selects nothing."""
+        every = self.lanes()
+        for lanes in every:
+            lanes.selection = selection if lanes is (on or every[0]) else None
+        self.changed()
+
+    def pick(self, message: Lanes.Picked) -> None:
+        """Select what was pointed at, and go to that moment."""
+        self.select(message.selection, message.control)
+        self.navigation.seek(message.at)
+
+    def action_previous_event(self) -> None:
+        """Go back to the lane's bar before the cursor."""
+        self._go(-1)
+
+    def action_next_event(self) -> None:
+        """Go on to the lane's next bar."""
+        self._go(1)
+
+    def _go(self, step: int) -> None:
+        lanes = self._chosen
+        found = lanes.bar_beside(step)
+        if found is not None and found.bar is not None:
+            self.select(found, lanes)
+            self.navigation.seek(start_of(found.bar))

@@ -1,0 +1,62 @@
+"""The key that takes what is on screen elsewhere, as plain text."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from textual.screen import Screen
+
+from cbtui.runs.live.live_run import ShownRun
+from cbtui.screens.parts.navigation import TimeNavigation
+from cbtui.screens.parts.part import Host, Part
+from cbtui.screens.parts.runs import RunController
+from cbtui.text.durations import duration
+from cbtui.widgets.diagnosis import call_note, diagnose
+from cbtui.widgets.lanes import Lanes
+from cbtui.widgets.lanes.details import details_of_selection
+from sim.trace.descriptions import executor_label, name_of, why_waiting
+from sim.trace.figures.concurrency import Concurrency
+from sim.trace.model import Nanoseconds
+from sim.trace.timeline import Timeline
+
+
+@dataclass
+class DetailsCopy(Part):
+    """Copies what is selected, or else what the moment on screen means."""
+
+    screen: Screen[None]
+    host: Host
+    runs: RunController[ShownRun]
+    navigation: TimeNavigation
+    heading: str
+
+    def action_copy_details(self) -> None:
+        """Put it into the terminal's clipboard (OSC 52, which works over ssh)."""
+        timeline, now = self.runs.timeline, self.navigation.now
+        lanes = self.screen.query_one(Lanes)
+        if lanes.selection is None:
+            lines = list(summary(self.heading, timeline, now, self.runs.concurrency))
+            what = f"the moment {now / 1e9:.3f} s"
+        else:
+            details = details_of_selection(timeline, lanes.selection.renewed(timeline), now, lanes.keys)
+            lines = [details.title, *(f"  {fact}" for fact in details.facts)]
+            what = details.title
+        self.screen.app.copy_to_clipboard("\n".join(lines))
+        self.host.tell(f"copied {what}")
+
+
+def summary(heading: str, timeline: Timeline, now: Nanoseconds, concurrency: Concurrency) -> Iterator[str]:
+    """Say what a moment means, who runs and who waits for what."""
+    label = executor_label(timeline)
+    yield f"{heading}, t {now / 1e9:.3f} s" + (f", {label}" if label else "")
+    yield diagnose(timeline, now, concurrency).text
+    note = call_note(timeline, now)
+    if note:
+        yield note
+    moment = timeline.moment(now)
+    for span in moment.running.values():
+        thread = timeline.threads.get(span.thread)
+        where = "" if thread is None else f" on {thread.name}"
+        yield f"  {name_of(span.entity, timeline)} runs{where} for {duration(now - span.start)}"
+    for wait in moment.waiting.values():
+        took = duration(max(0, now - wait.since))
+        yield f"  {name_of(wait.entity, timeline)} waits {took}: {why_waiting(wait, timeline)}"

@@ -1,0 +1,124 @@
+"""Keys that command a run: its time, its service, its robot, its programs' keyboard and its recording."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from cbtui.runs.live.live_run import LiveRun, ShownRun, State
+from cbtui.runs.recorded.recording_file import CannotRecordError
+from cbtui.screens.parts.finishing import FileFinisher
+from cbtui.screens.parts.panes import PaneLayout
+from cbtui.screens.parts.part import Host, Part
+from cbtui.screens.parts.runs import RunController
+from cbtui.widgets.shell import ShellView
+
+
+@dataclass
+class PaceKeys(Part):
+    """Pauses a run, lets it go on, and changes its speed."""
+
+    host: Host
+    runs: RunController[ShownRun]
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer what would change something."""
+        run = self.runs.run
+        changes = {
+            "pause": not run.paused,
+            "resume": run.paused,
+            "slower": run.speed != run.speeds[0],
+            "faster": run.speed != run.speeds[-1],
+        }
+        return run.can_be_paced and changes[action]
+
+    def action_pause(self) -> None:
+        """Stop time."""
+        self.runs.run.pause()
+        self.host.redraw()
+
+    def action_resume(self) -> None:
+        """Let time go on."""
+        self.runs.run.resume()
+        self.host.redraw()
+
+    def action_slower(self) -> None:
+        """Let time pass more slowly."""
+        self.runs.run.change_speed(-1)
+        self.host.redraw()
+
+    def action_faster(self) -> None:
+        """Let time pass faster."""
+        self.runs.run.change_speed(1)
+        self.host.redraw()
+
+
+@dataclass
+class RecordingKey(Part):
+    """Records stretches of a run to files in the current folder."""
+
+    host: Host
+    runs: RunController[LiveRun]
+    finisher: FileFinisher
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer it as long as something comes."""
+        return self.runs.run.alive
+
+    def action_record(self) -> None:
+        """Begin a recording of this run, or end it."""
+        run = self.runs.run
+        if run.recording.count is not None:
+            self.finisher.finish(run.end_recording())
+        else:
+            try:
+                self.host.tell(run.record(self.host.key("record")))
+            except CannotRecordError as error:
+                self.host.tell(str(error))
+        self.host.redraw()
+
+
+@dataclass
+class WorldKeys(Part):
+    """Calls the service that the run was set up with, and puts the robot back."""
+
+    runs: RunController[LiveRun]
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer it to an engine that is there; a robot is put back by one that answers."""
+        run = self.runs.run
+        return run.alive and (action != "reset_world" or run.state is not State.SILENT)
+
+    def action_call_service(self) -> None:
+        """Call the lesson's service with true."""
+        self.runs.run.call(True)
+
+    def action_call_service_off(self) -> None:
+        """Call the lesson's service with false."""
+        self.runs.run.call(False)
+
+    def action_reset_world(self) -> None:
+        """Put the robot back to its start."""
+        self.runs.run.reset_world()
+
+
+@dataclass
+class TypingKeys(Part):
+    """Goes to the line where ``ros2`` lines are typed, or input for the programs."""
+
+    runs: RunController[LiveRun]
+    panes: PaneLayout
+    shell: Callable[[], ShellView]
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer what somebody waits for."""
+        run = self.runs.run
+        return run.alive if action == "prompt" else run.asked is not None
+
+    def action_prompt(self) -> None:
+        """Let the person type a ros2 line."""
+        self.panes.show("shell")
+        self.shell().focus_prompt()
+
+    def action_type(self) -> None:
+        """Let the person type for the program that reads."""
+        self.panes.show("shell")
+        self.shell().focus_keyboard()

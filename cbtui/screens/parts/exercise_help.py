@@ -1,0 +1,97 @@
+"""What helps with an exercise: its hints, one by one, and its solution."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from textual.screen import Screen
+
+from cbtui.keys.keymap import keymap_of
+from cbtui.keys.named_keys import with_keys_in_force
+from cbtui.learning.lesson_page import Part as PagePart
+from cbtui.learning.lesson_page import Standing
+from cbtui.screens.parts.learning import Learning
+from cbtui.screens.parts.part import Host, Part
+from lessons.description import Exercise
+from sim.foreign_file import MOST_OF_A_PROGRAM, read_text
+
+_READING = 15.0
+"""Seconds that a hint stays which is told over another pane than the guide."""
+
+
+@dataclass
+class ExerciseHelp(Part):
+    """Gives hints and shows the solution, once the exercise can be read.
+
+    ``is_readable`` tells whether it can, ``is_done`` whether no hint is wanted any more; ``file`` is the
+    learner's, None where the exercise has not been begun.
+    """
+
+    screen: Screen[None]
+    host: Host
+    learning: Learning
+    file: Path | None
+    is_readable: Callable[[Standing], bool]
+    is_done: Callable[[], bool] = lambda: False
+
+    @property
+    def _exercise(self) -> Exercise | None:
+        """The exercise, if it can be read."""
+        standing = self.learning.standing
+        return self.learning.lesson.exercise if standing is not None and self.is_readable(standing) else None
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer the hints that are left, and the solution always."""
+        exercise, standing = self._exercise, self.learning.standing
+        if exercise is None or standing is None:
+            return False
+        return action == "solution" or (standing.progress.hints < len(exercise.hints) and not self.is_done())
+
+    async def action_hint(self) -> None:
+        """Take the next hint: it is added to the page, and told where the page is not in sight."""
+        exercise, learning = self._exercise, self.learning
+        if exercise is None:
+            return
+        number = learning.progress.hints + 1
+        if number > len(exercise.hints):
+            return
+        learning.store.take_hint(self.learning.lesson.id, number)
+        await learning.learnt()
+        if learning.guide.display:
+            learning.guide.go_to(PagePart.HINTS)
+        else:
+            title = f"Hint {number} of {len(exercise.hints)}"
+            hint = with_keys_in_force(exercise.hints[number - 1], keymap_of(self.screen.app))
+            self.screen.notify(hint, title=title, timeout=_READING, markup=False)
+
+    def action_solution(self) -> None:
+        """Show the solution; the first time, ask whether that is wanted."""
+        from cbtui.screens.solution import AskingScreen  # with Pygments
+
+        exercise, progress = self._exercise, self.learning.progress
+        if exercise is None:
+            return
+        if progress.solution:
+            self._show_solution(True)
+        else:
+            left = len(exercise.hints) - progress.hints
+            self.host.ask(AskingScreen(left, self.host.charset), self._show_solution)
+
+    def _show_solution(self, wanted: bool | None) -> None:
+        from cbtui.screens.solution import SolutionScreen
+
+        lesson = self.learning.lesson
+        begun = self.file or lesson.starter_path
+        if not wanted or lesson.solution_path is None or begun is None:
+            return
+        self.learning.store.look_at_solution(lesson.id)
+        texts = [(path.name, _text_in(path)) for path in (begun, lesson.solution_path)]
+        self.host.ask(SolutionScreen(texts[0], texts[1], self.host.charset), None)
+
+
+def _text_in(path: Path) -> str:
+    """The text of a file; of one that is gone or no text, as much as there is."""
+    try:
+        return read_text(path, MOST_OF_A_PROGRAM, "replace")
+    except OSError:
+        return ""

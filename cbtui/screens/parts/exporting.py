@@ -1,0 +1,78 @@
+"""The key that takes the run on screen to other programs, as a file in the current folder."""
+
+import asyncio
+from collections.abc import Callable
+from dataclasses import dataclass
+from time import monotonic
+
+from cbtui.runs.live.live_export import LiveExport
+from cbtui.runs.live.live_run import ShownRun
+from cbtui.screens.export import Choice, ExportScreen
+from cbtui.screens.parts.finishing import FileFinisher
+from cbtui.screens.parts.navigation import TimeNavigation
+from cbtui.screens.parts.part import Host, Part
+from cbtui.screens.parts.runs import RunController
+
+EVERY = 0.25
+"""Seconds after which it is told anew how far an export has come."""
+_SOON = 1.0
+"""Seconds after which it is told how far an export has come."""
+_GRACE = 3.0
+"""Seconds that an export gets to come to its end when the screen is left."""
+
+
+@dataclass
+class Exports(Part):
+    """Writes one export at a time, while the run and the screen go on."""
+
+    host: Host
+    runs: RunController[ShownRun]
+    navigation: TimeNavigation
+    finisher: FileFinisher
+    clock: Callable[[], float] = monotonic
+    _export: LiveExport | None = None
+    _began: float = 0.0
+
+    @property
+    def percent(self) -> int | None:
+        """How many per cent of an export are done; None if there is none that takes its time."""
+        export = self._export
+        if export is None or export.over or self.clock() - self._began < _SOON:
+            return None
+        return int(100 * export.share)
+
+    def look(self) -> None:
+        """Have it told how far an export has come."""
+        if self._export is not None:
+            if self._export.over:
+                self._export = None
+            self.host.redraw()
+
+    def leave(self) -> None:
+        """Let an export come to its end, but not for long: what is half done then is taken away."""
+        if self._export is not None:
+            asyncio.get_running_loop().call_later(_GRACE, self._export.give_up)
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer an export of what there is."""
+        return self.runs.timeline.end > 0
+
+    def action_export(self) -> None:
+        """Ask for the format, and export the run so far."""
+        if self._export is None or self._export.over:
+            self.host.ask(ExportScreen(self.host.charset), self._begin)
+        else:
+            done = int(100 * self._export.share)
+            self.host.tell(f"An export is being written, {done} % of it so far; the next can begin after it")
+
+    def _begin(self, choice: Choice | None) -> None:
+        if choice is None:
+            return
+        window = self.navigation.window if choice.on_screen else None
+        try:
+            self._export = LiveExport(self.runs.run.material(), choice.form, window)
+        except FileNotFoundError:
+            self.host.tell("The current folder is gone; start the console in another one.")
+            return
+        self._began = self.clock()
+        self.finisher.finish(self._export.write)

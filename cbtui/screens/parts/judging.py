@@ -1,0 +1,74 @@
+"""The runs of a learner's file, held against the checks of an exercise."""
+
+import asyncio
+from dataclasses import replace
+from pathlib import Path
+
+from cbtui.runs.judged.checking import Checked, Observed
+from cbtui.runs.judged.run_budget import Allowance
+from cbtui.runs.live.file_watch import content_of
+from cbtui.runs.live.live_run import LiveRun
+from cbtui.widgets.checks import Sheet, Standing
+from cbtui.widgets.checks.exercise_sheet import ExerciseWords, Keys
+from lessons.judge import Judge
+from lessons.lesson import Lesson
+from sim.trace.model import Nanoseconds
+
+
+class Judging:
+    """Knows what the file on screen holds, what its run has taken, and what came of it.
+
+    Raises BadLesson if the lesson's checks cannot be read.
+    """
+
+    def __init__(self, lesson: Lesson, following: Lesson | None, file: Path) -> None:
+        self.file = file
+        self.allowance = Allowance()
+        """What the run may take, and has taken."""
+        self.sheet: Sheet | None = None
+        """What came of the run on screen; None as long as it is not judged."""
+        self.is_gone = False
+        """Whether there is no file."""
+        self._lesson = lesson
+        self._following = following
+        self._judge = Judge(lesson)
+        self._content: bytes | None = None
+
+    def begin(self) -> None:
+        """Note that the file is run as it is now."""
+        self._content = content_of(self.file)
+        self.allowance = Allowance()
+        self.sheet = None
+
+    def is_changed_by(self, content: bytes | None) -> bool:
+        """Take what the file holds now (None: it is gone), and tell whether that is to be run."""
+        self.is_gone = content is None
+        return content is not None and content != self._content
+
+    def spent(self, run: LiveRun) -> str | None:
+        """Count what the run takes, and say of what it has taken too much; None if it has not."""
+        if not run.alive:
+            return None
+        if run.paused or (run.virtual and run.speed is not None):
+            self.allowance.rest()
+        else:
+            self.allowance.pass_time()
+        return self.allowance.spent(run.timeline, self.file.name)
+
+    async def judge(self, observed: Observed) -> Checked:
+        """Judge a run that is over, on the thread that draws it: others may not read it meanwhile."""
+        judged = []
+        if observed.trouble is None:
+            for check in self._judge.checks:
+                judged.append(self._judge.judge(check, observed.timeline))
+                await asyncio.sleep(0)
+        return Checked(tuple(judged), len(self._judge.checks), observed)
+
+    def words(self, keys: Keys) -> ExerciseWords:
+        """Return what makes sentences on the exercise that name these keys."""
+        return ExerciseWords(self._lesson, self._judge.checks, self.file.name, self._following, keys)
+
+    def sheet_at(self, end: Nanoseconds, words: ExerciseWords) -> Sheet:
+        """Return what to show of the run, which has come to ``end``."""
+        sheet = self.sheet or words.running(end)
+        return replace(sheet, news=words.gone, standing=Standing.FAILED) if self.is_gone else sheet

@@ -1,0 +1,128 @@
+"""Keys that move the cursor and the stretch of time on screen."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from cbtui.runs.live.live_run import LiveRun
+from cbtui.runs.live.playhead import SPANS, Playhead
+from cbtui.screens.moment import MomentScreen
+from cbtui.screens.parts.part import Asker, Part
+from sim.trace.model import Nanoseconds, Window
+from sim.trace.timeline import Timeline
+
+
+@dataclass
+class TimeNavigation(Part):
+    """Holds the playhead of a screen, and moves it through the time of one run or of several.
+
+    ``end`` is the last moment there is, ``moved`` is called whenever the playhead was moved, and ``live``
+    gives the run that can be asked for later moments, where there is one.
+    """
+
+    host: Asker
+    timelines: Callable[[], Sequence[Timeline]]
+    end: Callable[[], Nanoseconds]
+    moved: Callable[[], None]
+    live: Callable[[], LiveRun | None] = lambda: None
+    playhead: Playhead = field(default_factory=Playhead)
+
+    @property
+    def now(self) -> Nanoseconds:
+        """The moment on screen."""
+        return self.playhead.now(self.end())
+
+    @property
+    def window(self) -> Window:
+        """The stretch on screen."""
+        return self.playhead.window(self.end())
+
+    def move(self, playhead: Playhead) -> None:
+        """Show what another playhead is at."""
+        self.playhead = playhead
+        self.moved()
+
+    def seek(self, moment: Nanoseconds) -> None:
+        """Put the cursor to a moment."""
+        self.move(self.playhead.sought(moment, self.end()))
+
+    def zoom(self, steps: int) -> None:
+        """Show a longer (> 0) or shorter stretch of time."""
+        self.move(self.playhead.zoomed(steps, self.end()))
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer what would move something."""
+        playhead, end = self.playhead, self.end()
+        run = self.live()
+        meaningless = {
+            "pan_earlier": self.window.start == 0,
+            "pan_later": playhead.follows or self.window.end > end,
+            "step": playhead.at is None and (run is None or not run.can_step),
+            "step_back": self.now == 0,
+            "live": playhead.follows,
+            "later": playhead.at is None,
+            "zoom_in": playhead.span == SPANS[0],
+            "zoom_out": playhead.span == SPANS[-1],
+        }
+        return not meaningless.get(action, False)
+
+    def action_earlier(self) -> None:
+        """Move the cursor back."""
+        self.move(self.playhead.moved(-1, self.end()))
+
+    def action_later(self) -> None:
+        """Move the cursor on."""
+        self.move(self.playhead.moved(1, self.end()))
+
+    def action_step(self) -> None:
+        """Go on by one scheduling decision, or to the next event of what was looked back to."""
+        run = self.live()
+        if self.playhead.at is None and run is not None:
+            run.step()
+        else:
+            self._go_to_event(1)
+
+    def action_step_back(self) -> None:
+        """Look at the event before."""
+        self._go_to_event(-1)
+
+    def _go_to_event(self, step: int) -> None:
+        self.move(self.playhead.beside(self.timelines(), self.end(), step))
+
+    def action_go_to_time(self) -> None:
+        """Ask for a moment."""
+        goes_on = self._run_that_goes_on() is not None
+        self.host.ask(MomentScreen(self.now, self.end(), goes_on, self.host.charset), self._go_to_time)
+
+    def _go_to_time(self, moment: Nanoseconds | None) -> None:
+        """Look back at a moment that has passed; have the run go on to one that has not."""
+        if moment is None:
+            return
+        is_to_come = moment > self.end()
+        self.seek(moment)
+        run = self._run_that_goes_on()
+        if is_to_come and run is not None:
+            run.run_until(moment)
+
+    def _run_that_goes_on(self) -> LiveRun | None:
+        run = self.live()
+        return run if run is not None and run.alive else None
+
+    def action_live(self) -> None:
+        """Go back to the present."""
+        self.move(self.playhead.live())
+
+    def action_zoom_in(self) -> None:
+        """Show a shorter stretch of time."""
+        self.zoom(-1)
+
+    def action_zoom_out(self) -> None:
+        """Show a longer stretch of time."""
+        self.zoom(1)
+
+    def action_pan_earlier(self) -> None:
+        """Show an earlier stretch of time."""
+        self.move(self.playhead.panned(-1, self.end()))
+
+    def action_pan_later(self) -> None:
+        """Show a later stretch of time."""
+        self.move(self.playhead.panned(1, self.end()))

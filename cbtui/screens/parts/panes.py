@@ -1,0 +1,142 @@
+"""The panes of a run: which of them is shown, which has the keys, and what stands in its frame."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from rich.text import Text
+from textual.screen import Screen
+from textual.widget import Widget
+
+from cbtui.keys.actions import Scope
+from cbtui.keys.keymap import keymap_of
+from cbtui.screens.parts.part import Host, Part
+from cbtui.terminal.editor import EditorError, edit
+from cbtui.widgets.checks import ChecksView
+from cbtui.widgets.code import CodeView
+from cbtui.widgets.lanes import Lanes
+from cbtui.widgets.lanes.keys import lane_keys
+from cbtui.widgets.log import LogLines, LogView
+from cbtui.widgets.robot import RobotView
+from cbtui.widgets.shell import ShellOutput
+from cbtui.widgets.tabs import Tabs, title_of
+
+_PANE_ALONE = "-maximised"
+_LANES_ALONE = "-lanes-alone"
+"""Classes of a screen that one pane, or the lanes, fill."""
+_BEHIND = {"log": "shell", "checks": "guide"}
+"""Panes of the grid in whose place another is shown while that is the current one."""
+_INSIDES: dict[str, type[Widget]] = {"log": LogLines, "shell": ShellOutput}
+"""What takes the keys of a pane that does not take them itself."""
+
+
+@dataclass
+class PaneLayout(Part):
+    """Arranges the panes ``names`` of a screen, the current one of which can fill it, as the lanes can.
+
+    ``changes`` tells in words what the person changed about the run.
+    """
+
+    screen: Screen[None]
+    host: Host
+    names: tuple[str, ...]
+    current: str
+    changes: Callable[[], str]
+
+    def pane(self, name: str) -> Widget:
+        """Return a pane."""
+        return self.screen.query_one(f"#{name}")
+
+    def show(self, name: str) -> None:
+        """Make a pane the current one."""
+        screen = self.screen
+        if screen.has_class(_LANES_ALONE):
+            self.enlarge("")
+        self.current = name
+        for each in self.names:
+            self.pane(each).set_class(each == name, "-current", update=False)
+            self.pane(each).set_class(_BEHIND.get(each) == name, "-behind", update=False)
+        screen.update_node_styles(animate=False)
+        screen.query_one(Tabs).current = name
+        self.entitle()
+        if not self.pane(name).has_focus_within:
+            inside = _INSIDES.get(name)
+            (self.pane(name) if inside is None else screen.query_one(inside)).focus()
+        self.host.redraw()
+
+    def follow_focus(self, focused: Widget) -> None:
+        """Make the pane current that the person clicked on."""
+        ids = (widget.id for widget in focused.ancestors_with_self)
+        name = next((each for each in ids if each in self.names), None)
+        if name is not None and name != self.current:
+            self.show(name)
+
+    def entitle(self) -> None:
+        """Say in frames and tabs what panes say of themselves."""
+        notes = {}
+        for name in self.names:
+            pane = self.pane(name)
+            if isinstance(pane, CodeView | LogView | ChecksView):
+                notes[name] = pane.note
+                pane.border_title = Text(f"{title_of(name)} {pane.note}")
+        words = self.changes()
+        changed = f"changed: {words}" if words else ""
+        self.screen.query_one(Tabs).note = " · ".join(filter(None, (notes.get(self.current), changed)))
+
+    def enlarge(self, alone: str) -> None:
+        """Let the current pane or the lanes fill the screen; "" for neither."""
+        screen = self.screen
+        for name in (_PANE_ALONE, _LANES_ALONE):
+            screen.set_class(name == alone, name, update=False)
+        screen.update_node_styles(animate=False)
+        more = ("lane_above", "lane_below") if alone == _LANES_ALONE else ("enlarge_lanes",)
+        keys = lane_keys(keymap_of(screen.app), Scope.LESSON, self.host.charset, *more)
+        screen.query_one(Lanes).keys = keys
+        self.host.redraw()
+
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer the panes that there are."""
+        return action != "show_pane" or not parameters or parameters[0] in self.names
+
+    def action_show_pane(self, name: str) -> None:
+        """Go to a pane."""
+        self.show(name)
+
+    def action_next_pane(self) -> None:
+        """Go to the next pane."""
+        self.show(self.names[(self.names.index(self.current) + 1) % len(self.names)])
+
+    def action_maximise(self) -> None:
+        """Let the current pane, or the lanes if they have the keys, fill the screen; or none of them."""
+        if self.screen.query_one(Lanes).has_focus:
+            self.action_enlarge_lanes()
+        else:
+            self.enlarge("" if self.screen.has_class(_PANE_ALONE) else _PANE_ALONE)
+
+    def action_enlarge_lanes(self) -> None:
+        """Go to the lanes and let them fill the screen, or go back to the current pane."""
+        if self.screen.has_class(_LANES_ALONE):
+            self.show(self.current)
+        else:
+            self.enlarge(_LANES_ALONE)
+            self.screen.query_one(Lanes).focus()
+
+    def action_cycle_camera(self) -> None:
+        """Show the robot's map, the camera's picture, or both."""
+        self.screen.query_one(RobotView).cycle_camera()
+
+    def action_filter_log(self) -> None:
+        """Let the person type a filter for the log."""
+        self.show("log")
+        self.screen.query_one(LogView).focus_filter()
+
+    def action_open_source(self) -> None:
+        """Open the code in the person's editor; the run goes on meanwhile."""
+        self.screen.run_worker(self._edit(), group="editor", exclusive=True)
+
+    async def _edit(self) -> None:
+        code = self.screen.query_one(CodeView)
+        try:
+            await edit(self.screen.app, *code.place)
+        except EditorError as error:
+            self.host.tell(str(error))
+        code.look_at_disk()

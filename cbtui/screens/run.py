@@ -1,0 +1,402 @@
+"""A run on screen: on lanes, in panes, the moment in words, and the keys that every run has."""
+
+import asyncio
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from pathlib import Path
+from typing import ClassVar, Generic
+
+from textual import on
+from textual.app import ComposeResult
+from textual.binding import BindingType
+from textual.containers import Container
+from textual.events import DescendantFocus
+from textual.message import Message
+from textual.screen import Screen, ScreenResultCallbackType, ScreenResultType
+from textual.widget import Widget
+
+from cbtui.keys.actions import PANES, Scope, bindings_of
+from cbtui.keys.keymap import keymap_of
+from cbtui.looks.theme import Charset
+from cbtui.runs.live.live_recording import LiveRecording
+from cbtui.runs.live.live_run import LiveRun
+from cbtui.runs.setup.changes import Changes
+from cbtui.runs.setup.subject import Subject
+from cbtui.screens.console import Console, console_of
+from cbtui.screens.diagnoses import problems_note
+from cbtui.screens.layout import Layout
+from cbtui.screens.parts import exporting
+from cbtui.screens.parts.bars import BarSelection
+from cbtui.screens.parts.copying import DetailsCopy
+from cbtui.screens.parts.exporting import Exports
+from cbtui.screens.parts.finishing import FileFinisher
+from cbtui.screens.parts.frames import FRAMES_A_SECOND, Extent, FrameSchedule
+from cbtui.screens.parts.keys import OfferedKeys
+from cbtui.screens.parts.navigation import TimeNavigation
+from cbtui.screens.parts.panes import PaneLayout
+from cbtui.screens.parts.part import Part, Parts
+from cbtui.screens.parts.runs import RunController, RunT_co
+from cbtui.screens.parts.selection import LaneSelection
+from cbtui.screens.sized import SizedScreen
+from cbtui.terminal.compositing import SparingCompositor
+from cbtui.terminal.garbage_collector import collect_now, let_go_of_screen
+from cbtui.terminal.processor import not_computing, waited
+from cbtui.widgets.checks import ChecksView
+from cbtui.widgets.code import CodeView
+from cbtui.widgets.diagnosis import Diagnosis, call_note, verdict, way_on, with_worst
+from cbtui.widgets.diagnosis_line import DiagnosisLine
+from cbtui.widgets.factory import FactoryView
+from cbtui.widgets.guide import Guide
+from cbtui.widgets.key_bar import KeyBar
+from cbtui.widgets.lanes import Lanes
+from cbtui.widgets.log import LogLines, LogView
+from cbtui.widgets.robot import RobotView
+from cbtui.widgets.shell import ProgramKeyboard, Prompt, ShellView
+from cbtui.widgets.status_line import StatusLine, status_of
+from cbtui.widgets.tabs import Tabs, title_of
+
+_GLANCE = 150_000_000
+"""Nanoseconds of a person's time for which a worker is seen walking."""
+
+_TEXTS = (CodeView, LogView)
+"""Panes that are lines of text."""
+
+_DISK = 1.0
+"""Seconds after which the source's file is looked at again."""
+
+
+class RunScreen(SizedScreen[None], Generic[RunT_co]):
+    """Shows a run: everything on it is a function of the run's timeline and of a moment.
+
+    A timer draws what there is new. However fast a run is, the lanes are drawn ``FRAMES_A_SECOND`` times at
+    most, the other panes less often; what the person does is seen on all of them in the next frame. ``live``
+    gives the run as long as an engine may make more of it. What a screen's own parts are, its class says in
+    ``put_together``; it begins the first run.
+    """
+
+    SCOPE = Scope.LESSON
+    CSS_PATH = Path(__file__).with_name("run.tcss")
+    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.LESSON)]
+    PANES_HERE: ClassVar[tuple[str, ...]] = PANES
+    """The panes that there are, in the order of their keys."""
+    FIRST_PANE: ClassVar[str] = PANES[0]
+    AUTO_FOCUS = f"#{PANES[0]}"
+
+    def __init__(
+        self,
+        subject: Subject,
+        charset: Charset,
+        runs: RunController[RunT_co],
+        live: Callable[[], LiveRun | None] = lambda: None,
+    ) -> None:
+        super().__init__()
+        self._compositor = SparingCompositor()
+        self.subject = subject
+        self._charset = charset
+        self.runs = runs
+        self._frames = FrameSchedule()
+        self.finisher = FileFinisher(self.tell)
+        self.navigation = TimeNavigation(
+            self, lambda: [runs.timeline], lambda: runs.timeline.end, self.redraw, live
+        )
+        self.panes = PaneLayout(self, self, self.PANES_HERE, self.FIRST_PANE, lambda: self.changes.words)
+        self.bars = BarSelection(lambda: [self.query_one(Lanes)], self.navigation, self.redraw)
+        self.selection = LaneSelection(
+            self, self, runs, self.navigation, self.bars, self.panes, subject.service
+        )
+        self._exports = Exports(self, runs, self.navigation, self.finisher)
+        self._copy = DetailsCopy(self, self, runs, self.navigation, subject.heading)
+
+    def put_together(self, *parts: Part, **more: Callable[[], object]) -> None:
+        """Add a screen's own parts, and actions by their ids, to those that every run's screen has."""
+        following = self.subject.following
+        if following is not None:
+            more["next_lesson"] = lambda: self.console.open_lesson(following)
+        every = (self.navigation, self.panes, self.bars, self.selection, self._exports, self._copy)
+        self._parts = Parts(self, Scope.LESSON, *every, *parts, **more)
+        self._keys = OfferedKeys(self, self._parts, self._charset)
+
+    def post(self, message: Message) -> None:
+        """Bring a message from any thread to the screen's; a screen that is closing lets it drop."""
+        self.post_message(message)
+
+    # what parts ask of their screen
+
+    @property
+    def charset(self) -> Charset:
+        """What the terminal can show."""
+        return self._charset
+
+    @property
+    def console(self) -> Console:
+        """The app."""
+        return console_of(self)
+
+    def ask(
+        self,
+        question: Screen[ScreenResultType],
+        take: ScreenResultCallbackType[ScreenResultType] | None,
+    ) -> None:
+        """Lay another screen over this one; ``take`` gets what it comes to."""
+        self.app.push_screen(question, take)
+
+    def tell(self, sentence: str | None) -> None:
+        """Show a sentence for a few seconds; nothing for None."""
+        if sentence is not None:
+            self.notify(sentence, markup=False)
+
+    def key(self, action: str) -> str:
+        """Return the key in force of one of a lesson's actions, as people write it."""
+        return keymap_of(self.app).sign(Scope.LESSON, action, self._charset)
+
+    def redraw(self) -> None:
+        """Draw everything soon, at once if that was not just done."""
+        self._frames.invalidate()
+        if self.is_running:
+            self.call_next(self._draw_at_once)
+
+    def go_on(self) -> None:
+        """Draw soon what has gone on by itself."""
+        self._frames.grow()
+
+    # what differs from screen to screen
+
+    @property
+    def changes(self) -> Changes:
+        """What the run has other than its program says."""
+        return Changes()
+
+    @property
+    def recording(self) -> LiveRecording | None:
+        """What records the run, where it can be recorded."""
+        return None
+
+    def page(self) -> Mapping[str, str]:
+        """Return the parts of the guide that can be read now."""
+        return {"guide": self.subject.guide}
+
+    def drawn(self) -> None:
+        """Do what comes when more of the run has been shown."""
+
+    def diagnosis(self) -> Diagnosis:
+        """Return what to say of the moment on screen."""
+        runs = self.runs
+        return verdict(runs.run, self.navigation.playhead, runs.concurrency, keymap_of(self.app))
+
+    def begun_anew(self) -> None:
+        """Show another run from its beginning, which is not started yet."""
+        self.navigation.action_live()
+        self.query_one(Lanes).changes = self.changes.words
+        self.panes.entitle()
+        self.bars.select(None)
+        self.query_one(CodeView).read_anew()
+
+    # layout
+
+    def compose(self) -> ComposeResult:
+        """Lay out lines, lanes and panes."""
+        yield StatusLine()
+        yield Lanes()
+        yield Tabs(self.PANES_HERE)
+        with Container(id="panes"):
+            for pane in self.compose_panes():
+                assert pane.id is not None
+                pane.border_title = title_of(pane.id)
+                pane.add_class("pane")
+                yield pane
+        yield DiagnosisLine()
+        yield KeyBar(Scope.LESSON, self._charset)
+
+    def compose_panes(self) -> Iterator[Widget]:
+        """Yield the panes."""
+        factory, robot = FactoryView(id="factory"), RobotView(id="robot")
+        factory.can_focus = robot.can_focus = True
+        subject = self.subject
+        code = CodeView(subject.node_path, subject.source, subject.sources, id="code")
+        yield from (Guide(self.page(), id="guide"), code, robot, factory, LogView(id="log"))
+        yield ShellView(id="shell")
+
+    def on_mount(self) -> None:
+        """Start the run and the timer that draws it."""
+        lanes, robot, factory = self.query_one(Lanes), self.query_one(RobotView), self.query_one(FactoryView)
+        lanes.charset = robot.charset = factory.charset = self._charset
+        lanes.service = self.subject.service
+        self.panes.enlarge("")
+        lanes.changes = self.changes.words
+        prompt, takes_lines = self.query_one(Prompt), self._parts.has("prompt")
+        prompt.disabled, prompt.display = not takes_lines, takes_lines
+        self.panes.show(self.panes.current)
+        self.start()
+        self.set_interval(1 / FRAMES_A_SECOND, self._draw_if_due)
+        self.set_interval(exporting.EVERY, self._exports.look)
+        self.set_interval(_DISK, self.query_one(CodeView).look_at_disk)
+        for name in self.PANES_HERE:
+            pane = self.panes.pane(name)
+            if isinstance(pane, CodeView | LogView | ChecksView):
+                self.watch(pane, "note", self.panes.entitle)
+        for lines in (*self.query(CodeView), *self.query(LogLines), *self.query(ChecksView)):
+            self.watch(lines, "picked", self.redraw)
+        # Old garbage goes before the first key: collecting it takes longer than drawing.
+        self.call_after_refresh(collect_now)
+
+    def start(self) -> None:
+        """Start the first run."""
+        self.tell(self.runs.run.start())
+
+    async def on_unmount(self) -> None:
+        """End the run, every recording and every export, whatever way the screen is left."""
+        self._exports.leave()
+        self.finisher.tell = self.console.tell_saved
+        let_go_of_screen()
+        saved = await asyncio.to_thread(self.runs.run.stop)
+        if saved is not None:
+            self.console.tell_saved(saved)
+        await self.finisher.wait()
+
+    # the run
+
+    @on(RunController.Delivered)
+    def _take(self, message: RunController.Delivered) -> None:
+        self.tell(self.runs.take(message))
+        if message.run == self.runs.number:
+            self._frames.grow()
+
+    @on(RunController.Over)
+    def _note_the_end(self, message: RunController.Over) -> None:
+        if message.run == self.runs.number:
+            self.finisher.finish(self.runs.run.over(message.trouble))
+            self.redraw()
+
+    def look_for_findings(self) -> None:
+        """Have the rules look at the run now, not when their time has come."""
+        self.runs.watch.look()
+        self.redraw()
+
+    # drawing
+
+    def draw(self) -> None:
+        """Show the moment that the playhead is at."""
+        self._draw(Extent.ALL, self.PANES_HERE)
+
+    def _draw_all_but_texts(self) -> None:
+        names = [name for name in self.PANES_HERE if not isinstance(self.panes.pane(name), _TEXTS)]
+        self._draw(Extent.ALL_BUT_TEXTS, names)
+
+    def _draw(self, extent: Extent, panes: Iterable[str]) -> None:
+        self._frames.drawn(extent)
+        if self.layout_now is Layout.SMALL:
+            return
+        self.draw_lanes()
+        run, told, keymap = self.runs.run, self.runs.watch.told, keymap_of(self.app)
+        self.query_one(StatusLine).status = status_of(
+            self.subject.heading,
+            run,
+            self.navigation.playhead,
+            self.subject.executor,
+            self.recording,
+            self._exports.percent,
+        )
+        self.query_one(CodeView).over = not run.alive
+        line = self.query_one(DiagnosisLine)
+        line.diagnosis = with_worst(self.diagnosis(), told, way_on(run, keymap))
+        line.note = call_note(run.timeline, self.navigation.now)
+        line.problems = problems_note(told, keymap, self._charset)
+        for name in panes:
+            pane = self.panes.pane(name)
+            if pane.display:
+                self.draw_pane(pane)
+        self._keys.show()
+        self.drawn()
+
+    def draw_lanes(self) -> None:
+        """Show it on the lanes alone."""
+        lanes = self.query_one(Lanes)
+        lanes.window, lanes.now = self.navigation.window, self.navigation.now
+        lanes.timeline = self.runs.timeline
+
+    def draw_pane(self, pane: Widget) -> None:
+        """Show it on one pane."""
+        run, now = self.runs.run, self.navigation.now
+        match pane:
+            case CodeView() | LogView():
+                pane.show(run.timeline, now)
+            case ShellView():
+                pane.show(run.timeline, now)
+                pane.ask(run.asked, keymap_of(self.app), self._charset)
+                if not run.alive and isinstance(self.focused, ProgramKeyboard):
+                    self.focused.action_leave_keyboard()
+            case FactoryView():
+                pane.now, pane.timeline = now, run.timeline
+                pane.glance = round(_GLANCE * (run.speed or 1.0))
+            case RobotView():
+                pane.now, pane.timeline = now, run.timeline
+
+    def laid_out(self) -> None:
+        """Draw what the new layout shows."""
+        self.redraw()
+
+    def _draw_at_once(self) -> None:
+        if self._frames.is_due_before_next():
+            self.draw()
+
+    def _draw_if_due(self) -> None:
+        if self.runs.watch.look_when_due():
+            self.redraw()
+        match self._frames.next():
+            case Extent.ALL:
+                self.draw()
+            case Extent.ALL_BUT_TEXTS:
+                self._draw_all_but_texts()
+            case Extent.LANES if self.layout_now is not Layout.SMALL:
+                self.draw_lanes()
+            case _:
+                return
+        self.call_after_refresh(self._rest, not_computing())
+
+    def _rest(self, before: float) -> None:
+        self._frames.rest(waited(before))
+
+    # keys
+
+    def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
+        """Offer what has a meaning now."""
+        return self._keys.offer(action, parameters)
+
+    def action_leave(self) -> None:
+        """Go back to the menu."""
+        self.dismiss()
+
+    # what widgets tell
+
+    def on_descendant_focus(self, event: DescendantFocus) -> None:
+        """Make the pane current that the person clicked on, and tell of its keys."""
+        self.panes.follow_focus(event.widget)
+        self._keys.follow_focus()
+
+    @on(Tabs.Picked)
+    def _pick_pane(self, message: Tabs.Picked) -> None:
+        self.panes.show(message.pane)
+
+    @on(Lanes.Turned)
+    def _turn(self, message: Lanes.Turned) -> None:
+        self.navigation.zoom(message.steps)
+
+    @on(Lanes.Picked)
+    def _pick_bar(self, message: Lanes.Picked) -> None:
+        self.bars.pick(message)
+
+    @on(LogLines.MomentPicked)
+    @on(ChecksView.MomentPicked)
+    def _pick_moment(self, message: LogLines.MomentPicked | ChecksView.MomentPicked) -> None:
+        self.navigation.seek(message.at)
+
+    @on(CodeView.CallbackPicked)
+    def _pick_callback(self, message: CodeView.CallbackPicked) -> None:
+        self.selection.pick_callback(message)
+
+    @on(CodeView.EditorWanted)
+    def _edit(self) -> None:
+        self.panes.action_open_source()
+
+    @on(DiagnosisLine.Clicked)
+    def _list_diagnoses(self) -> None:
+        self.selection.action_diagnoses()
