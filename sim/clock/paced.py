@@ -8,6 +8,8 @@ from collections.abc import Callable
 from contextlib import suppress
 from typing import Any, NamedTuple
 
+from sim.marks import waits_for_time
+
 # Kept from before sim.clock.paced_stdlib puts its own in their place.
 _monotonic_ns = time.monotonic_ns
 _sleep = time.sleep
@@ -40,6 +42,7 @@ class PacedSignal:
         self._is_set = False
         return True
 
+    @waits_for_time
     def _wait_until(self, deadline: int) -> bool:
         clock, bell = self._clock, self._bell
         clock._sleepers.add(self)
@@ -121,6 +124,7 @@ class PacedClock:
             return left / 1e9
         return math.inf if self._paused else left / self._speed / 1e9
 
+    @waits_for_time
     def sleep(self, duration: int) -> None:
         """Let ``duration`` nanoseconds of this clock pass."""
         if duration > 0:

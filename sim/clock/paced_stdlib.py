@@ -13,6 +13,7 @@ from types import TracebackType
 from typing import Any
 
 from sim.clock.paced import PacedClock
+from sim.marks import waits_for_time
 from sim.units import wait_ns
 
 _allocate_lock = threading.Lock
@@ -81,6 +82,7 @@ class PacedRLock(_RLock):  # type: ignore[misc]
         return _within(timeout, self._clock, lambda seconds: take(timeout=seconds))
 
 
+@waits_for_time
 def _within(timeout: float, clock: PacedClock, attempt: Callable[[float], bool]) -> bool:
     """Try again and again, each time for some real seconds, until it works or the timeout is over."""
     deadline = clock.now() + wait_ns(timeout)
@@ -106,6 +108,7 @@ def _paced_join(clock: PacedClock) -> Callable[[threading.Thread, float | None],
 
 
 def _replace_time(clock: PacedClock) -> None:
+    @waits_for_time
     def sleep(seconds: float) -> None:
         if seconds < 0:
             raise ValueError("sleep length must be non-negative")

@@ -5,6 +5,8 @@ import threading
 import time
 from collections.abc import Callable
 
+from sim.marks import waits_for_time
+
 # Kept from before anything could put its own functions in their place.
 _monotonic_ns = time.monotonic_ns
 _allocate_lock = threading.Lock
@@ -49,6 +51,7 @@ class RealClock:
         """Nanoseconds since this clock was made."""
         return _monotonic_ns() - self._began
 
+    @waits_for_time
     def sleep(self, duration: int) -> None:
         """Sleep ``duration`` nanoseconds of wall time."""
         time.sleep(max(duration, 0) / 1e9)

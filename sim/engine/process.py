@@ -56,12 +56,13 @@ from sim.engine.watchdogs.outside_time import Watchdog
 from sim.engine.watchdogs.own_functions import OwnFunctions
 from sim.engine.watchdogs.repeatability import Repeatability
 from sim.engine.watchdogs.standstill import Standstill
+from sim.probes import own_code
+from sim.probes.probe import Probe
 from sim.robot.bullet import WorldUnavailable
-from sim.ros import importing, own_code
-from sim.ros.contents import Contents
-from sim.ros.host import Host, install
-from sim.ros.probe import Probe
-from sim.ros.process import Process, current_process, share_machine
+from sim.ros import importing
+from sim.ros.middleware.contents import Contents
+from sim.ros.middleware.host import Host, install
+from sim.ros.middleware.process import Process, current_process, share_machine
 from sim.trace.events import (
     AnyEvent,
     InputGiven,

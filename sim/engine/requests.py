@@ -3,9 +3,9 @@
 from collections.abc import Callable
 from typing import Any
 
-from sim.ros.host import Host
-from sim.ros.interfaces import service
-from sim.ros.network import Request
+from sim.interfaces import service
+from sim.ros.middleware.delivery import Request
+from sim.ros.middleware.host import Host
 from sim.trace.events import AnyEvent, CommandGiven, Notice, Severity
 
 
@@ -30,7 +30,7 @@ class Requests:
     def _first_offered(self, srv_type: Any) -> str | None:
         with self._host.lock:
             offered = self._host.network.services(srv_type)
-        return next((each.name for each in offered if each.node.context.probe.visible), None)
+        return next((each.name for each in offered if each.is_shown), None)
 
     def reset_world(self) -> None:
         """Call ``/reset_world``."""

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from sim.engine.setup import RobotUse, RunSetup
-from sim.ros.host import Host
+from sim.ros.middleware.host import Host
 from sim.trace.events import AnyEvent
 
 if TYPE_CHECKING:

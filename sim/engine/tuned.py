@@ -1,7 +1,7 @@
 """From the changes of a set-up to what the model makes of them."""
 
 from sim.engine.setup import RunSetup
-from sim.ros.tuning import GroupWish, Tuning
+from sim.ros.middleware.tuning import GroupWish, Tuning
 
 
 def tuning_of(setup: RunSetup) -> Tuning | None:

@@ -12,17 +12,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.interfaces import message, service
+from sim.probes.probe import PublishingProbe
 from sim.robot.arena import ARENA, ROBOT_RADIUS
 from sim.robot.lidar import ANGLE_INCREMENT, ANGLE_MIN, RANGE_MAX, RANGE_MIN
 from sim.robot.velocity_commands import VelocityCommands
 from sim.robot.world import World
-from sim.ros.context import Context
-from sim.ros.executors import SingleThreadedExecutor
-from sim.ros.host import Host
-from sim.ros.interfaces import message, service
-from sim.ros.node import Node
-from sim.ros.probe import PublishingProbe
-from sim.ros.qos import QoSProfile, ReliabilityPolicy
+from sim.ros.context.context import Context
+from sim.ros.middleware.host import Host
+from sim.ros.node.node import Node
+from sim.ros.qos.qos import QoSProfile, ReliabilityPolicy
+from sim.ros.scheduling.executors import SingleThreadedExecutor
 from sim.trace.events import AnyEvent, ArenaShown, RobotMoved, Scanned, VelocityCommanded
 
 SENSOR_RATE = 20.0

@@ -3,12 +3,12 @@
 from collections.abc import Callable
 from typing import Any
 
+from sim.probes.own_code import place_of_caller
 from sim.robot.drive import Velocity, is_drivable
-from sim.ros.delivery import Delivery
-from sim.ros.node import Node
-from sim.ros.own_code import place_of_caller
-from sim.ros.qos import QoSProfile
-from sim.ros.subscription import Subscription
+from sim.ros.entities.subscription import Subscription
+from sim.ros.middleware.delivery import Delivery
+from sim.ros.node.node import Node
+from sim.ros.qos.qos import QoSProfile
 from sim.trace.events import AnyEvent, Notice, Severity
 
 

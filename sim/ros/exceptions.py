@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
-
-if TYPE_CHECKING:
-    from sim.ros.parameter import Parameter
+from typing import Any
 
 
 class NotInitializedException(Exception):
@@ -115,7 +112,7 @@ class InvalidParameterException(ParameterException):
 class InvalidParameterTypeException(ParameterException):
     """The value set for a parameter, or overriding it, is of another type than it was declared with."""
 
-    def __init__(self, desired_parameter: Parameter[Any], expected_type: str) -> None:
+    def __init__(self, desired_parameter: Any, expected_type: str) -> None:
         Exception.__init__(
             self,
             f"Trying to set parameter '{desired_parameter.name}' to '{desired_parameter.value}' of type "
@@ -143,3 +140,9 @@ class ParameterImmutableException(ParameterException):
 
     def __init__(self, parameter_name: str) -> None:
         Exception.__init__(self, f"Attempted to modify read-only parameter '{parameter_name}'")
+
+
+for _each in tuple(vars().values()):
+    if isinstance(_each, type):
+        # A traceback shows it.
+        _each.__module__ = "rclpy.exceptions"

@@ -1,129 +1,77 @@
-"""Makes ``import rclpy`` and ``from std_srvs.srv import SetBool`` mean this model, in this process."""
+"""Makes ``import rclpy`` and ``from std_srvs.srv import SetBool`` mean this model, in this process.
+
+The folders below hold what programs find, in modules that bear the names that ROS gives them. Each module is
+loaded once, whichever of its two names it is imported by.
+"""
 
 import importlib
+import pkgutil
 import sys
 from collections.abc import Sequence
 from importlib.machinery import ModuleSpec
+from importlib.util import find_spec
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, cast
 
-from sim.ros.interfaces.finder import InterfaceFinder
+from sim.interfaces.finder import InterfaceFinder
 
 if TYPE_CHECKING:
     from importlib.abc import Loader
 
-_MODULES = (
-    "_rclpy_pybind11",
-    "action",
-    "action.client",
-    "action.graph",
-    "action.server",
-    "callback_groups",
-    "client",
-    "clock",
-    "clock_type",
-    "constants",
-    "context",
-    "duration",
-    "event_handler",
-    "exceptions",
-    "executors",
-    "expand_topic_name",
-    "guard_condition",
-    "handle",
-    "impl",
-    "impl.implementation_singleton",
-    "impl.logging_severity",
-    "impl.rcutils_logger",
-    "lifecycle",
-    "lifecycle.managed_entity",
-    "lifecycle.node",
-    "lifecycle.publisher",
-    "logging",
-    "logging_service",
-    "node",
-    "parameter",
-    "parameter_client",
-    "parameter_event_handler",
-    "parameter_service",
-    "publisher",
-    "qos",
-    "qos_overriding_options",
-    "serialization",
-    "service",
-    "service_introspection",
-    "signals",
-    "subscription",
-    "task",
-    "time",
-    "time_source",
-    "timer",
-    "topic_endpoint_info",
-    "topic_or_service_is_hidden",
-    "type_description_service",
-    "type_hash",
-    "type_support",
-    "utilities",
-    "validate_full_topic_name",
-    "validate_namespace",
-    "validate_node_name",
-    "validate_parameter_name",
-    "validate_topic_name",
-    "wait_for_message",
-    "waitable",
-)
-_HELPERS = ("sensor_msgs_py", "sensor_msgs_py.point_cloud2", "test_msgs.message_fixtures")
-"""Modules that are only loaded when a program imports them."""
-_ROSIDL_MODULES = (
-    "rosidl_runtime_py",
-    "rosidl_runtime_py.convert",
-    "rosidl_runtime_py.get_interfaces",
-    "rosidl_runtime_py.import_message",
-    "rosidl_runtime_py.set_message",
-    "rosidl_runtime_py.utilities",
-)
+_HOMES = {
+    "rclpy": "sim.ros",
+    "rosidl_runtime_py": "sim.interfaces",
+    "sensor_msgs_py": "sim.interfaces",
+    "test_msgs.message_fixtures": "sim.interfaces",
+}
+"""Packages and modules as programs name them, and the package of the model that has them."""
 
 
 def install() -> None:
     """Put the model in rclpy's place and make the interface packages importable; twice does no harm."""
-    package = importlib.import_module("sim.ros")
-    sys.modules["rclpy"] = package
-    for name in _MODULES:
-        module = sys.modules[f"rclpy.{name}"] = importlib.import_module(f"sim.ros.{name}")
-        _name_exceptions(module, f"rclpy.{name}")
+    for name in [each for each in sys.modules if _home_of(each) is not None]:
+        del sys.modules[name]
     parser: Any = ModuleType("rosidl_parser", "The types that the slots of messages are made of.")
-    parser.definition = importlib.import_module("sim.ros.interfaces.field_types")
+    parser.definition = importlib.import_module("sim.interfaces.field_types")
     sys.modules["rosidl_parser"] = parser
     sys.modules["rosidl_parser.definition"] = parser.definition
-    for name in _ROSIDL_MODULES:
-        sys.modules[name] = importlib.import_module(f"sim.ros.interfaces.{name}")
     if not any(isinstance(finder, InterfaceFinder) for finder in sys.meta_path):
-        sys.meta_path[:0] = (InterfaceFinder(), _HelperFinder())
+        sys.meta_path[:0] = (_ModelFinder(), InterfaceFinder())
+    _load_face()
 
 
-class _HelperFinder:
-    """Finds the helpers, and loads the model's modules in their place."""
+def _load_face() -> None:
+    """Import all of rclpy before a program's time begins to run; what is deprecated warns, so not that."""
+    face = importlib.import_module("rclpy")
+    folders = [folder for folder in face.__path__ if not folder.endswith("_deprecated")]
+    for each in pkgutil.walk_packages(folders, "rclpy."):
+        importlib.import_module(each.name)
+
+
+def _home_of(name: str) -> str | None:
+    """The name in the model of a module that a program imports; None for what is not the model's."""
+    roots = (root for root in _HOMES if name == root or name.startswith(f"{root}."))
+    root = next(roots, None)
+    return None if root is None else f"{_HOMES[root]}.{name}"
+
+
+class _ModelFinder:
+    """Finds what programs import of ROS's Python packages, and loads the model's modules in their place."""
 
     def find_spec(
         self, fullname: str, _path: Sequence[str] | None = None, _target: ModuleType | None = None
     ) -> ModuleSpec | None:
-        """Return the spec of a helper, ``None`` for any other name."""
-        if fullname not in _HELPERS:
+        """Return the spec of a module of the model, ``None`` for any other name."""
+        home = _home_of(fullname)
+        found = None if home is None else find_spec(home)
+        if found is None:
             return None
-        return ModuleSpec(fullname, cast("Loader", self), is_package="." not in fullname)
+        is_package = found.submodule_search_locations is not None
+        return ModuleSpec(fullname, cast("Loader", self), is_package=is_package)
 
     def create_module(self, _spec: ModuleSpec) -> None:
         """Leave it to Python: the module is replaced when it is filled."""
 
     def exec_module(self, module: ModuleType) -> None:
         """Put the model's module in its place."""
-        sys.modules[module.__name__] = importlib.import_module(f"sim.ros.{module.__name__}")
-
-
-def _name_exceptions(module: ModuleType, name: str) -> None:
-    """Have exceptions called by rclpy's name for the module that they come from: a traceback shows it."""
-    for each in vars(module).values():
-        if isinstance(each, type) and issubclass(each, BaseException):
-            home = each.__module__.removeprefix("sim.ros.")
-            if home != each.__module__ and (home == name.removeprefix("rclpy.") or home not in _MODULES):
-                each.__module__ = name
+        sys.modules[module.__name__] = importlib.import_module(str(_home_of(module.__name__)))

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import argparse
 
+from sim.interfaces import DefinitionError
 from sim.packages import PackageError, Packages
-from sim.ros.host import Host
-from sim.ros.interfaces import DefinitionError
+from sim.ros.middleware.host import Host
 from sim.shell.commands import next_names, verb_parser
 from sim.shell.parser import Parser, Surroundings
 from sim.shell.session import Failed

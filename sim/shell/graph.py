@@ -7,13 +7,12 @@ from collections.abc import Callable, Iterable
 from itertools import chain
 from typing import Any
 
+from sim.interfaces import type_name
 from sim.ros.exceptions import InvalidServiceNameException, InvalidTopicNameException
-from sim.ros.expand_topic_name import expand_topic_name
-from sim.ros.host import Host
-from sim.ros.interfaces import type_name
-from sim.ros.node import Node
-from sim.ros.node_graph import NamesAndTypes
-from sim.ros.validate_full_topic_name import validate_full_topic_name
+from sim.ros.naming.expand_topic_name import expand_topic_name
+from sim.ros.naming.validate_full_topic_name import validate_full_topic_name
+from sim.ros.node.graph import NamesAndTypes, nodes_on
+from sim.ros.node.node import Node
 from sim.shell.parser import Completer, Surroundings
 from sim.shell.session import Failed, Session
 
@@ -64,18 +63,13 @@ def absolute(node_name: str) -> str:
 # Candidates
 
 
-def _nodes(host: Host) -> list[Node]:
-    """The nodes that are there; those whose context has ended are not. With the host's lock held."""
-    return [node for node in host.network.nodes() if node.context.ok()]
-
-
 def _ends(
     surroundings: Surroundings, of: Callable[[Node], Iterable[tuple[str, Any]]]
 ) -> dict[str, list[str]]:
     host = surroundings.host
     found: defaultdict[str, set[str]] = defaultdict(set)
     with host.lock:
-        for name, kind in chain.from_iterable(map(of, _nodes(host))):
+        for name, kind in chain.from_iterable(map(of, nodes_on(host.network))):
             found[name].add(type_name(kind))
     return {name: sorted(types) for name, types in found.items()}
 
@@ -98,7 +92,7 @@ def known_services(surroundings: Surroundings) -> dict[str, list[str]]:
 def known_nodes(surroundings: Surroundings) -> list[str]:
     """Every node that is not hidden."""
     with surroundings.host.lock:
-        nodes = _nodes(surroundings.host)
+        nodes = nodes_on(surroundings.host.network)
     names = [node.get_fully_qualified_name() for node in nodes]
     return [name for name in names if not is_hidden(name)]
 
@@ -107,7 +101,7 @@ def known_parameters(surroundings: Surroundings) -> list[str]:
     """The parameters of the node that was given first, known even while nobody spins it."""
     wanted = absolute(surroundings.given[0])
     with surroundings.host.lock:
-        for node in _nodes(surroundings.host):
+        for node in nodes_on(surroundings.host.network):
             if node.get_fully_qualified_name() == wanted:
                 return list(node.list_parameters([], 0).names)
     return []

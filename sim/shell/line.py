@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 
 from sim.clock import VirtualClock
-from sim.ros.host import Host
+from sim.ros.middleware.host import Host
 from sim.shell.command_names import ELSEWHERE, listed
 from sim.shell.commands import parse
 from sim.shell.parser import HelpAsked, UsageError
@@ -79,5 +79,7 @@ def _complaint(error: Exception) -> tuple[str, int]:
     if isinstance(error, Failed | LineError):
         return str(error), error.status
     # The model's own errors are sentences; Python's say little without their names.
-    is_sentence = isinstance(error, NotImplementedError) or type(error).__module__.startswith("sim.")
+    is_sentence = isinstance(error, NotImplementedError) or type(error).__module__.startswith(
+        ("sim.", "rclpy.")
+    )
     return str(error) if is_sentence else f"{type(error).__name__}: {error}", 1

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from typing import TypeVar
 
 from sim import plain_yaml
+from sim.interfaces import Message, ServiceType, UnknownInterfaceError, action, message, service
+from sim.interfaces.base import ActionType
+from sim.interfaces.rosidl_runtime_py import message_to_yaml, set_message_fields
 from sim.plain_yaml import YamlError
-from sim.ros.interfaces import Message, ServiceType, UnknownInterfaceError, action, message, service
-from sim.ros.interfaces.base import ActionType
-from sim.ros.interfaces.rosidl_runtime_py import message_to_yaml, set_message_fields
 from sim.shell.quoting import double_quoted, quoted
 from sim.shell.session import Failed
 

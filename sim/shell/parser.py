@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, NoReturn, TypeAlias
 
 from sim.packages import Packages
-from sim.ros.host import Host
+from sim.ros.middleware.host import Host
 
 _WIDTH = 78
 """Columns of help and usage: what argparse makes of a terminal of 80."""

@@ -9,8 +9,8 @@ from argparse import Namespace
 from collections.abc import Sequence
 from copy import copy
 
-from sim.ros.duration import Duration
-from sim.ros.qos import (
+from sim.ros.entities.topic_endpoint_info import TopicEndpointInfo
+from sim.ros.qos.qos import (
     DurabilityPolicy,
     HistoryPolicy,
     LivelinessPolicy,
@@ -18,7 +18,7 @@ from sim.ros.qos import (
     QoSProfile,
     ReliabilityPolicy,
 )
-from sim.ros.topic_endpoint_info import TopicEndpointInfo
+from sim.ros.time.duration import Duration
 from sim.shell.parser import Parser, nonnegative_int
 from sim.shell.session import Session
 

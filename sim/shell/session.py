@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from sim.ros.context import Context
-from sim.ros.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
-from sim.ros.host import Host
-from sim.ros.node import Node
-from sim.ros.node_parameters import ParameterChange
-from sim.ros.probe import LineProbe
-from sim.ros.process import Process
-from sim.ros.task import Future
+from sim.probes.probe import PublishingProbe
+from sim.ros.context.context import Context
+from sim.ros.middleware.host import Host
+from sim.ros.middleware.process import Process
+from sim.ros.node.node import Node
+from sim.ros.parameters.store import ParameterChange
+from sim.ros.scheduling.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
+from sim.ros.scheduling.task import Future
 from sim.shell.tools import Tools
 
 HIDDEN_NODE_PREFIX = "_ros2cli_"
@@ -54,7 +54,7 @@ class Session:
     def __init__(self, host: Host, tools: Tools) -> None:
         self.host = host
         self.tools = tools
-        self._context = Context(host=host, probe=LineProbe(host.clock, host.probe))
+        self._context = Context(host=host, probe=PublishingProbe(host.clock, host.probe, with_calls=True))
         self._context.init([])
         self._listeners: list[Callable[[], None]] = []
         self._made_node: Node | None = None

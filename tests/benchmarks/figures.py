@@ -12,7 +12,7 @@ from functools import lru_cache
 from statistics import median
 from typing import Any
 
-from sim.ros.interfaces import message
+from sim.interfaces import message
 from tests.benchmarks import (
     drawing,
     exporting,

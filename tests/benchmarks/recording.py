@@ -16,8 +16,8 @@ from cbtui.engines.session import Session
 from cbtui.runs.setup.lesson_setup import setup_for, setup_for_files
 from lessons.catalogue import find
 from sim.engine.setup import RobotUse, RunSetup
+from sim.interfaces import to_cdr
 from sim.recording import About, Recorder, RunSnapshot, read
-from sim.ros.interfaces import to_cdr
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,

@@ -9,18 +9,18 @@ from contextlib import contextmanager, suppress
 from typing import Any, TypeAlias
 
 from sim.clock import RealClock
-from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
-from sim.ros.context import Context
-from sim.ros.executors import (
+from sim.interfaces import message, service
+from sim.probes.probe import Probe
+from sim.ros.context.context import Context
+from sim.ros.middleware.host import Host
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
+from sim.ros.scheduling.executors import (
     Executor,
     ExternalShutdownException,
     MultiThreadedExecutor,
     SingleThreadedExecutor,
 )
-from sim.ros.host import Host
-from sim.ros.interfaces import message, service
-from sim.ros.node import Node
-from sim.ros.probe import Probe
 from sim.trace.events import AnyEvent
 
 MakeExecutor: TypeAlias = Callable[[Context], Executor]

@@ -20,19 +20,19 @@ from pathlib import Path
 from random import Random
 from typing import Any, NamedTuple, TypeAlias
 
-import sim.ros as rclpy
+import sim.ros.rclpy as rclpy
 from sim.clock import VirtualClock
 from sim.clock.asyncio_loops import ProgramLoops
 from sim.clock.stdlib import live_on
-from sim.ros.clock import Clock, ClockType
-from sim.ros.duration import Duration
-from sim.ros.executors import MultiThreadedExecutor, SingleThreadedExecutor
-from sim.ros.host import Host, install
-from sim.ros.interfaces import message, service
-from sim.ros.probe import SilentProbe
-from sim.ros.task import Future
-from sim.ros.time import Time
-from sim.ros.wait_for_message import wait_for_message
+from sim.interfaces import message, service
+from sim.probes.probe import SilentProbe
+from sim.ros.clocks.clock import Clock, ClockType
+from sim.ros.middleware.host import Host, install
+from sim.ros.rclpy._entities.wait_for_message import wait_for_message
+from sim.ros.scheduling.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from sim.ros.scheduling.task import Future
+from sim.ros.time.duration import Duration
+from sim.ros.time.time import Time
 
 Later: TypeAlias = Callable[[Callable[[], object]], None]
 """Has something done while a wait goes on, if anything is to be done meanwhile."""

@@ -8,12 +8,12 @@ from hypothesis import strategies as st
 
 from sim.clock.virtual import VirtualClock
 from sim.clock.virtual_threads import VirtualThread
-from sim.ros.callback_groups import (
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,
 )
-from sim.ros.node import Node
 from tests.diagnosis.findings import Diagnosed, SetBool, diagnosed, executor_of, serve_outside
 from tests.support.simulation import Simulation
 

@@ -4,9 +4,9 @@ from collections.abc import Callable
 from typing import Any
 
 from sim.diagnosis import Explanation, Finding, Weight, diagnose
-from sim.ros.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
-from sim.ros.interfaces import message, service
-from sim.ros.node import Node
+from sim.interfaces import message, service
+from sim.ros.node.node import Node
+from sim.ros.scheduling.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from sim.trace.events import RunEnded
 from tests.support.simulation import Program, Simulation, Trace, simulate
 

@@ -4,12 +4,12 @@ from collections.abc import Callable
 
 import pytest
 
-from sim.ros.callback_groups import (
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,
 )
-from sim.ros.node import Node
 from tests.diagnosis.findings import Diagnosed, SetBool, diagnosed, once, serve_outside, spin
 from tests.support.builder import ns
 from tests.support.simulation import Simulation

@@ -2,9 +2,9 @@
 
 from contextlib import suppress
 
-import sim.ros as rclpy
-from sim.ros.callback_groups import ReentrantCallbackGroup
-from sim.ros.node import Node
+import sim.ros.rclpy as rclpy
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
 from sim.trace.events import RunEnded
 from sim.trace.timeline import Timeline
 from tests.diagnosis.findings import Diagnosed, diagnosed, executor_of, once

@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
-from sim.ros.node import Node
-from sim.ros.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from sim.ros.wait_for_message import wait_for_message
+from sim.ros.node.node import Node
+from sim.ros.qos.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from sim.ros.rclpy._entities.wait_for_message import wait_for_message
+from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
 from tests.diagnosis.findings import Diagnosed, Int32, diagnosed, once, spin
 from tests.support.builder import ns
 from tests.support.simulation import Simulation

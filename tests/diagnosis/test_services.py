@@ -2,9 +2,9 @@
 
 from collections.abc import Callable
 
-import sim.ros as rclpy
-from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
-from sim.ros.node import Node
+import sim.ros.rclpy as rclpy
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
 from tests.diagnosis.findings import Diagnosed, SetBool, diagnosed, once, spin
 from tests.support.simulation import Simulation
 

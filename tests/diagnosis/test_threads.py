@@ -2,12 +2,12 @@
 
 import pytest
 
-from sim.ros.callback_groups import (
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,
 )
-from sim.ros.node import Node
 from tests.diagnosis.findings import Diagnosed, diagnosed, executor_of
 from tests.support.simulation import Simulation
 

@@ -2,10 +2,10 @@
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
-from sim.ros.executors import SingleThreadedExecutor
-from sim.ros.node import Node
+import sim.ros.rclpy as rclpy
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from sim.ros.scheduling.executors import SingleThreadedExecutor
 from tests.diagnosis.findings import Diagnosed, Int32, diagnosed, once, spin
 from tests.support.builder import ns
 from tests.support.simulation import Simulation

@@ -135,7 +135,7 @@ FILES = {
     "no super().__init__": Bad(
         HEAD + "class A(Node):\n    def __init__(self):\n        self.create_timer(1.0, print)\n\n"
         "def main():\n    rclpy.init()\n    rclpy.spin(A())",
-        f"node.py:9: {RAISED} AttributeError: 'A' object has no attribute '_agenda'; "
+        f"node.py:9: {RAISED} AttributeError: 'A' object has no attribute '_node_entities'; "
         "A.__init__ has to call super().__init__('name of the node') first",
     ),
     "raises in a callback": Bad(

@@ -9,8 +9,8 @@ import pytest
 
 from cbtui.engines.session import Session
 from sim.engine.commands import KeepContents
-from sim.ros.contents import Contents
-from sim.ros.interfaces import from_cdr, message
+from sim.interfaces import from_cdr, message
+from sim.ros.middleware.contents import Contents
 from sim.trace.events import AnyEvent, MessageSent, Printed, Published, TopicAppeared, decode, encode
 from tests.support.engine_runs import Run, program_setup, run_to_end
 

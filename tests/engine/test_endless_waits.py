@@ -15,8 +15,8 @@ from sim.clock import VirtualClock
 from sim.clock.schedule import schedule_of
 from sim.clock.stdlib import live_on
 from sim.engine.watchdogs.endless_waits import EndlessWaits
-from sim.ros.host import Host, install
-from sim.ros.probe import SilentProbe
+from sim.ros.middleware.host import Host, install
+from sim.probes.probe import SilentProbe
 
 class Probe(SilentProbe):
     def callback_here(self):

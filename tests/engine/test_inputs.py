@@ -31,7 +31,7 @@ from sim.engine.commands import (
 from sim.engine.inputs import UnknownInputError, inputs_of, stops
 from sim.engine.requests import Requests
 from sim.engine.setup import RunSetup
-from sim.ros.interfaces import message
+from sim.interfaces import message
 from sim.trace.events import (
     AnyEvent,
     CommandGiven,

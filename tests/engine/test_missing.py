@@ -5,7 +5,7 @@ import sys
 import pytest
 
 from sim.engine.failures.missing import on_missing
-from sim.ros.interfaces import packages
+from sim.interfaces import packages
 
 PIP = "pip install {}, into the Python that runs cbtui"
 

@@ -10,9 +10,9 @@ from hypothesis import strategies as st
 
 from sim.engine.commands import PaceCommand, Pause, Resume, RunUntil, RunUntilCallback, SetSpeed, Step
 from sim.engine.time_control import is_decision
-from sim.ros.executors import MultiThreadedExecutor
-from sim.ros.interfaces import message
-from sim.ros.node import Node
+from sim.interfaces import message
+from sim.ros.node.node import Node
+from sim.ros.scheduling.executors import MultiThreadedExecutor
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,

@@ -107,11 +107,11 @@ ON_THE_TRACE: Mapping[str, str] = {
         "for each in events_of: outbox.record(each)"
     ),
     "tells nothing of waits": _first(
-        "import sys\nsys.modules['sim.ros.probe'].Probe.waits = lambda *_: None"
+        "import sys\nsys.modules['sim.probes.probe'].Probe.waits = lambda *_: None"
     ),
     "changes the code of a function": _first(
         "import sys\ndef waits(self, entity, reason, holder, workers_busy): pass\n"
-        "sys.modules['sim.ros.probe'].Probe.waits.__code__ = waits.__code__"
+        "sys.modules['sim.probes.probe'].Probe.waits.__code__ = waits.__code__"
     ),
     "slows the clock down": _first(
         "import sys\nclock = sys.modules['sim.clock.virtual'].VirtualClock\n"
@@ -120,7 +120,7 @@ ON_THE_TRACE: Mapping[str, str] = {
     "replaces the outbox's recording": _first(
         f"{_OUTBOX}\nrecord = outbox.record\noutbox.record = lambda event: record(event)"
     ),
-    "imports the engine": f"import sim.ros.probe\n{SOLUTION}",
+    "imports the engine": f"import sim.probes.probe\n{SOLUTION}",
 }
 """What a program can do to its trace, and is suspicious for."""
 

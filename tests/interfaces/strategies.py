@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 from hypothesis import strategies as st
 
-from sim.ros.interfaces import Message, message_of_type
-from sim.ros.interfaces.field_types import (
+from sim.interfaces import Message, message_of_type
+from sim.interfaces.field_types import (
     FLOAT_LIMITS,
     INTEGER_LIMITS,
     Array,
@@ -24,7 +24,7 @@ from sim.ros.interfaces.field_types import (
     NamespacedType,
     UnboundedSequence,
 )
-from sim.ros.interfaces.sequences import typecode
+from sim.interfaces.sequences import typecode
 
 # All that UTF-8 can carry; asking for the codec by its name takes seconds.
 TEXT = st.text(st.characters(exclude_categories=["Cs"], exclude_characters="\x00"), max_size=8)

@@ -6,7 +6,7 @@ import pickle
 
 import pytest
 
-from sim.ros.interfaces import (
+from sim.interfaces import (
     UnknownInterfaceError,
     action,
     interface_module,

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim.ros.interfaces import from_cdr, message, to_cdr
+from sim.interfaces import from_cdr, message, to_cdr
 
 Image = message("sensor_msgs", "Image")
 Signed = message("std_msgs", "Int8MultiArray")

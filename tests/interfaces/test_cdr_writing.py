@@ -11,11 +11,11 @@ import pytest
 from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 
-from sim.ros.interfaces import Message, action, from_cdr, message, names, service, to_cdr
-from sim.ros.interfaces.cdr import typestore_of
-from sim.ros.interfaces.field_types import AbstractWString, BasicType, FieldType, SequenceType, element_type
-from sim.ros.interfaces.interface_definition import FILLER_FIELD
-from sim.ros.interfaces.sequences import typecode
+from sim.interfaces import Message, action, from_cdr, message, names, service, to_cdr
+from sim.interfaces.cdr import typestore_of
+from sim.interfaces.field_types import AbstractWString, BasicType, FieldType, SequenceType, element_type
+from sim.interfaces.interface_definition import FILLER_FIELD
+from sim.interfaces.sequences import typecode
 from tests.interfaces.strategies import TEXT, messages
 from tests.support.properties import examples
 

@@ -11,8 +11,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim.ros.interfaces import message
-from sim.ros.interfaces.field_types import INTEGER_LIMITS
+from sim.interfaces import message
+from sim.interfaces.field_types import INTEGER_LIMITS
 
 Twist = message("geometry_msgs", "Twist")
 Vector3 = message("geometry_msgs", "Vector3")

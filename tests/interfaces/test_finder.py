@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-from sim.ros.interfaces import (
+from sim.interfaces import (
     InterfaceFinder,
     add_definitions,
     find_definition_folders,
@@ -23,9 +23,9 @@ from sim.ros.interfaces import (
     packages,
     service,
 )
-from sim.ros.interfaces.folder import DefinitionFolder
-from sim.ros.interfaces.jazzy import JazzyMessages
-from sim.ros.interfaces.registry import Registry
+from sim.interfaces.folder import DefinitionFolder
+from sim.interfaces.jazzy import JazzyMessages
+from sim.interfaces.registry import Registry
 
 DEFINITIONS = Path(known.__file__).parent / "definitions"
 
@@ -133,7 +133,7 @@ def test_messages_pickle_without_the_finder() -> None:
 
 def test_the_first_finder_of_a_process_does_not_ask_itself_without_end() -> None:
     code = (
-        "import sys\nfrom sim.ros.interfaces import InterfaceFinder\n"
+        "import sys\nfrom sim.interfaces import InterfaceFinder\n"
         "sys.meta_path.insert(0, InterfaceFinder())\nimport wave\nfrom std_msgs.msg import Int32\nInt32()"
     )
     subprocess.run([sys.executable, "-c", code], check=True, timeout=60)

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from sim.ros import interfaces
-from sim.ros.interfaces import DefinitionError
-from sim.ros.interfaces.folder import DefinitionFolder
-from sim.ros.interfaces.jazzy import JazzyMessages
-from sim.ros.interfaces.registry import Registry
+from sim import interfaces
+from sim.interfaces import DefinitionError
+from sim.interfaces.folder import DefinitionFolder
+from sim.interfaces.jazzy import JazzyMessages
+from sim.interfaces.registry import Registry
 
 DEFINITIONS = Path(interfaces.__file__).parent / "definitions"
 

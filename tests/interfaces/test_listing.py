@@ -4,13 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from sim.ros.interfaces import (
-    UnknownInterfaceError,
-    interface_names,
-    interface_text,
-    kinds_sentence,
-    prototype,
-)
+from sim.interfaces import UnknownInterfaceError, interface_names, interface_text, kinds_sentence, prototype
 
 
 def test_messages_in_a_message_are_shown_below_it_by_tabs() -> None:

@@ -12,8 +12,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim.ros.interfaces import Message, interface_module, message, service, type_name
-from sim.ros.interfaces.field_types import (
+from sim.interfaces import Message, interface_module, message, service, type_name
+from sim.interfaces.field_types import (
     Array,
     BasicType,
     BoundedSequence,

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 from rosbags.typesys import Stores, get_typestore
 
-from sim.ros import interfaces
-from sim.ros.interfaces import (
+from sim import interfaces
+from sim.interfaces import (
     Kind,
     UnknownInterfaceError,
     action,
@@ -23,10 +23,10 @@ from sim.ros.interfaces import (
     service,
     to_cdr,
 )
-from sim.ros.interfaces.folder import DefinitionFolder
-from sim.ros.interfaces.interface_definition import FILLER_FIELD, Definition
-from sim.ros.interfaces.jazzy import JazzyMessages, jazzy_tables
-from sim.ros.interfaces.registry import Registry
+from sim.interfaces.folder import DefinitionFolder
+from sim.interfaces.interface_definition import FILLER_FIELD, Definition
+from sim.interfaces.jazzy import JazzyMessages, jazzy_tables
+from sim.interfaces.registry import Registry
 
 DEFINITIONS = Path(interfaces.__file__).parent / "definitions"
 

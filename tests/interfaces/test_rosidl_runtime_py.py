@@ -8,9 +8,9 @@ from collections.abc import Iterator
 import pytest
 import yaml
 
-from sim.ros.interfaces import InterfaceFinder, action, message, service
-from sim.ros.interfaces import rosidl_runtime_py as runtime
-from sim.ros.interfaces.rosidl_runtime_py import utilities
+from sim.interfaces import InterfaceFinder, action, message, service
+from sim.interfaces import rosidl_runtime_py as runtime
+from sim.interfaces.rosidl_runtime_py import utilities
 
 String, Scan = message("std_msgs", "String"), message("sensor_msgs", "LaserScan")
 Stamped, Time = message("geometry_msgs", "TwistStamped"), message("builtin_interfaces", "Time")

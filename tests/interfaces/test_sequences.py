@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim.ros.interfaces import message
+from sim.interfaces import message
 
 LaserScan = message("sensor_msgs", "LaserScan")
 Bytes = message("std_msgs", "UInt8MultiArray")

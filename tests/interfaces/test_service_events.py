@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from sim.ros.interfaces import copy_message, message_of_type, service, type_name
+from sim.interfaces import copy_message, message_of_type, service, type_name
 
 SetBool = service("std_srvs", "SetBool")
 

@@ -13,7 +13,7 @@ from hypothesis import HealthCheck, Phase, given, settings
 from hypothesis import strategies as st
 from rosbags.typesys import Stores, get_typestore
 
-from sim.ros.interfaces import (
+from sim.interfaces import (
     Message,
     action,
     copy_message,

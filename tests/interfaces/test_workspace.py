@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from sim.ros.interfaces import find_definition_folders, workspace
+from sim.interfaces import find_definition_folders, workspace
 from tests.support.nobody import close, without_home
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from sim.launch import LaunchError, LaunchRun, describe_arguments
-from sim.ros.arguments import parse_arguments
+from sim.ros.context.arguments import parse_arguments
 from tests.launch.fakes import HEAD_LINES, FakeMachine, launch, make_package
 
 

@@ -3,9 +3,13 @@
 from collections.abc import Callable
 from typing import TypeAlias
 
-from sim.ros.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
-from sim.ros.interfaces import message, service
-from sim.ros.node import Node
+from sim.interfaces import message, service
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import (
+    CallbackGroup,
+    MutuallyExclusiveCallbackGroup,
+    ReentrantCallbackGroup,
+)
 from tests.support.simulation import Simulation
 
 Int32 = message("std_msgs", "Int32")

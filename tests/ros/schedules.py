@@ -7,7 +7,7 @@ from itertools import chain
 from random import Random
 
 from sim.clock.schedule import schedule_of
-from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from sim.trace.events import CallbackStarted, EntityKind, Published
 from tests.ros.replay import Replay
 from tests.ros.systems import (

@@ -7,14 +7,14 @@ from typing import Any, TypeAlias
 from hypothesis import strategies as st
 
 from sim.clock.schedule import Schedule
-from sim.ros.callback_groups import (
+from sim.interfaces import message, service
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,
 )
-from sim.ros.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
-from sim.ros.interfaces import message, service
-from sim.ros.node import Node
+from sim.ros.scheduling.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from tests.support.simulation import Simulation, Trace, simulate
 
 Int32 = message("std_msgs", "Int32")

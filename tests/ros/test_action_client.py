@@ -4,15 +4,16 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.action import ActionClient, ActionServer, CancelResponse
-from sim.ros.action.client import ClientGoalHandle
-from sim.ros.action.server import ServerGoalHandle
-from sim.ros.callback_groups import ReentrantCallbackGroup
-from sim.ros.executors import MultiThreadedExecutor
-from sim.ros.interfaces import action, message
-from sim.ros.node import Node
-from sim.ros.task import Future
+import sim.ros.rclpy as rclpy
+from sim.interfaces import action, message
+from sim.ros.actions import ActionClient, ActionServer, CancelResponse
+from sim.ros.actions.client import ClientGoalHandle
+from sim.ros.actions.server import ServerGoalHandle
+from sim.ros.node.node import Node
+from sim.ros.rclpy import executors
+from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
+from sim.ros.scheduling.executors import MultiThreadedExecutor
+from sim.ros.scheduling.task import Future
 from sim.trace.events import CallBlocked, CallUnblocked, MessageDropped, ServiceCalled
 from tests.support.builder import ns
 from tests.support.simulation import Simulation, simulate
@@ -302,7 +303,7 @@ def test_goals_of_different_clients_never_share_an_id() -> None:
 
 
 def _spun(simulation: Simulation, node: Node, future: Future[Any]) -> Any:
-    executor = rclpy.executors.SingleThreadedExecutor(context=node.context)
+    executor = executors.SingleThreadedExecutor(context=node.context)
     executor.add_node(node)
     executor.spin_until_future_complete(future)
     executor.remove_node(node)

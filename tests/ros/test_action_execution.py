@@ -4,14 +4,14 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.action import ActionClient, ActionServer, CancelResponse, GoalResponse
-from sim.ros.action.server import ServerGoalHandle
-from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
-from sim.ros.executors import MultiThreadedExecutor, SingleThreadedExecutor
-from sim.ros.interfaces import action
-from sim.ros.node import Node
-from sim.ros.task import Future
+import sim.ros.rclpy as rclpy
+from sim.interfaces import action
+from sim.ros.actions import ActionClient, ActionServer, CancelResponse, GoalResponse
+from sim.ros.actions.server import ServerGoalHandle
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from sim.ros.scheduling.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from sim.ros.scheduling.task import Future
 from sim.trace.events import (
     CallbackResumed,
     CallbackSuspended,

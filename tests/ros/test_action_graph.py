@@ -4,7 +4,8 @@ from typing import Any
 
 import pytest
 
-from sim.ros.action import (
+from sim.interfaces import action
+from sim.ros.actions import (
     ActionClient,
     ActionServer,
     get_action_client_names_and_types_by_node,
@@ -12,8 +13,7 @@ from sim.ros.action import (
     get_action_server_names_and_types_by_node,
 )
 from sim.ros.exceptions import NodeNameNonExistentError
-from sim.ros.interfaces import action
-from sim.ros.node import Node
+from sim.ros.node.node import Node
 from tests.support.simulation import Simulation, simulate
 
 Fibonacci = action("example_interfaces", "Fibonacci")

@@ -5,14 +5,14 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.action.server import ActionServer, CancelResponse, GoalResponse, ServerGoalHandle
-from sim.ros.callback_groups import ReentrantCallbackGroup
+import sim.ros.rclpy as rclpy
+from sim.interfaces import action, message, service
+from sim.ros.actions.server import ActionServer, CancelResponse, GoalResponse, ServerGoalHandle
 from sim.ros.exceptions import RCLError
-from sim.ros.executors import MultiThreadedExecutor
-from sim.ros.interfaces import action, message, service
-from sim.ros.node import Node
-from sim.ros.task import Future
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
+from sim.ros.scheduling.executors import MultiThreadedExecutor
+from sim.ros.scheduling.task import Future
 from sim.trace.events import CallbackFailed, EntityAppeared, EntityGone
 from tests.support.simulation import Simulation, simulate
 

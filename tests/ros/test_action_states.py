@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from sim.ros.action.cancelling import ReturnCode, goals_meant
-from sim.ros.action.goal_states import TERMINAL, GoalEvent, GoalState, next_state
+from sim.interfaces import message, service
+from sim.ros.actions.cancelling import ReturnCode, goals_meant
+from sim.ros.actions.goal_states import TERMINAL, GoalEvent, GoalState, next_state
 from sim.ros.exceptions import RCLError
-from sim.ros.interfaces import message, service
 
 GoalInfo = message("action_msgs", "GoalInfo")
 GoalStatus = message("action_msgs", "GoalStatus")

@@ -11,19 +11,19 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sim.ros.action import ActionClient, ActionServer, CancelResponse, GoalResponse
-from sim.ros.action.goal_states import TERMINAL, GoalEvent, GoalState, next_state
-from sim.ros.action.server import ServerGoalHandle
-from sim.ros.callback_groups import (
+from sim.interfaces import action
+from sim.ros.actions import ActionClient, ActionServer, CancelResponse, GoalResponse
+from sim.ros.actions.goal_states import TERMINAL, GoalEvent, GoalState, next_state
+from sim.ros.actions.server import ServerGoalHandle
+from sim.ros.exceptions import RCLError
+from sim.ros.node.node import Node
+from sim.ros.qos.qos import QoSProfile
+from sim.ros.scheduling.callback_groups import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,
 )
-from sim.ros.exceptions import RCLError
-from sim.ros.executors import MultiThreadedExecutor, SingleThreadedExecutor
-from sim.ros.interfaces import action
-from sim.ros.node import Node
-from sim.ros.qos import QoSProfile
+from sim.ros.scheduling.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from tests.support.properties import examples
 from tests.support.simulation import Simulation, Trace, simulate
 

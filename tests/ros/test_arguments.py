@@ -5,19 +5,19 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.arguments import ArgumentsError, parameters_for, parse_arguments
-from sim.ros.context import Context
+import sim.ros.rclpy as rclpy
+from sim.interfaces import message, service
+from sim.ros.context.arguments import ArgumentsError, parameters_for, parse_arguments
+from sim.ros.context.context import Context
+from sim.ros.context.utilities import remove_ros_args
 from sim.ros.exceptions import (
     InvalidNamespaceException,
     RCLError,
     RCLInvalidROSArgsError,
     UnknownROSArgsError,
 )
-from sim.ros.interfaces import message, service
-from sim.ros.logging import LoggingSeverity, get_logger
-from sim.ros.node import Node
-from sim.ros.utilities import remove_ros_args
+from sim.ros.logging.logger import LoggingSeverity, get_logger
+from sim.ros.node.node import Node
 from tests.support.simulation import Simulation, simulate
 
 Int32 = message("std_msgs", "Int32")

@@ -4,20 +4,20 @@ from typing import Any
 
 import pytest
 
-from sim.ros import _rclpy_pybind11 as _rclpy
-from sim.ros.clock import Clock
-from sim.ros.duration import Duration
-from sim.ros.event_handler import (
+from sim.interfaces import message, service, to_cdr
+from sim.ros.clocks.clock import Clock
+from sim.ros.entities.event_handler import (
     QoSPublisherEventType,
     QoSSubscriptionEventType,
     SubscriptionEventCallbacks,
 )
+from sim.ros.entities.guard_condition import GuardCondition
 from sim.ros.exceptions import InvalidHandle, RCLError
-from sim.ros.executors import SingleThreadedExecutor
-from sim.ros.guard_condition import GuardCondition
-from sim.ros.interfaces import message, service, to_cdr
-from sim.ros.node import Node
-from sim.ros.qos import LivelinessPolicy, QoSPolicyKind, QoSProfile, ReliabilityPolicy
+from sim.ros.internals import compiled as _rclpy
+from sim.ros.node.node import Node
+from sim.ros.qos.qos import LivelinessPolicy, QoSPolicyKind, QoSProfile, ReliabilityPolicy
+from sim.ros.scheduling.executors import SingleThreadedExecutor
+from sim.ros.time.duration import Duration
 from tests.support.simulation import Simulation, simulate
 
 Int32 = message("std_msgs", "Int32")

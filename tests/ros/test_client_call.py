@@ -4,14 +4,14 @@ from collections.abc import Callable
 
 import pytest
 
-from sim.ros.callback_groups import (
+from sim.interfaces import service
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,
 )
-from sim.ros.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
-from sim.ros.interfaces import service
-from sim.ros.node import Node
+from sim.ros.scheduling.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from sim.trace.events import CallBlocked, CallUnblocked, ServiceReplied
 from tests.support.simulation import Simulation, Trace, simulate
 

@@ -4,14 +4,14 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.clock import Clock, ClockChange, ClockEvent, JumpThreshold, ROSClock, TimeJump
-from sim.ros.clock_type import ClockType
-from sim.ros.duration import Duration, Infinite
+import sim.ros.rclpy as rclpy
+from sim.ros.clocks.clock import Clock, ClockChange, ClockEvent, JumpThreshold, ROSClock, TimeJump
+from sim.ros.entities.timer import TimerInfo
 from sim.ros.exceptions import NotInitializedException
-from sim.ros.node import Node
-from sim.ros.time import Time
-from sim.ros.timer import TimerInfo
+from sim.ros.node.node import Node
+from sim.ros.time.clock_type import ClockType
+from sim.ros.time.duration import Duration, Infinite
+from sim.ros.time.time import Time
 from tests.support.simulation import Simulation, simulate
 
 SECOND = Duration(seconds=1)

@@ -4,12 +4,12 @@ from typing import Any
 
 import pytest
 
-from sim.ros import contents
-from sim.ros.contents import Contents
-from sim.ros.interfaces import definition, from_cdr, message
-from sim.ros.offered_qos import offered_qos_text
-from sim.ros.qos import QoSProfile
-from sim.ros.type_description import type_hash
+from sim.interfaces import definition, from_cdr, message
+from sim.ros.middleware import contents
+from sim.ros.middleware.contents import Contents
+from sim.ros.middleware.type_description import type_hash
+from sim.ros.qos.offered import offered_qos_text
+from sim.ros.qos.qos import QoSProfile
 from sim.trace.events import AnyEvent, ContentsLost, MessageSent, TopicAppeared, decode
 
 NUMBER: Any = message("std_msgs", "Int32")

@@ -11,15 +11,10 @@ from collections.abc import Iterator
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros import host as hosts
-from sim.ros.context import Context
-from sim.ros.exceptions import RCLError
-from sim.ros.executors import ExternalShutdownException, MultiThreadedExecutor, SingleThreadedExecutor
-from sim.ros.interfaces import message
-from sim.ros.node import Node
-from sim.ros.process import Process, current_process
-from sim.ros.signals import (
+import sim.ros.rclpy as rclpy
+from sim.interfaces import message, service
+from sim.ros.context.context import Context
+from sim.ros.context.signals import (
     SignalHandlerOptions,
     deliver_sigint,
     deliver_sigterm,
@@ -27,7 +22,17 @@ from sim.ros.signals import (
     install_signal_handlers,
     uninstall_signal_handlers,
 )
-from sim.ros.wait_for_message import wait_for_message
+from sim.ros.exceptions import RCLError
+from sim.ros.middleware import host as hosts
+from sim.ros.middleware.process import Process, current_process
+from sim.ros.node.node import Node
+from sim.ros.rclpy._entities.wait_for_message import wait_for_message
+from sim.ros.scheduling.executors import (
+    ExternalShutdownException,
+    MultiThreadedExecutor,
+    SingleThreadedExecutor,
+)
+from sim.ros.time.duration import Duration
 from tests.support.simulation import Simulation, simulate
 
 Int32 = message("std_msgs", "Int32")
@@ -61,7 +66,7 @@ def test_nodes_of_different_domains_do_not_see_each_other() -> None:
 
 
 def test_a_service_answers_within_its_domain() -> None:
-    empty = rclpy.interfaces.service("std_srvs", "Empty")
+    empty = service("std_srvs", "Empty")
 
     def program(_: Simulation) -> None:
         Node("server", context=in_domain(1)).create_service(empty, "s", lambda _, response: response)
@@ -207,7 +212,7 @@ def test_a_signal_calls_no_shutdown_callbacks_and_wakes_what_waits() -> None:
         node = Node("n")
         node.context.on_shutdown(lambda: pytest.fail("it was not shut down"))
         simulation.at(1.0, lambda: deliver_sigint(node.context.process))
-        assert not node.get_clock().sleep_for(rclpy.duration.Duration(seconds=5))
+        assert not node.get_clock().sleep_for(Duration(seconds=5))
         assert simulation.now == 1.0
         with pytest.raises(RCLError):
             rclpy.shutdown()

@@ -6,12 +6,12 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
-from sim.ros.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
-from sim.ros.interfaces import service
-from sim.ros.node import Node
-from sim.ros.task import Future, Task
+import sim.ros.rclpy as rclpy
+from sim.interfaces import service
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from sim.ros.scheduling.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
+from sim.ros.scheduling.task import Future, Task
 from sim.trace.events import (
     CallbackEnded,
     CallbackFailed,

@@ -5,13 +5,13 @@ from collections.abc import Callable
 
 import pytest
 
-from sim.ros.context import Context
+from sim.interfaces import message, service
+from sim.ros.context.context import Context
+from sim.ros.entities.subscription import Subscription
+from sim.ros.entities.timer import Rate, Timer
 from sim.ros.exceptions import InvalidHandle
-from sim.ros.executors import MultiThreadedExecutor, SingleThreadedExecutor
-from sim.ros.interfaces import message, service
-from sim.ros.node import Node
-from sim.ros.subscription import Subscription
-from sim.ros.timer import Rate, Timer
+from sim.ros.node.node import Node
+from sim.ros.scheduling.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from tests.support.simulation import Simulation, simulate
 
 Empty = message("std_msgs", "Empty")

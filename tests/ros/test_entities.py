@@ -4,15 +4,15 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
+import sim.ros.rclpy as rclpy
+from sim.interfaces import message, service
+from sim.ros.entities.publisher import Publisher
+from sim.ros.entities.serialization import serialize_message
 from sim.ros.exceptions import InvalidHandle
-from sim.ros.interfaces import message, service
-from sim.ros.node import Node
-from sim.ros.publisher import Publisher
-from sim.ros.qos import QoSProfile
-from sim.ros.qos_overriding_options import QoSOverridingOptions
-from sim.ros.serialization import serialize_message
-from sim.ros.wait_for_message import wait_for_message
+from sim.ros.node.node import Node
+from sim.ros.node.qos_overriding_options import QoSOverridingOptions
+from sim.ros.qos.qos import QoSProfile
+from sim.ros.rclpy._entities.wait_for_message import wait_for_message
 from tests.support.simulation import Simulation, simulate
 
 Int32 = message("std_msgs", "Int32")

@@ -4,12 +4,12 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros import logging
-from sim.ros.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
-from sim.ros.interfaces import message
-from sim.ros.node import Node
-from sim.ros.qos import QoSPolicyKind, QoSProfile, ReliabilityPolicy
+import sim.ros.rclpy as rclpy
+from sim.interfaces import message
+from sim.ros.entities.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from sim.ros.logging import logger as logging
+from sim.ros.node.node import Node
+from sim.ros.qos.qos import QoSPolicyKind, QoSProfile, ReliabilityPolicy
 from tests.support.simulation import Simulation, simulate
 
 Int32 = message("std_msgs", "Int32")

@@ -6,19 +6,19 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.callback_groups import ReentrantCallbackGroup
+import sim.ros.rclpy as rclpy
+from sim.interfaces import message, service
 from sim.ros.exceptions import InvalidHandle
-from sim.ros.executors import (
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
+from sim.ros.scheduling.executors import (
     Executor,
     ExternalShutdownException,
     MultiThreadedExecutor,
     ShutdownException,
     SingleThreadedExecutor,
 )
-from sim.ros.interfaces import message, service
-from sim.ros.node import Node
-from sim.ros.task import Future, Task
+from sim.ros.scheduling.task import Future, Task
 from tests.support.simulation import Simulation, simulate
 
 Int32 = message("std_msgs", "Int32")

@@ -5,11 +5,11 @@ from typing import Any
 
 import pytest
 
+from sim.interfaces import message, service
+from sim.ros.entities.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
 from sim.ros.exceptions import InvalidTopicNameException, NodeNameNonExistentError
-from sim.ros.interfaces import message, service
-from sim.ros.node import Node
-from sim.ros.qos import QoSPresetProfiles, QoSProfile
-from sim.ros.topic_endpoint_info import TopicEndpointInfo, TopicEndpointTypeEnum
+from sim.ros.node.node import Node
+from sim.ros.qos.qos import QoSPresetProfiles, QoSProfile
 from tests.support.simulation import Simulation, simulate
 
 Int32 = message("std_msgs", "Int32")

@@ -4,16 +4,16 @@ import gc
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.callback_groups import (
+import sim.ros.rclpy as rclpy
+from sim.interfaces import message
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,
 )
-from sim.ros.entity import Entity
-from sim.ros.executors import MultiThreadedExecutor, SingleThreadedExecutor
-from sim.ros.interfaces import message
-from sim.ros.node import Node
+from sim.ros.scheduling.entity import Entity
+from sim.ros.scheduling.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from sim.trace.events import GroupAppeared, GroupKind
 from tests.support.simulation import Simulation, simulate
 

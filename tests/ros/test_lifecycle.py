@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
+import sim.ros.rclpy as rclpy
+from sim.interfaces import message, service
 from sim.ros.exceptions import RCLError
-from sim.ros.interfaces import message, service
 from sim.ros.lifecycle import (
     LifecycleNode,
     LifecycleState,
@@ -14,7 +14,8 @@ from sim.ros.lifecycle import (
     SimpleManagedEntity,
     TransitionCallbackReturn,
 )
-from sim.ros.node import Node
+from sim.ros.node.node import Node
+from sim.ros.rclpy import executors
 from tests.support.simulation import Simulation, simulate
 
 SUCCESS, FAILURE, ERROR = TransitionCallbackReturn
@@ -173,7 +174,7 @@ def test_a_decorated_method_works_only_while_enabled() -> None:
 def test_others_follow_and_steer_a_node_through_its_services() -> None:
     def program(_: Simulation) -> None:
         node, caller = LifecycleNode("n"), Node("caller")
-        executor = rclpy.executors.SingleThreadedExecutor()
+        executor = executors.SingleThreadedExecutor()
         for each in (node, caller):
             executor.add_node(each)
 

@@ -2,12 +2,12 @@
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.callback_groups import ReentrantCallbackGroup
+import sim.ros.rclpy as rclpy
+from sim.interfaces import message
 from sim.ros.exceptions import InvalidNamespaceException, InvalidNodeNameException
-from sim.ros.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
-from sim.ros.interfaces import message
-from sim.ros.node import Node
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
+from sim.ros.scheduling.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from sim.trace.events import EntityGone, NodeAppeared
 from tests.support.simulation import Simulation, simulate
 

@@ -5,12 +5,12 @@ import re
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros import logging
-from sim.ros.log_console import LogConsole
-from sim.ros.log_filters import Place
-from sim.ros.log_record import LogRecord
-from sim.ros.logging import LoggingSeverity, get_logger
+import sim.ros.rclpy as rclpy
+from sim.ros.logging import logger as logging
+from sim.ros.logging.console import LogConsole
+from sim.ros.logging.filters import Place
+from sim.ros.logging.logger import LoggingSeverity, get_logger
+from sim.ros.logging.record import LogRecord
 from tests.support.simulation import Simulation, simulate
 
 RECORD = LogRecord(

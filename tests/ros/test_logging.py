@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from sim.ros import logging
-from sim.ros.clock import Clock
-from sim.ros.clock_type import ClockType
-from sim.ros.logging import LoggingSeverity, RcutilsLogger, get_logger
+from sim.ros.clocks.clock import Clock
+from sim.ros.logging import logger as logging
+from sim.ros.logging.logger import LoggingSeverity, RcutilsLogger, get_logger
+from sim.ros.time.clock_type import ClockType
 from tests.support.simulation import Simulation, simulate
 
 

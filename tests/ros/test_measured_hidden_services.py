@@ -2,10 +2,10 @@
 
 import pytest
 
-from sim.ros.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
-from sim.ros.executors import MultiThreadedExecutor
-from sim.ros.interfaces import service
-from sim.ros.node import Node
+from sim.interfaces import service
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
+from sim.ros.scheduling.executors import MultiThreadedExecutor
 from tests.support.simulation import Simulation, simulate
 
 GetParameters = service("rcl_interfaces", "GetParameters")

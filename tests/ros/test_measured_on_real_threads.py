@@ -4,10 +4,10 @@ from collections.abc import Callable
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
-from sim.ros.executors import Executor, MultiThreadedExecutor
-from sim.ros.node import Node
+import sim.ros.rclpy as rclpy
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
+from sim.ros.scheduling.executors import Executor, MultiThreadedExecutor
 from sim.trace.events import MessageDropped, ServiceReplied
 from tests.ros.measured_nodes import DummyServer, Groups, SetBool, SubNode, default, reentrant, shared
 from tests.support.real_threads import on_parallel_time, spin

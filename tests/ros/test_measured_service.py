@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 import pytest
 
-from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
-from sim.ros.executors import MultiThreadedExecutor
+from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
+from sim.ros.scheduling.executors import MultiThreadedExecutor
 from sim.trace.events import ServiceReplied
 from tests.ros.measured_nodes import DummyServer, Groups, SetBool, default, reentrant
 from tests.support.simulation import Simulation, Trace, simulate

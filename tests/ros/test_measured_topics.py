@@ -5,9 +5,9 @@ from itertools import pairwise
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
-from sim.ros.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
+import sim.ros.rclpy as rclpy
+from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
+from sim.ros.scheduling.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from tests.ros.measured_nodes import Groups, SubNode, default, shared
 from tests.support.simulation import Simulation, Trace, simulate
 

@@ -5,6 +5,7 @@ from typing import Any
 
 import pytest
 
+from sim.interfaces import message
 from sim.ros.exceptions import (
     InvalidNamespaceException,
     InvalidNodeNameException,
@@ -12,14 +13,13 @@ from sim.ros.exceptions import (
     InvalidTopicNameException,
     NameValidationException,
 )
-from sim.ros.expand_topic_name import expand_topic_name
-from sim.ros.interfaces import message
-from sim.ros.node import Node
-from sim.ros.topic_or_service_is_hidden import topic_or_service_is_hidden
-from sim.ros.validate_full_topic_name import validate_full_topic_name
-from sim.ros.validate_namespace import validate_namespace
-from sim.ros.validate_node_name import validate_node_name
-from sim.ros.validate_topic_name import validate_topic_name
+from sim.ros.naming.expand_topic_name import expand_topic_name
+from sim.ros.naming.validate_full_topic_name import validate_full_topic_name
+from sim.ros.naming.validate_namespace import validate_namespace
+from sim.ros.naming.validate_node_name import validate_node_name
+from sim.ros.naming.validate_topic_name import validate_topic_name
+from sim.ros.node.node import Node
+from sim.ros.rclpy._naming.topic_or_service_is_hidden import topic_or_service_is_hidden
 from tests.support.simulation import simulate
 
 

@@ -7,13 +7,13 @@ from unittest.mock import Mock
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.clock_type import ClockType
-from sim.ros.context import Context
+import sim.ros.rclpy as rclpy
+from sim.interfaces import message, service
+from sim.ros.context.context import Context
+from sim.ros.entities.publisher import Publisher
 from sim.ros.exceptions import NotInitializedException
-from sim.ros.interfaces import message, service
-from sim.ros.node import Node
-from sim.ros.publisher import Publisher
+from sim.ros.node.node import Node
+from sim.ros.time.clock_type import ClockType
 from tests.support.simulation import Simulation, simulate
 
 Int32: Any = message("std_msgs", "Int32")
@@ -156,4 +156,4 @@ def test_a_wrong_call_is_told_as_one_of_node(method: str) -> None:
     "name", ["Timer", "Rate", "Client", "Service", "Subscription", "Publisher", "ParameterValue"]
 )
 def test_classes_that_programs_import_from_the_nodes_module_are_there(name: str) -> None:
-    assert getattr(importlib.import_module("sim.ros.node"), name).__name__ == name
+    assert getattr(importlib.import_module("sim.ros.rclpy.node"), name).__name__ == name

@@ -4,9 +4,9 @@ import yaml
 from rosbags.interfaces import QosDurability, QosHistory, QosReliability, QosTime
 from rosbags.rosbag2.metadata import parse_qos
 
-from sim.ros.duration import Duration
-from sim.ros.offered_qos import offered_qos_text
-from sim.ros.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from sim.ros.qos.offered import offered_qos_text
+from sim.ros.qos.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from sim.ros.time.duration import Duration
 
 FOR_EVER = {"sec": 9223372036, "nsec": 854775807}
 

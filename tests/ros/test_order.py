@@ -5,11 +5,11 @@ from functools import partial
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.callback_groups import ReentrantCallbackGroup
-from sim.ros.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
-from sim.ros.interfaces import message, service
-from sim.ros.node import Node
+import sim.ros.rclpy as rclpy
+from sim.interfaces import message, service
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
+from sim.ros.scheduling.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from sim.trace.events import CallbackStarted, EntityAppeared
 from tests.support.simulation import Simulation, simulate
 

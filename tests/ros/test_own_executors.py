@@ -5,8 +5,10 @@ from typing import Any
 
 import pytest
 
-from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
-from sim.ros.executors import (
+from sim.interfaces import message
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from sim.ros.scheduling.executors import (
     ConditionReachedException,
     Executor,
     ShutdownException,
@@ -15,11 +17,9 @@ from sim.ros.executors import (
     TimeoutObject,
     await_or_execute,
 )
-from sim.ros.interfaces import message
-from sim.ros.node import Node
-from sim.ros.program_wait_set import ProgramWaitSet
-from sim.ros.task import Future
-from sim.ros.waitable import NumberOfEntities, Waitable
+from sim.ros.scheduling.program_wait_set import ProgramWaitSet
+from sim.ros.scheduling.task import Future
+from sim.ros.scheduling.waitable import NumberOfEntities, Waitable
 from sim.trace.events import CallbackEnded, CallbackResumed, CallbackStarted, CallbackSuspended
 from tests.support.simulation import Simulation, simulate
 
@@ -31,7 +31,7 @@ class Plain(Executor):
 
     def __init__(self) -> None:
         super().__init__()
-        self.served: list[tuple[Any, Node | None]] = []
+        self.served: list[tuple[Any, Any]] = []
 
     def _spin_once_impl(self, timeout_sec: Any = None, wait_condition: Any = lambda: False) -> None:
         try:

@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
-from sim.ros.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
-from sim.ros.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
-from sim.ros.interfaces import message
-from sim.ros.node import Node
+from sim.interfaces import message
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import CallbackGroup, MutuallyExclusiveCallbackGroup
+from sim.ros.scheduling.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
 from sim.trace.events import CallbackEnded, CallbackStarted
 from tests.support.simulation import Simulation, Trace, simulate
 

@@ -2,8 +2,8 @@
 
 from typing import Any
 
-import sim.ros as rclpy
-from sim.ros.node import Node
+import sim.ros.rclpy as rclpy
+from sim.ros.node.node import Node
 from tests.support.simulation import Simulation, simulate
 
 LIKELY = [

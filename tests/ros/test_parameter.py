@@ -6,14 +6,14 @@ from typing import Any
 
 import pytest
 
-from sim.ros import rcl_interfaces as rcl
-from sim.ros.parameter import (
+from sim.interfaces import rcl_interfaces as rcl
+from sim.ros.parameters.parameter import (
     Parameter,
     get_parameter_value,
     parameter_dict_from_yaml_file,
     parameter_value_to_python,
 )
-from sim.ros.parameter_yaml import ParameterYamlError, PlainValue, read_file, read_value
+from sim.ros.parameters.yaml_files import ParameterYamlError, PlainValue, read_file, read_value
 
 Type = Parameter.Type
 

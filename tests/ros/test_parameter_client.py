@@ -6,13 +6,13 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros import rcl_interfaces as rcl
-from sim.ros.executors import SingleThreadedExecutor
-from sim.ros.node import Node
-from sim.ros.parameter import Parameter
-from sim.ros.parameter_client import AsyncParameterClient
-from sim.ros.task import Future
+import sim.ros.rclpy as rclpy
+from sim.interfaces import rcl_interfaces as rcl
+from sim.ros.node.node import Node
+from sim.ros.node.parameter_client import AsyncParameterClient
+from sim.ros.parameters.parameter import Parameter
+from sim.ros.scheduling.executors import SingleThreadedExecutor
+from sim.ros.scheduling.task import Future
 from tests.support.simulation import Simulation, simulate
 
 Ask = Callable[[Future[Any]], Any]

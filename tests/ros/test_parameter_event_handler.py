@@ -5,11 +5,11 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros import rcl_interfaces as rcl
-from sim.ros.node import Node
-from sim.ros.parameter import Parameter
-from sim.ros.parameter_event_handler import ParameterEventHandler
+import sim.ros.rclpy as rclpy
+from sim.interfaces import rcl_interfaces as rcl
+from sim.ros.node.node import Node
+from sim.ros.node.parameter_event_handler import ParameterEventHandler
+from sim.ros.parameters.parameter import Parameter
 from tests.support.simulation import Simulation, simulate
 
 

@@ -4,13 +4,13 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros import rcl_interfaces as rcl
-from sim.ros.executors import MultiThreadedExecutor, SingleThreadedExecutor
-from sim.ros.interfaces import message, service
-from sim.ros.logging import LoggingSeverity, get_logger
-from sim.ros.node import Node
-from sim.ros.parameter import Parameter
+import sim.ros.rclpy as rclpy
+from sim.interfaces import message, service
+from sim.interfaces import rcl_interfaces as rcl
+from sim.ros.logging.logger import LoggingSeverity, get_logger
+from sim.ros.node.node import Node
+from sim.ros.parameters.parameter import Parameter
+from sim.ros.scheduling.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from sim.trace.events import EntityAppeared, EntityReady, GroupAppeared, Published, ServiceReplied
 from sim.trace.model import Window
 from tests.support.simulation import Simulation, Trace, simulate

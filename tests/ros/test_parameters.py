@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 
-from sim.ros import rcl_interfaces as rcl
+from sim.interfaces import rcl_interfaces as rcl
 from sim.ros.exceptions import (
     InvalidParameterException,
     InvalidParameterTypeException,
@@ -15,8 +15,8 @@ from sim.ros.exceptions import (
     ParameterNotDeclaredException,
     ParameterUninitializedException,
 )
-from sim.ros.node import Node
-from sim.ros.parameter import Parameter
+from sim.ros.node.node import Node
+from sim.ros.parameters.parameter import Parameter
 from tests.support.simulation import simulate
 
 Type = Parameter.Type

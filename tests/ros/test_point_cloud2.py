@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from sim.ros.interfaces import message
-from sim.ros.sensor_msgs_py import point_cloud2
+from sim.interfaces import message
+from sim.interfaces.sensor_msgs_py import point_cloud2
 
 PointField: Any = message("sensor_msgs", "PointField")
 Header: Any = message("std_msgs", "Header")
@@ -65,9 +65,9 @@ def test_it_is_imported_as_on_a_ros_machine_and_only_then_loaded() -> None:
         "from sim.ros import importing\n"
         "importing.install()\n"
         "import sys\n"
-        "assert 'sim.ros.sensor_msgs_py.point_cloud2' not in sys.modules\n"
+        "assert 'sim.interfaces.sensor_msgs_py.point_cloud2' not in sys.modules\n"
         "import sensor_msgs_py.point_cloud2 as pc2\n"
         "from sensor_msgs_py import point_cloud2\n"
-        "assert pc2 is point_cloud2 is sys.modules['sim.ros.sensor_msgs_py.point_cloud2']\n"
+        "assert pc2 is point_cloud2 is sys.modules['sim.interfaces.sensor_msgs_py.point_cloud2']\n"
     )
     subprocess.run([sys.executable, "-c", program], check=True)

@@ -4,12 +4,13 @@ from typing import Any
 
 import pytest
 
-from sim.ros import rcl_interfaces as rcl
-from sim.ros.duration import Duration, Infinite
-from sim.ros.node import Node
-from sim.ros.parameter import Parameter
-from sim.ros.publisher import Publisher
-from sim.ros.qos import (
+from sim.interfaces import rcl_interfaces as rcl
+from sim.ros.entities.publisher import Publisher
+from sim.ros.entities.subscription import Subscription
+from sim.ros.node.node import Node
+from sim.ros.node.qos_overriding_options import InvalidQosOverridesError, QoSOverridingOptions, overridden
+from sim.ros.parameters.parameter import Parameter
+from sim.ros.qos.qos import (
     DurabilityPolicy,
     HistoryPolicy,
     InvalidQoSProfileException,
@@ -25,8 +26,7 @@ from sim.ros.qos import (
     qos_check_compatible,
     qos_policy_name_from_kind,
 )
-from sim.ros.qos_overriding_options import InvalidQosOverridesError, QoSOverridingOptions, overridden
-from sim.ros.subscription import Subscription
+from sim.ros.time.duration import Duration, Infinite
 from tests.support.simulation import simulate
 
 SECOND = Duration(seconds=1)

@@ -5,14 +5,15 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.duration import Duration
-from sim.ros.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
-from sim.ros.executors import MultiThreadedExecutor
-from sim.ros.interfaces import message
-from sim.ros.node import Node
-from sim.ros.publisher import Publisher
-from sim.ros.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile
+import sim.ros.rclpy as rclpy
+from sim.interfaces import message
+from sim.ros.entities.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from sim.ros.entities.publisher import Publisher
+from sim.ros.node.node import Node
+from sim.ros.qos.qos import DurabilityPolicy, LivelinessPolicy, QoSProfile
+from sim.ros.rclpy import callback_groups, executors
+from sim.ros.scheduling.executors import MultiThreadedExecutor
+from sim.ros.time.duration import Duration
 from tests.support.simulation import Simulation, simulate
 
 Int32 = message("std_msgs", "Int32")
@@ -65,7 +66,7 @@ def test_both_sides_hear_of_every_deadline_missed() -> None:
         )
         publish_at(simulation, publisher, 1.0, 1.5, 4.0, 4.5)
         simulation.at(5.0, rclpy.shutdown)
-        with pytest.raises(rclpy.executors.ExternalShutdownException):
+        with pytest.raises(executors.ExternalShutdownException):
             rclpy.spin(node)
 
     simulate(program)
@@ -82,7 +83,7 @@ def test_a_message_at_the_moment_of_the_deadline_meets_it() -> None:
         publisher = node.create_publisher(Int32, "t", DEADLINE)
         publish_at(simulation, publisher, *range(1, 6))
         simulation.at(5.5, rclpy.shutdown)
-        with pytest.raises(rclpy.executors.ExternalShutdownException):
+        with pytest.raises(executors.ExternalShutdownException):
             rclpy.spin(node)
 
     simulate(program)
@@ -119,7 +120,7 @@ def test_no_deadline_counts_before_the_first_message_or_without_one_in_the_profi
         node.create_publisher(Int32, "t", 1).publish(Int32())
         node.create_publisher(Int32, "other", DEADLINE)
         simulation.at(5.0, rclpy.shutdown)
-        with pytest.raises(rclpy.executors.ExternalShutdownException):
+        with pytest.raises(executors.ExternalShutdownException):
             rclpy.spin(node)
 
     simulate(program)
@@ -149,7 +150,7 @@ def liveliness(act: Callable[[Simulation, Publisher], object], qos: QoSProfile) 
         )
         act(simulation, publisher)
         simulation.at(5.0, rclpy.shutdown)
-        with pytest.raises(rclpy.executors.ExternalShutdownException):
+        with pytest.raises(executors.ExternalShutdownException):
             rclpy.spin(node)
 
     simulate(program)
@@ -221,7 +222,7 @@ def test_nobody_is_woken_for_what_has_expired() -> None:
 def test_a_message_may_expire_between_hand_over_and_take() -> None:
     def program(simulation: Simulation) -> None:
         node = Node("n")
-        groups = [rclpy.callback_groups.MutuallyExclusiveCallbackGroup() for _ in range(2)]
+        groups = [callback_groups.MutuallyExclusiveCallbackGroup() for _ in range(2)]
         node.create_timer(0.5, lambda: simulation.sleep(2.0), groups[0])
         node.create_subscription(Int32, "t", hear, 10, callback_group=groups[1])
         publisher = node.create_publisher(Int32, "t", LIFESPAN)

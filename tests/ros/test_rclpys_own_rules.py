@@ -7,27 +7,34 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros import qos_overriding_options
-from sim.ros.client import SrvTypeRequest
-from sim.ros.clock import Clock, JumpThreshold
-from sim.ros.constants import S_TO_NS
-from sim.ros.context import Context
-from sim.ros.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+import sim.ros.rclpy as rclpy
+from sim.interfaces import message, service
+from sim.interfaces.field_types import NamespacedType
+from sim.interfaces.test_msgs.message_fixtures import get_test_msg
+from sim.ros.clocks.clock import Clock, JumpThreshold
+from sim.ros.context.context import Context
+from sim.ros.entities.client import SrvTypeRequest
+from sim.ros.entities.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from sim.ros.entities.publisher import MsgType
+from sim.ros.entities.serialization import deserialize_message, serialize_message
+from sim.ros.entities.type_support import NoTypeSupportImportedException, check_for_type_support
 from sim.ros.exceptions import InvalidHandle
-from sim.ros.impl.rcutils_logger import Once, SkipFirst, Throttle, get_filters_from_kwargs, supported_filters
-from sim.ros.interfaces import message, service
-from sim.ros.interfaces.field_types import NamespacedType
 from sim.ros.lifecycle import LifecycleNode
-from sim.ros.node import Node
-from sim.ros.parameter import Parameter, parameter_dict_from_yaml_file
-from sim.ros.parameter_event_handler import ParameterEventHandler
-from sim.ros.publisher import MsgType
-from sim.ros.qos import QoSProfile, ReliabilityPolicy
-from sim.ros.serialization import deserialize_message, serialize_message
-from sim.ros.test_msgs.message_fixtures import get_test_msg
-from sim.ros.time import Time
-from sim.ros.type_support import NoTypeSupportImportedException, check_for_type_support
+from sim.ros.node.node import Node
+from sim.ros.node.parameter_event_handler import ParameterEventHandler
+from sim.ros.parameters.parameter import Parameter, parameter_dict_from_yaml_file
+from sim.ros.qos.qos import QoSProfile, ReliabilityPolicy
+from sim.ros.rclpy import executors
+from sim.ros.rclpy._qos import qos_overriding_options
+from sim.ros.rclpy.constants import S_TO_NS
+from sim.ros.rclpy.impl.rcutils_logger import (
+    Once,
+    SkipFirst,
+    Throttle,
+    get_filters_from_kwargs,
+    supported_filters,
+)
+from sim.ros.time.time import Time
 
 Int32 = message("std_msgs", "Int32")
 String = message("std_msgs", "String")
@@ -101,7 +108,7 @@ def test_what_nobody_handles_has_handlers_that_warn(context: Context) -> None:
 def test_types_and_policies_that_do_not_match_are_warned_of_while_spinning(
     context: Context, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    executor = rclpy.executors.SingleThreadedExecutor(context=context)
+    executor = executors.SingleThreadedExecutor(context=context)
     with Node("n", context=context) as node:
         executor.add_node(node)
         node.create_publisher(Int32, "numbers", 10)
@@ -125,7 +132,7 @@ def test_types_and_policies_that_do_not_match_are_warned_of_while_spinning(
 
 def test_only_a_value_that_was_there_is_told_as_deleted(context: Context) -> None:
     dynamic = message("rcl_interfaces", "ParameterDescriptor")(dynamic_typing=True)
-    executor = rclpy.executors.SingleThreadedExecutor(context=context)
+    executor = executors.SingleThreadedExecutor(context=context)
     events: list[Any] = []
     with Node("n", context=context) as node:
         executor.add_node(node)

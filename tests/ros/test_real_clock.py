@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
-from sim.ros.executors import Executor, ExternalShutdownException, MultiThreadedExecutor
-from sim.ros.interfaces import message, service
-from sim.ros.node import Node
+import sim.ros.rclpy as rclpy
+from sim.interfaces import message, service
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from sim.ros.scheduling.executors import Executor, ExternalShutdownException, MultiThreadedExecutor
 from tests.support.real_threads import LIMIT, on_wall_time, spin
 from tests.support.simulation import Trace
 

@@ -4,14 +4,14 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros import rcl_interfaces
-from sim.ros.context import Context
-from sim.ros.event_handler import SubscriptionEventCallbacks
-from sim.ros.logging import LoggingSeverity, get_logger
-from sim.ros.node import Node
-from sim.ros.parameter import Parameter
-from sim.ros.qos import DurabilityPolicy, QoSProfile
+import sim.ros.rclpy as rclpy
+from sim.interfaces import rcl_interfaces
+from sim.ros.context.context import Context
+from sim.ros.entities.event_handler import SubscriptionEventCallbacks
+from sim.ros.logging.logger import LoggingSeverity, get_logger
+from sim.ros.node.node import Node
+from sim.ros.parameters.parameter import Parameter
+from sim.ros.qos.qos import DurabilityPolicy, QoSProfile
 from sim.trace.events import EntityReady, Published
 from tests.support.simulation import Simulation, simulate
 

@@ -7,9 +7,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
-from sim.ros.executor import Executor
-from sim.ros.host import current_host
+from sim.ros.middleware.host import current_host
+from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
+from sim.ros.scheduling.executor import Executor
+from sim.ros.scheduling.running import Runner
 from tests.ros.schedules import broken_rules, first_trouble, play_seeded
 from tests.ros.systems import System, play, systems
 from tests.support.properties import examples
@@ -105,5 +106,5 @@ def test_a_wake_up_that_is_lost_between_looking_and_waiting_is_found(monkeypatch
 
 
 def test_a_start_that_is_told_of_late_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(Executor, "_start", before(Executor._start, let_go_of_the_lock))
+    monkeypatch.setattr(Runner, "start", before(Runner.start, let_go_of_the_lock))
     assert_only_exploring_finds("it was not the oldest")

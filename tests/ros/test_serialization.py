@@ -2,9 +2,9 @@
 
 import pytest
 
-from sim.ros.interfaces import message, service
-from sim.ros.serialization import deserialize_message, serialize_message
-from sim.ros.type_support import check_is_valid_msg_type, check_is_valid_srv_type
+from sim.interfaces import message, service
+from sim.ros.entities.serialization import deserialize_message, serialize_message
+from sim.ros.entities.type_support import check_is_valid_msg_type, check_is_valid_srv_type
 
 Int32 = message("std_msgs", "Int32")
 SetBool = service("std_srvs", "SetBool")

@@ -4,11 +4,11 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.interfaces import message, service
-from sim.ros.node import Node
-from sim.ros.qos import qos_profile_system_default
-from sim.ros.service_introspection import ServiceIntrospectionState
+import sim.ros.rclpy as rclpy
+from sim.interfaces import message, service
+from sim.ros.entities.service_introspection import ServiceIntrospectionState
+from sim.ros.node.node import Node
+from sim.ros.qos.qos import qos_profile_system_default
 from tests.support.simulation import Simulation, simulate
 
 SetBool = service("std_srvs", "SetBool")

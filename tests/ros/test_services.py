@@ -5,9 +5,9 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.interfaces import service
-from sim.ros.node import Node
+import sim.ros.rclpy as rclpy
+from sim.interfaces import service
+from sim.ros.node.node import Node
 from sim.trace.events import MessageDropped, ServiceCalled, ServiceReplied
 from tests.support.simulation import Simulation, simulate
 

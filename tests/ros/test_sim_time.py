@@ -5,19 +5,19 @@ from typing import Any
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
-from sim.ros.clock import Clock, ClockChange, JumpThreshold, ROSClock, TimeJump
-from sim.ros.clock_type import ClockType
-from sim.ros.duration import Duration
-from sim.ros.executors import MultiThreadedExecutor, SingleThreadedExecutor
-from sim.ros.interfaces import message
-from sim.ros.node import Node
-from sim.ros.parameter import Parameter
-from sim.ros.ros_time_schedule import RosTimeSchedule, after_change
-from sim.ros.time import Time
-from sim.ros.time_source import TimeSource
-from sim.ros.timer import TimerInfo
+import sim.ros.rclpy as rclpy
+from sim.interfaces import message
+from sim.ros.clocks.clock import Clock, ClockChange, JumpThreshold, ROSClock, TimeJump
+from sim.ros.clocks.ros_time_schedule import RosTimeSchedule, after_change
+from sim.ros.entities.timer import TimerInfo
+from sim.ros.node.node import Node
+from sim.ros.node.time_source import TimeSource
+from sim.ros.parameters.parameter import Parameter
+from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
+from sim.ros.scheduling.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from sim.ros.time.clock_type import ClockType
+from sim.ros.time.duration import Duration
+from sim.ros.time.time import Time
 from tests.support.simulation import Simulation, Trace, simulate
 
 ClockMessage = message("rosgraph_msgs", "Clock")

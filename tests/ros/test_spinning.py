@@ -2,16 +2,16 @@
 
 import pytest
 
-import sim.ros as rclpy
+import sim.ros.rclpy as rclpy
 from sim.ros.exceptions import NotInitializedException
-from sim.ros.executors import (
+from sim.ros.node.node import Node
+from sim.ros.scheduling.executors import (
     Executor,
     ExternalShutdownException,
     MultiThreadedExecutor,
     SingleThreadedExecutor,
 )
-from sim.ros.node import Node
-from sim.ros.task import Future
+from sim.ros.scheduling.task import Future
 from tests.support.simulation import Simulation, simulate
 
 

@@ -6,9 +6,9 @@ from typing import Any
 
 import pytest
 
-from sim.ros.clock_type import ClockType
-from sim.ros.duration import Duration, Infinite
-from sim.ros.time import Time
+from sim.ros.time.clock_type import ClockType
+from sim.ros.time.duration import Duration, Infinite
+from sim.ros.time.time import Time
 
 LIMIT = 2**63
 

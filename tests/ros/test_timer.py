@@ -4,12 +4,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-import sim.ros as rclpy
-from sim.ros.callback_groups import ReentrantCallbackGroup
+import sim.ros.rclpy as rclpy
+from sim.ros.entities.timer import next_due
 from sim.ros.exceptions import ROSInterruptException
-from sim.ros.executors import MultiThreadedExecutor, SingleThreadedExecutor
-from sim.ros.node import Node
-from sim.ros.timer import next_due
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
+from sim.ros.scheduling.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from tests.support.simulation import Simulation, Trace, simulate
 
 

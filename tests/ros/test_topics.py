@@ -2,12 +2,11 @@
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
+import sim.ros.rclpy as rclpy
+from sim.interfaces import message
 from sim.ros.exceptions import InvalidHandle, InvalidTopicNameException
-from sim.ros.interfaces import message
-from sim.ros.node import Node
-from sim.ros.qos import (
+from sim.ros.node.node import Node
+from sim.ros.qos.qos import (
     DurabilityPolicy,
     HistoryPolicy,
     QoSProfile,
@@ -17,6 +16,7 @@ from sim.ros.qos import (
     qos_profile_sensor_data,
     qos_profile_services_default,
 )
+from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
 from sim.trace.events import CallbackStarted, EntityReady, Logged, MessageDropped, WaitStarted
 from tests.support.simulation import Simulation, Trace, simulate
 

@@ -5,10 +5,10 @@ from typing import Any
 import pytest
 from rosbags.typesys import Stores, get_typestore
 
-import sim.ros as rclpy
-from sim.ros.interfaces import message, service
-from sim.ros.node import Node
-from sim.ros.type_description import contained_types, type_description, type_hash
+import sim.ros.rclpy as rclpy
+from sim.interfaces import message, service
+from sim.ros.middleware.type_description import contained_types, type_description, type_hash
+from sim.ros.node.node import Node
 from tests.support.simulation import Simulation, simulate
 
 GetTypeDescription = service("type_description_interfaces", "GetTypeDescription")

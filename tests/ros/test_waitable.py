@@ -5,22 +5,22 @@ from typing import Any
 
 import pytest
 
-from sim.ros import _rclpy_pybind11 as _rclpy
-from sim.ros.callback_groups import (
+from sim.interfaces import message, service
+from sim.ros.clocks.clock import Clock
+from sim.ros.exceptions import InvalidHandle, RCLError
+from sim.ros.internals import compiled as _rclpy
+from sim.ros.node.node import Node
+from sim.ros.qos.qos import QoSProfile
+from sim.ros.scheduling.callback_groups import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,
 )
-from sim.ros.clock import Clock
-from sim.ros.clock_type import ClockType
-from sim.ros.exceptions import InvalidHandle, RCLError
-from sim.ros.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
-from sim.ros.interfaces import message, service
-from sim.ros.node import Node
-from sim.ros.program_wait_set import ProgramWaitSet
-from sim.ros.qos import QoSProfile
-from sim.ros.task import Future
-from sim.ros.waitable import NumberOfEntities, Waitable
+from sim.ros.scheduling.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
+from sim.ros.scheduling.program_wait_set import ProgramWaitSet
+from sim.ros.scheduling.task import Future
+from sim.ros.scheduling.waitable import NumberOfEntities, Waitable
+from sim.ros.time.clock_type import ClockType
 from tests.support.simulation import Simulation, simulate
 
 Empty = message("std_msgs", "Empty")

@@ -2,11 +2,11 @@
 
 import pytest
 
-import sim.ros as rclpy
-from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
-from sim.ros.executors import MultiThreadedExecutor, SingleThreadedExecutor
-from sim.ros.interfaces import message
-from sim.ros.node import Node
+import sim.ros.rclpy as rclpy
+from sim.interfaces import message
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from sim.ros.scheduling.executors import MultiThreadedExecutor, SingleThreadedExecutor
 from sim.trace.events import Reason, WaitEnded, WaitStarted
 from tests.support.simulation import Simulation, Trace, simulate
 

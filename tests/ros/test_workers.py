@@ -3,14 +3,14 @@
 import threading
 from collections.abc import Callable
 
-import sim.ros as rclpy
+import sim.ros.rclpy as rclpy
 from sim.clock import RealClock
-from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
-from sim.ros.executors import MultiThreadedExecutor
-from sim.ros.host_lock import HostLock
-from sim.ros.interfaces import message
-from sim.ros.node import Node
-from sim.ros.task import Future
+from sim.interfaces import message
+from sim.ros.middleware.host_lock import HostLock
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
+from sim.ros.scheduling.executors import MultiThreadedExecutor
+from sim.ros.scheduling.task import Future
 from tests.support.real_threads import LIMIT
 from tests.support.simulation import Simulation, Trace, installed, no_thread_left, simulate
 

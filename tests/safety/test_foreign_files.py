@@ -19,9 +19,9 @@ from sim.packages.cmake_file import read_cmake
 from sim.packages.errors import PackageError
 from sim.packages.manifest import read_name
 from sim.packages.setup_file import read_setup
-from sim.ros.parameter import parameter_dict_from_yaml_file
-from sim.ros.parameter_yaml import ParameterYamlError
-from sim.ros.parameter_yaml import read_file as read_parameters
+from sim.ros.parameters.parameter import parameter_dict_from_yaml_file
+from sim.ros.parameters.yaml_files import ParameterYamlError
+from sim.ros.parameters.yaml_files import read_file as read_parameters
 
 LITTLE = 50_000_000
 """Bytes of memory."""

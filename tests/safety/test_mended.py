@@ -9,12 +9,12 @@ from cbtui.keys.config import read_text
 from lessons.lesson import BadLesson, read_lesson
 from sim.diagnosis import diagnose
 from sim.engine import commands
+from sim.interfaces import DefinitionError
+from sim.interfaces.notation import parse
 from sim.packages import PackageError, find_packages
 from sim.recording import batch, read
-from sim.ros.arguments import ArgumentsError, parse_arguments
-from sim.ros.interfaces import DefinitionError
-from sim.ros.interfaces.notation import parse
-from sim.ros.parameter_yaml import read_value
+from sim.ros.context.arguments import ArgumentsError, parse_arguments
+from sim.ros.parameters.yaml_files import read_value
 from sim.trace import events as ev
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run

@@ -22,8 +22,8 @@ from lessons.progress import Progress
 from sim.packages import PackageError, find_packages
 from sim.plain_yaml import YamlError, load
 from sim.recording import About, Recorder, Recording, RecordingError, read
-from sim.ros.arguments import ArgumentsError, parse_arguments
-from sim.ros.parameter_yaml import ParameterYamlError, read_nodes
+from sim.ros.context.arguments import ArgumentsError, parse_arguments
+from sim.ros.parameters.yaml_files import ParameterYamlError, read_nodes
 from tests.safety import hostile
 from tests.shell.test_completion import completed
 from tests.support.console import WIDE, settle

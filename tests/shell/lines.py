@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from sim.clock import Clock
-from sim.ros.executors import SingleThreadedExecutor
-from sim.ros.node import Node
+from sim.ros.node.node import Node
+from sim.ros.scheduling.executors import SingleThreadedExecutor
 from sim.shell import Line, OnExit, Packages, Running
 from tests.support.simulation import Simulation, Trace, simulate
 

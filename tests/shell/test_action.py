@@ -4,9 +4,9 @@ from typing import Any
 
 import pytest
 
-from sim.ros.action import ActionServer
-from sim.ros.interfaces import action
-from sim.ros.node import Node
+from sim.interfaces import action
+from sim.ros.actions import ActionServer
+from sim.ros.node.node import Node
 from tests.shell.lines import carry_out, spin
 from tests.support.simulation import Simulation
 

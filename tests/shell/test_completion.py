@@ -2,10 +2,10 @@
 
 import pytest
 
+from sim.interfaces import message, service
 from sim.packages import Packages
 from sim.plain_yaml import load
-from sim.ros.interfaces import message, service
-from sim.ros.node import Node
+from sim.ros.node.node import Node
 from sim.shell import complete, word_start
 from sim.shell.messages import Outgoing, message_class
 from sim.shell.splitting import scan

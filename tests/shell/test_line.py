@@ -5,9 +5,9 @@ import threading
 import pytest
 
 from sim.clock import RealClock
-from sim.ros.host import Host
-from sim.ros.node import Node
-from sim.ros.probe import SilentProbe
+from sim.probes.probe import SilentProbe
+from sim.ros.middleware.host import Host
+from sim.ros.node.node import Node
 from sim.shell import Line, command_names, commands
 from tests.shell.lines import FakeTools, carry_out
 from tests.support.simulation import Simulation, simulate

@@ -1,7 +1,7 @@
 """``ros2 node``: which nodes are shown, and with what."""
 
-from sim.ros.interfaces import message, service
-from sim.ros.node import Node
+from sim.interfaces import message, service
+from sim.ros.node.node import Node
 from tests.shell.lines import carry_out, own
 from tests.support.simulation import Simulation
 

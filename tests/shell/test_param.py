@@ -5,8 +5,8 @@ from typing import Any
 
 import pytest
 
-from sim.ros import rcl_interfaces
-from sim.ros.node import Node
+from sim.interfaces import rcl_interfaces
+from sim.ros.node.node import Node
 from tests.shell.lines import Setup, carry_out, own, spin
 from tests.support.simulation import Simulation
 

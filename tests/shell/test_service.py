@@ -2,10 +2,10 @@
 
 import pytest
 
-from sim.ros.interfaces import service
-from sim.ros.node import Node
-from sim.ros.qos import QoSProfile
-from sim.ros.service_introspection import ServiceIntrospectionState
+from sim.interfaces import service
+from sim.ros.entities.service_introspection import ServiceIntrospectionState
+from sim.ros.node.node import Node
+from sim.ros.qos.qos import QoSProfile
 from sim.trace.events import EntityAppeared, NodeAppeared, ServiceCalled, ServiceReplied
 from tests.shell.lines import carry_out, spin
 from tests.support.simulation import Simulation

@@ -2,8 +2,8 @@
 
 import pytest
 
-from sim.ros.interfaces import message
-from sim.ros.node import Node
+from sim.interfaces import message
+from sim.ros.node.node import Node
 from sim.shell.verbs.topic_statistics import Bandwidth, Rate, as_bytes
 from tests.shell.lines import carry_out, own
 from tests.support.simulation import Simulation

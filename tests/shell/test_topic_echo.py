@@ -2,9 +2,9 @@
 
 import pytest
 
-from sim.ros.interfaces import message
-from sim.ros.node import Node
-from sim.ros.qos import QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
+from sim.interfaces import message
+from sim.ros.node.node import Node
+from sim.ros.qos.qos import QoSProfile, ReliabilityPolicy, qos_profile_sensor_data
 from tests.shell.lines import Setup, carry_out
 from tests.support.simulation import Simulation
 

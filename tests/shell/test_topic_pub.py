@@ -4,8 +4,8 @@ from typing import Any
 
 import pytest
 
-from sim.ros.interfaces import message
-from sim.ros.node import Node
+from sim.interfaces import message
+from sim.ros.node.node import Node
 from sim.trace.events import NodeAppeared, Published
 from tests.shell.lines import carry_out, hear, spin
 from tests.support.simulation import Simulation

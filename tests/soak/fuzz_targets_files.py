@@ -14,13 +14,13 @@ from lessons.lesson import BadLesson, read_lesson
 from lessons.progress import Progress
 from sim import plain_yaml
 from sim.engine.setup import ProgramSetup, RunSetup, TimedCall, TimedInput, TimedLine
+from sim.interfaces import DefinitionError, message
+from sim.interfaces.folder import DefinitionFolder
+from sim.interfaces.jazzy import JazzyMessages
+from sim.interfaces.registry import Registry
 from sim.packages import PackageError, find_packages
 from sim.recording.about import About, from_metadata, to_metadata
-from sim.ros.interfaces import DefinitionError, message
-from sim.ros.interfaces.folder import DefinitionFolder
-from sim.ros.interfaces.jazzy import JazzyMessages
-from sim.ros.interfaces.registry import Registry
-from sim.ros.parameter_yaml import ParameterYamlError, read_nodes, read_value
+from sim.ros.parameters.yaml_files import ParameterYamlError, read_nodes, read_value
 from sim.shell.messages import Outgoing, given_values
 from sim.shell.session import Failed
 from tests.soak.fuzz_target import Target, listed, text_of

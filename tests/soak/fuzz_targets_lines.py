@@ -10,19 +10,19 @@ from cbtui.text.cells import fit, visible, without_tabs
 from cbtui.widgets.log.filter import FilterError, filter_of
 from cbtui.widgets.log.line import line_of
 from sim.clock import RealClock
+from sim.interfaces import message
 from sim.launch.arguments import read_arguments
 from sim.launch.errors import LaunchError
 from sim.packages import Packages
-from sim.ros.arguments import ArgumentsError, parse_arguments
-from sim.ros.context import Context
-from sim.ros.host import Host
-from sim.ros.interfaces import message
-from sim.ros.log_console import LogConsole
-from sim.ros.log_filters import Place
-from sim.ros.log_record import LogRecord
-from sim.ros.logging_severity import LoggingSeverity
-from sim.ros.node import Node
-from sim.ros.probe import SilentProbe
+from sim.probes.probe import SilentProbe
+from sim.ros.context.arguments import ArgumentsError, parse_arguments
+from sim.ros.context.context import Context
+from sim.ros.logging.console import LogConsole
+from sim.ros.logging.filters import Place
+from sim.ros.logging.record import LogRecord
+from sim.ros.logging.severity import LoggingSeverity
+from sim.ros.middleware.host import Host
+from sim.ros.node.node import Node
 from sim.shell import LineError, complete, split, word_start
 from sim.shell.commands import parse, verb_parser
 from sim.shell.parser import HelpAsked, UsageError

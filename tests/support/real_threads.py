@@ -5,10 +5,10 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-import sim.ros as rclpy
+import sim.ros.rclpy as rclpy
 from sim.clock import RealClock
-from sim.ros.executors import Executor, ExternalShutdownException
-from sim.ros.node import Node
+from sim.ros.node.node import Node
+from sim.ros.scheduling.executors import Executor, ExternalShutdownException
 from tests.support.simulation import Simulation, installed, no_thread_left
 
 LIMIT = 60.0

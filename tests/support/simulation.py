@@ -7,15 +7,15 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Any, NamedTuple, TypeVar
 
-import sim.ros
+import sim.ros.rclpy
 from sim.clock import Clock, VirtualClock
 from sim.clock.schedule import Schedule
-from sim.ros import host as hosts
-from sim.ros.context import Context
-from sim.ros.executors import SingleThreadedExecutor
-from sim.ros.host import Host
-from sim.ros.node import Node
-from sim.ros.probe import Probe, PublishingProbe
+from sim.probes.probe import Probe, PublishingProbe
+from sim.ros.context.context import Context
+from sim.ros.middleware import host as hosts
+from sim.ros.middleware.host import Host
+from sim.ros.node.node import Node
+from sim.ros.scheduling.executors import SingleThreadedExecutor
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,
@@ -148,7 +148,7 @@ class Simulation:
 
     def publisher_at_rate(self, topic: str, period: float, offset: float = 0.0, until: float = 1e9) -> None:
         """Have an outside node publish an Int32 that counts up from 0, each ``period`` from ``offset`` on."""
-        integer = sim.ros.interfaces.message("std_msgs", "Int32")
+        integer = sim.interfaces.message("std_msgs", "Int32")
         node = self.outside_node(f"{topic}_publisher")
         publisher = node.create_publisher(integer, topic, 10)
 
@@ -225,7 +225,7 @@ def installed(host: Host) -> Iterator[None]:
     """Have the process run on ``host``, and put all back after."""
     before = hosts._host
     hosts.install(host)
-    sim.ros.init(args=[])
+    sim.ros.rclpy.init(args=[])
     try:
         yield
     finally:

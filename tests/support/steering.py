@@ -7,8 +7,8 @@ from queue import Queue
 from sim.clock import VirtualClock
 from sim.engine.commands import PaceCommand, Resume, SetSpeed, Step
 from sim.engine.time_control import VirtualControl
-from sim.ros.host import Host
-from sim.ros.probe import Probe
+from sim.probes.probe import Probe
+from sim.ros.middleware.host import Host
 from sim.trace.events import AnyEvent, CommandGiven, TimeHalted
 from tests.support.builder import ns
 from tests.support.simulation import Program, Simulation, installed, no_thread_left, wind_up

@@ -5,12 +5,12 @@ from functools import partial
 
 import pytest
 
-from sim.ros.callback_groups import MutuallyExclusiveCallbackGroup
-from sim.ros.duration import Duration
-from sim.ros.executors import SingleThreadedExecutor
-from sim.ros.interfaces import message, service
-from sim.ros.node import Node
-from sim.ros.qos import HistoryPolicy, QoSProfile
+from sim.interfaces import message, service
+from sim.ros.node.node import Node
+from sim.ros.qos.qos import HistoryPolicy, QoSProfile
+from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
+from sim.ros.scheduling.executors import SingleThreadedExecutor
+from sim.ros.time.duration import Duration
 from sim.trace import events as ev
 from sim.trace.events import AnyEvent, EntityKind, GroupKind
 from sim.trace.model import Queue, QueuedMessage

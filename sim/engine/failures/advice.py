@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 from types import FrameType
 
-from sim.ros.process import current_process
+from sim.ros.middleware.process import current_process
 
 
 def advice_on(error: BaseException, frame: FrameType | None) -> str:
@@ -31,9 +31,9 @@ def advice_on(error: BaseException, frame: FrameType | None) -> str:
 
 
 def _on_unready_node(attribute: str, obj: object) -> str:
-    from sim.ros.node import Node
+    from sim.ros.node.node import Node
 
-    if attribute == "_agenda" and isinstance(obj, Node):
+    if attribute.startswith("_") and isinstance(obj, Node) and "_agenda" not in vars(obj):
         return f"{type(obj).__name__}.__init__ has to call super().__init__('name of the node') first"
     return ""
 

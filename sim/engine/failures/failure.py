@@ -42,7 +42,7 @@ def _text(error: BaseException) -> str:
     """An exception's text, the names of modules as the learner knows them."""
     text = error_text(error)
     if isinstance(error, ImportError):
-        text = text.partition(" (")[0].replace("'sim.ros", "'rclpy")
+        text = text.partition(" (")[0].replace("'sim.ros.rclpy", "'rclpy")
     return text
 
 

@@ -1,10 +1,11 @@
 """What a learner has to do about a module that cannot be found: what it is, and where it comes from."""
 
+import pkgutil
 import sys
 from collections.abc import Iterable
 from difflib import get_close_matches
 
-from sim.ros.interfaces import kinds_sentence, packages
+from sim.interfaces import kinds_sentence, packages
 
 _PIP = {
     "Crypto": "pycryptodome",
@@ -138,7 +139,9 @@ def on_missing(module: str) -> str:
     if package in packages():
         return kinds_sentence(package)
     if package in sys.modules:
-        return _nearest(module, (each for each in sys.modules if each.startswith(f"{package}.")))
+        parent = sys.modules.get(module.rpartition(".")[0])
+        siblings = pkgutil.iter_modules(getattr(parent, "__path__", ()), f"{module.rpartition('.')[0]}.")
+        return _nearest(module, (each.name for each in siblings))
     known = {*packages(), *sys.stdlib_module_names, *_KNOWN, "launch", "launch_ros", "numpy", "rclpy"}
     return _KNOWN.get(package) or _nearest(package, known) or _on_unknown(package)
 

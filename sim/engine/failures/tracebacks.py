@@ -4,7 +4,7 @@ import traceback
 from types import TracebackType
 from typing import Any
 
-from sim.ros.own_code import is_library, is_own, module_root
+from sim.probes.own_code import is_library, is_own, module_root
 
 
 class LearnersTraceback(traceback.TracebackException):

@@ -12,7 +12,7 @@ from typing import Any, NoReturn
 
 from sim.engine.outbox import Outbox
 from sim.engine.stdio.descriptors import print_to_descriptors
-from sim.ros.host import Host
+from sim.ros.middleware.host import Host
 from sim.trace.events import AnyEvent
 
 # Kept from before a clock puts its own in its place.

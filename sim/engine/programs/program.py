@@ -19,8 +19,8 @@ from sim.engine.failures.failure import failure, place_of
 from sim.engine.programs.ending import run_thread_exit_functions
 from sim.engine.programs.source import NothingToRunError, read_source
 from sim.engine.stdio.output import finish_lines
-from sim.ros.process import Process, current_process, process_of
-from sim.ros.signals import deliver_sigint
+from sim.ros.context.signals import deliver_sigint
+from sim.ros.middleware.process import Process, current_process, process_of
 
 _INTERRUPTED = 130
 

@@ -12,10 +12,10 @@ from itertools import count
 
 from sim.clock import Signal
 from sim.engine.programs.program import Outcome, Program, run_program
-from sim.ros.context import end_contexts_by_signal
-from sim.ros.host import Host
-from sim.ros.process import Process
-from sim.ros.signals import deliver_sigint
+from sim.ros.context.context import end_contexts_by_signal
+from sim.ros.context.signals import deliver_sigint
+from sim.ros.middleware.host import Host
+from sim.ros.middleware.process import Process
 from sim.trace.events import AnyEvent, Notice, ProcessAppeared, ProcessEnded, Severity
 
 Ended = Callable[[Outcome], None]

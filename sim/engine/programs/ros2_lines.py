@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from sim.engine.programs.line_tools import LineTools
 from sim.engine.programs.starting import Starter
 from sim.engine.setup import TimedLine
-from sim.ros.host import Host
+from sim.ros.middleware.host import Host
 from sim.trace.events import AnyEvent, LineCompleted, LineEnded, LineGiven, LineId, LineSaid
 
 if TYPE_CHECKING:

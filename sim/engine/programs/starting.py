@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from sim.engine.programs.program import Outcome, Program
 from sim.engine.programs.programs import Programs
 from sim.engine.setup import RunSetup
-from sim.ros.interfaces import add_definitions, find_definition_folders
+from sim.interfaces import add_definitions, find_definition_folders
 
 if TYPE_CHECKING:
     from sim.packages import Packages

@@ -7,7 +7,7 @@ from collections.abc import Callable
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from sim.ros.process import Process, current_process
+from sim.ros.middleware.process import Process, current_process
 
 if TYPE_CHECKING:
     from typing_extensions import Buffer  # Python has it from 3.12 on

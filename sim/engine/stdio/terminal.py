@@ -23,8 +23,9 @@ from sim.clock import Clock, Signal, VirtualClock
 from sim.engine.commands import END_OF_INPUT, INTERRUPT
 from sim.engine.setup import Keyboard
 from sim.engine.stdio.output import ProcessStream
-from sim.ros.own_code import place_of_caller
-from sim.ros.process import Process, current_process
+from sim.marks import waits_for_keyboard
+from sim.probes.own_code import place_of_caller
+from sim.ros.middleware.process import Process, current_process
 from sim.trace.events import AnyEvent, EntityId, KeyboardAsked, Notice, Reading, Severity, Typed
 from sim.units import wait_ns
 
@@ -104,6 +105,7 @@ class Terminal:
         """Whether text, typed now, would interrupt the program that has the terminal."""
         return INTERRUPT in text and bool(termios.tcgetattr(self._near)[3] & termios.ISIG)
 
+    @waits_for_keyboard
     def wait(self, deadline: int | None) -> bool:
         """Wait until there is something to be read, or until the clock shows ``deadline``.
 
@@ -135,6 +137,7 @@ class Terminal:
             self._note(Reading.NOTHING)
         return True
 
+    @waits_for_keyboard
     def read(self, size: int) -> bytes | None:
         """Read as from a terminal, waiting if its modes say so; None if there is nothing and it does not."""
         while self.wait(self._deadline()):
@@ -283,10 +286,6 @@ class Terminal:
             return os.fstat(file if isinstance(file, int) else file.fileno()).st_rdev == self._device
         except (AttributeError, OSError, ValueError):
             return False  # Python's own function says what is wrong with it
-
-
-KEYBOARD_WAITS = {Terminal.wait.__code__, Terminal.read.__code__}
-"""The functions in which a thread waits for the keyboard."""
 
 
 class _Keys(io.RawIOBase):

@@ -8,8 +8,8 @@ from sim.clock import VirtualClock
 from sim.clock.circles import Held, circle_of, lasts
 from sim.clock.virtual_threads import VirtualThread
 from sim.engine.watchdogs.wait_words import deadlock_of_circle, deadlock_of_last, long_wait
-from sim.ros.host import Host
-from sim.ros.process import Process, current_process, process_of
+from sim.ros.middleware.host import Host
+from sim.ros.middleware.process import Process, current_process, process_of
 from sim.trace.events import AnyEvent, EntityId, Notice, Severity
 
 _PATIENCE = 3_000_000_000

@@ -4,12 +4,11 @@ import sys
 import threading
 import time
 from collections.abc import Callable
-from pathlib import Path
 from types import FrameType
 
 from sim.clock import Clock
-from sim.engine.stdio.terminal import KEYBOARD_WAITS
-from sim.ros.own_code import is_own, outwards, place_of
+from sim.marks import calls_the_program, waits_for_keyboard, waits_for_time
+from sim.probes.own_code import is_own, outwards, place_of
 from sim.trace.events import AnyEvent, Notice, Severity
 
 # Kept from before a clock puts its own in their place.
@@ -21,12 +20,7 @@ _LOOK = 0.5
 _PATIENCE = 6
 """Looks at which the same call was found held up before the person is told."""
 
-_MODEL = Path(__file__).parents[2]
-_ROS = f"{_MODEL / 'ros'}/"
-_CLOCK = f"{_MODEL / 'clock'}/"
-_CALLS = f"{_MODEL / 'ros' / 'running.py'}"
-_FOR_TIME = {"sleep", "_wait_until", "_within"}
-"""Functions of the clock in which a thread waits for time to pass."""
+_MODEL = ("sim.ros.", "sim.interfaces.")
 
 
 class HeldUp:
@@ -63,14 +57,13 @@ def _call_held_up(top: FrameType) -> FrameType | None:
     """The learner's call on a thread, if it runs or waits for something other than time; else None."""
     inner: FrameType | None = None
     for frame in outwards(top):
-        file = frame.f_code.co_filename
-        if file == _CALLS:
+        if frame in calls_the_program:
             return inner
-        if inner is None and file.startswith(_ROS):
+        if inner is None and str(frame.f_globals.get("__name__")).startswith(_MODEL):
             return None  # the model waits, which the trace tells of
-        if frame.f_code in KEYBOARD_WAITS:
+        if frame in waits_for_keyboard:
             return None  # the terminal tells of that itself
-        if file.startswith(_CLOCK) and frame.f_code.co_name in _FOR_TIME:
+        if frame in waits_for_time:
             return None
         if is_own(frame):
             inner = frame

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from sim.clock import VirtualClock
 from sim.engine.watchdogs.places import place_of
-from sim.ros.own_code import outwards
+from sim.probes.own_code import outwards
 from sim.trace.events import AnyEvent, Notice, Severity
 
 _RealThread = threading.Thread

@@ -5,7 +5,7 @@ from pathlib import Path
 from types import CodeType
 
 from sim.clock.virtual_threads import VirtualThread
-from sim.ros import own_code
+from sim.probes import own_code
 
 
 def place_of(thread: VirtualThread) -> str:

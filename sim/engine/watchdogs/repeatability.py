@@ -3,7 +3,7 @@
 from collections.abc import Callable
 
 from sim.clock import Clock
-from sim.ros.own_code import place_of_caller
+from sim.probes.own_code import place_of_caller
 from sim.trace.events import AnyEvent, Notice, Severity
 
 

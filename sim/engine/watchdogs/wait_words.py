@@ -10,7 +10,7 @@ from itertools import takewhile
 
 from sim.clock.virtual_threads import VirtualThread
 from sim.engine.watchdogs.places import place_in, place_of
-from sim.ros.own_code import is_own, outwards
+from sim.probes.own_code import is_own, outwards
 
 _AWAITS = threading.Condition.wait.__code__
 """What every wait of Python's own comes to that is not for a lock."""

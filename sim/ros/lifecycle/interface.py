@@ -5,20 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any
 
+from sim.interfaces import message, service
+from sim.ros.entities.hidden_service import offer_hidden
 from sim.ros.exceptions import RCLError
-from sim.ros.hidden_service import offer_hidden
-from sim.ros.interfaces import message, service
 from sim.ros.lifecycle.state_machine import (
     STATES,
     LifecycleStateMachine,
     Transition,
     TransitionCallbackReturn,
 )
-from sim.ros.qos import QoSProfile
+from sim.ros.qos.qos import QoSProfile
 
 if TYPE_CHECKING:
-    from sim.ros.callback_groups import CallbackGroup
-    from sim.ros.node import Node
+    from sim.ros.node.node import Node
+    from sim.ros.scheduling.callback_groups import CallbackGroup
 
 _PACKAGE = "lifecycle_msgs"
 _QOS = QoSProfile(depth=10)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, cast
 
-from sim.ros.callback_groups import CallbackGroup
 from sim.ros.exceptions import RCLError
 from sim.ros.lifecycle import state_machine as machine
 from sim.ros.lifecycle.interface import LifecycleInterface
@@ -17,7 +16,8 @@ from sim.ros.lifecycle.state_machine import (
     Transition,
     TransitionCallbackReturn,
 )
-from sim.ros.node import Node
+from sim.ros.node.node import Node
+from sim.ros.scheduling.callback_groups import CallbackGroup
 
 
 class LifecycleNodeMixin(ManagedEntity):

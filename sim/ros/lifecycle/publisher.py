@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from sim.ros.entities.publisher import Publisher
 from sim.ros.lifecycle.managed_entity import SimpleManagedEntity
-from sim.ros.publisher import Publisher
 
 
 class LifecyclePublisher(SimpleManagedEntity, Publisher):

@@ -6,15 +6,15 @@ from argparse import Namespace
 from collections.abc import Callable
 from typing import Any
 
-from sim.ros.action import ActionClient
-from sim.ros.action.graph import (
+from sim.interfaces.rosidl_runtime_py import message_to_yaml
+from sim.ros.actions import ActionClient
+from sim.ros.actions.graph import (
     get_action_client_names_and_types_by_node,
     get_action_names_and_types,
     get_action_server_names_and_types_by_node,
 )
-from sim.ros.interfaces.rosidl_runtime_py import message_to_yaml
-from sim.ros.node import Node
-from sim.ros.node_graph import NamesAndTypes
+from sim.ros.node.graph import NamesAndTypes
+from sim.ros.node.node import Node
 from sim.shell.graph import known_topics
 from sim.shell.messages import NO_DICTIONARY, Outgoing, action_class, given_values, prototype_word
 from sim.shell.parser import Parser, Surroundings

@@ -5,7 +5,7 @@ from __future__ import annotations
 from argparse import Namespace
 from collections.abc import Iterable
 
-from sim.ros.interfaces import (
+from sim.interfaces import (
     Kind,
     Message,
     UnknownInterfaceError,

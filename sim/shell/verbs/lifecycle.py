@@ -5,7 +5,7 @@ from __future__ import annotations
 from argparse import Namespace
 from typing import Any
 
-from sim.ros.interfaces import service
+from sim.interfaces import service
 from sim.shell.graph import absolute, is_hidden, known_nodes
 from sim.shell.parser import Parser, Surroundings
 from sim.shell.session import Failed, Session

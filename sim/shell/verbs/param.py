@@ -9,15 +9,15 @@ from pathlib import Path
 from typing import Any
 
 from sim import plain_yaml
-from sim.ros.parameter import (
+from sim.ros.node.parameter_client import AsyncParameterClient
+from sim.ros.parameters.parameter import (
     Parameter,
     get_parameter_value,
     parameter_dict_from_yaml_file,
     parameter_value_to_python,
 )
-from sim.ros.parameter_client import AsyncParameterClient
-from sim.ros.parameter_yaml import ParameterYamlError
-from sim.ros.task import Future
+from sim.ros.parameters.yaml_files import ParameterYamlError
+from sim.ros.scheduling.task import Future
 from sim.shell.graph import absolute, is_hidden, known_nodes, known_parameters
 from sim.shell.parser import Parser
 from sim.shell.session import Failed, Session

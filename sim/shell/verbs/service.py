@@ -6,9 +6,9 @@ from argparse import Namespace
 from typing import Any
 
 from sim import plain_yaml
-from sim.ros.client import Client
-from sim.ros.interfaces.rosidl_runtime_py import message_to_csv, message_to_ordereddict
-from sim.ros.qos import qos_profile_services_default
+from sim.interfaces.rosidl_runtime_py import message_to_csv, message_to_ordereddict
+from sim.ros.entities.client import Client
+from sim.ros.qos.qos import qos_profile_services_default
 from sim.shell.graph import known_services, type_of_given, without_hidden
 from sim.shell.messages import Outgoing, given_values, service_class
 from sim.shell.parser import Parser, Surroundings, positive_float

@@ -7,10 +7,10 @@ from collections.abc import Callable
 from typing import Any
 
 from sim import plain_yaml
-from sim.ros.interfaces import Message
-from sim.ros.interfaces.rosidl_runtime_py import message_to_csv, message_to_yaml
-from sim.ros.message_info import MessageInfo
-from sim.ros.task import Future
+from sim.interfaces import Message
+from sim.interfaces.rosidl_runtime_py import message_to_csv, message_to_yaml
+from sim.ros.entities.message_info import MessageInfo
+from sim.ros.scheduling.task import Future
 from sim.shell.filters import add_filter_option, compiled_filter
 from sim.shell.graph import full_topic_name, known_topics, topic_type, type_of_given
 from sim.shell.messages import message_class

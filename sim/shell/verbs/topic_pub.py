@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from argparse import Namespace
 
-from sim.ros.publisher import Publisher
-from sim.ros.task import Future
+from sim.ros.entities.publisher import Publisher
+from sim.ros.scheduling.task import Future
 from sim.shell.graph import known_topics, type_of_given
 from sim.shell.messages import NO_DICTIONARY, Outgoing, given_values, message_class
 from sim.shell.parser import Parser, Surroundings, nonnegative_int, positive_float

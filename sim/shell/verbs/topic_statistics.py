@@ -8,8 +8,8 @@ from collections import deque
 from collections.abc import Iterable
 from typing import Any
 
-from sim.ros.interfaces import Message
-from sim.ros.qos import qos_profile_sensor_data
+from sim.interfaces import Message
+from sim.ros.qos.qos import qos_profile_sensor_data
 from sim.shell.filters import add_filter_option, compiled_filter
 from sim.shell.graph import known_topics, topic_type
 from sim.shell.messages import message_class

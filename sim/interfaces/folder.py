@@ -1,0 +1,143 @@
+"""Reading ``.msg``, ``.srv`` and ``.action`` files from a folder of interface packages."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+from sim.foreign_file import read_bytes, read_text
+from sim.interfaces.interface_definition import Definition, DefinitionError, Kind
+from sim.interfaces.notation import parse, require_interface_name, require_package_name
+
+_KINDS: tuple[Kind, ...] = ("msg", "srv", "action")
+_PARTS: Mapping[Kind, tuple[str, ...]] = {
+    "srv": ("Request", "Response"),
+    "action": ("Goal", "Result", "Feedback"),
+}
+_DIVISIONS: Mapping[Kind, str] = {
+    "srv": "a service needs one line '---' between request and response",
+    "action": "an action needs two lines '---', between goal and result and between result and feedback",
+}
+_MANIFEST_NAME = re.compile(r"<name>\s*([^<\s]+)\s*</name>")
+
+
+class _File(NamedTuple):
+    """A file, and what tells that it changed."""
+
+    path: Path
+    modified: int
+    size: int
+
+
+class DefinitionFolder:
+    """Source of the definitions in one interface package, or in packages that lie side by side.
+
+    A package holds ``msg/<Name>.msg``, ``srv/<Name>.srv`` or ``action/<Name>.action``; its name is
+    the one in its ``package.xml``, or the folder's if it has none. The files are listed once, when
+    this is made, and read when asked for.
+
+    Raises:
+        DefinitionError: the folder does not exist.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        if not folder.is_dir():
+            raise DefinitionError(f"{folder}: there is no such folder to read interfaces from")
+        self.folder = folder
+        self._files: dict[tuple[str, str], dict[str, _File]] = {}
+        for package_folder in [folder] if is_package(folder) else sorted(folder.iterdir()):
+            for kind, path in _definition_files(package_folder):
+                status = path.stat()
+                files = self._files.setdefault((_package_name(package_folder), kind), {})
+                files[path.stem] = _File(path, status.st_mtime_ns, status.st_size)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the other one found the same files, unchanged since."""
+        return isinstance(other, DefinitionFolder) and self._files == other._files
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def packages(self) -> frozenset[str]:
+        """Return the packages that hold at least one definition."""
+        return frozenset(package for package, _ in self._files)
+
+    def names(self, package: str, kind: Kind) -> tuple[str, ...]:
+        """Return the sorted names of a package's interfaces of one kind."""
+        return tuple(self._files.get((package, kind), ()))
+
+    def message(self, package: str, name: str) -> Definition:
+        """Read a ``.msg`` file."""
+        path = self._files[package, "msg"][name].path
+        return parse(self.text(package, "msg", name), package, "msg", name, origin=str(path))
+
+    def service(self, package: str, name: str) -> tuple[Definition, Definition]:
+        """Read a ``.srv`` file."""
+        request, response = self._parts(package, "srv", name)
+        return request, response
+
+    def action(self, package: str, name: str) -> tuple[Definition, Definition, Definition]:
+        """Read an ``.action`` file."""
+        goal, result, feedback = self._parts(package, "action", name)
+        return goal, result, feedback
+
+    def text(self, package: str, kind: Kind, name: str) -> str:
+        """Return what the file says, word for word.
+
+        Raises:
+            DefinitionError: the file is not UTF-8 text or cannot be read, or the name of the
+                package or interface is not one ROS 2 takes.
+        """
+        path = self._files[package, kind][name].path
+        require_package_name(package, str(path))
+        require_interface_name(name, str(path))
+        try:
+            content = read_bytes(path)
+        except OSError as error:
+            raise DefinitionError(f"{path}: cannot be read: {error.strerror}") from None
+        try:
+            return content.decode("utf-8-sig")
+        except UnicodeDecodeError as error:
+            line = content.count(b"\n", 0, error.start) + 1
+            raise DefinitionError(
+                f"{path}:{line}: the byte 0x{content[error.start]:02x} is not UTF-8; save the file as UTF-8"
+            ) from None
+
+    def _parts(self, package: str, kind: Kind, name: str) -> list[Definition]:
+        """Read the parts of a service or an action, which lines of ``---`` divide."""
+        path = self._files[package, kind][name].path
+        lines = self.text(package, kind, name).splitlines()
+        divisions = [index for index, line in enumerate(lines) if line.strip() == "---"]
+        if len(divisions) != len(_PARTS[kind]) - 1:
+            raise DefinitionError(f"{path}: {_DIVISIONS[kind]}, not {len(divisions)}")
+        starts = [0, *(division + 1 for division in divisions)]
+        # Blank lines in place of the parts before keep the line numbers true in errors.
+        texts = [
+            "\n".join([""] * start + lines[start:end])
+            for start, end in zip(starts, [*divisions, len(lines)], strict=True)
+        ]
+        return [
+            parse(text, package, kind, f"{name}_{part}", origin=str(path))
+            for part, text in zip(_PARTS[kind], texts, strict=True)
+        ]
+
+
+def is_package(folder: Path) -> bool:
+    """Whether a folder itself holds definition files in ``msg``, ``srv`` or ``action``."""
+    return any(True for _ in _definition_files(folder))
+
+
+def _definition_files(package_folder: Path) -> Iterator[tuple[Kind, Path]]:
+    for kind in _KINDS:
+        for path in sorted((package_folder / kind).glob(f"*.{kind}")):
+            yield kind, path
+
+
+def _package_name(folder: Path) -> str:
+    try:
+        manifest = read_text(folder / "package.xml", errors="replace")
+    except OSError:
+        return folder.resolve().name
+    found = _MANIFEST_NAME.search(manifest)
+    return found[1] if found else folder.resolve().name

@@ -1,0 +1,200 @@
+"""Finding message, service and action classes by name, and building each when it is first asked for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from difflib import get_close_matches
+from threading import RLock
+from typing import TypeVar, cast
+
+from sim.interfaces.action_parts import ActionDefinition
+from sim.interfaces.base import ActionType, Message, ServiceType
+from sim.interfaces.building import build_class
+from sim.interfaces.field_types import NamespacedType
+from sim.interfaces.interface_definition import Definition, Kind, Source, UnknownInterfaceError, owner_of
+from sim.interfaces.owners import action_class, service_class
+from sim.interfaces.service_events import event_definition
+
+_NOUNS: Mapping[Kind, str] = {"msg": "message", "srv": "service", "action": "action"}
+
+_COMMON_PACKAGES = ("std_msgs", "geometry_msgs", "sensor_msgs", "std_srvs", "nav_msgs")
+"""Those whose interface is meant first where several packages have one of the same name."""
+
+BuiltT = TypeVar("BuiltT")
+
+
+class Registry:
+    """All interfaces of some sources. Safe to use from several threads.
+
+    Where two sources have an interface of the same name, the later one's counts, as with the
+    workspaces of ROS 2 that overlay one another.
+    """
+
+    def __init__(self, *sources: Source) -> None:
+        self._sources = list(reversed(sources))
+        self._packages = frozenset().union(*(source.packages() for source in sources))
+        self._messages: dict[str, type[Message]] = {}
+        self._services: dict[str, ServiceType] = {}
+        self._actions: dict[str, ActionType] = {}
+        self._under_way: list[NamespacedType] = []
+        self._lock = RLock()
+
+    def add(self, source: Source) -> None:
+        """Put a source before all others. Classes that it changes are built anew when next asked for.
+
+        A source that is already there and unchanged stays where it is.
+        """
+        with self._lock:
+            replaced = {
+                f"{package}/{kind}/{name}"
+                for package in source.packages() & self.packages()
+                for kind in _NOUNS
+                for name in source.names(package, kind)
+            }
+            if source not in self._sources:
+                self._sources.insert(0, source)
+                self._packages |= source.packages()
+                self._forget(replaced)
+
+    def packages(self) -> frozenset[str]:
+        """Return the names of all packages."""
+        return self._packages
+
+    def names(self, package: str, kind: Kind) -> tuple[str, ...]:
+        """Return the sorted names of a package's interfaces of one kind."""
+        packages = self.packages()
+        if package not in packages:
+            raise UnknownInterfaceError(f"there is no package {package!r}{_nearest(package, packages)}")
+        return tuple(sorted(self._known(package, kind)))
+
+    def message(self, package: str, name: str) -> type[Message]:
+        """Return a message class, built with all it contains on the first call."""
+        return self._built(self._messages, f"{package}/msg/{name}", lambda: self._new_message(package, name))
+
+    def service(self, package: str, name: str) -> ServiceType:
+        """Return a service class, built with request and response on the first call."""
+        return self._built(self._services, f"{package}/srv/{name}", lambda: self._new_service(package, name))
+
+    def action(self, package: str, name: str) -> ActionType:
+        """Return an action class, built with its messages and services on the first call."""
+        return self._built(self._actions, f"{package}/action/{name}", lambda: self._new_action(package, name))
+
+    def part(self, package: str, kind: Kind, name: str) -> type[Message]:
+        """Return a message, or a part of a service or an action such as ``SetBool_Request``."""
+        if kind == "msg":
+            return self.message(package, name)
+        type_name = f"{package}/{kind}/{name}"
+        if type_name not in self._messages:
+            owner = owner_of(name)
+            built = self.service(package, owner) if kind == "srv" else self.action(package, owner)
+            if name.endswith("_Event"):
+                self._build_event(built, type_name)
+        if type_name not in self._messages:
+            raise UnknownInterfaceError(f"{package} has no {kind} part {name!r}")
+        return self._messages[type_name]
+
+    def text(self, package: str, kind: Kind, name: str) -> str:
+        """Return an interface's definition as its author wrote it."""
+        return self._source(package, kind, name).text(package, kind, name)
+
+    def _build_event(self, owner: ServiceType | ActionType, type_name: str) -> None:
+        services = {
+            f"{service.__type_name__}_Event": service
+            for service in ((owner,) if isinstance(owner, ServiceType) else _services_of(owner))
+        }
+        if type_name in services:
+            self._built(self._messages, type_name, lambda: self._build(event_definition(services[type_name])))
+
+    def _built(self, classes: dict[str, BuiltT], type_name: str, build: Callable[[], BuiltT]) -> BuiltT:
+        found = classes.get(type_name)
+        if found is not None:
+            return found
+        with self._lock:
+            if type_name not in classes:
+                classes[type_name] = build()
+            return classes[type_name]
+
+    def _new_message(self, package: str, name: str) -> type[Message]:
+        return self._build(self._source(package, "msg", name).message(package, name))
+
+    def _new_service(self, package: str, name: str) -> ServiceType:
+        return service_class(*self._source(package, "srv", name).service(package, name), self._build)
+
+    def _new_action(self, package: str, name: str) -> ActionType:
+        parts = ActionDefinition(*self._source(package, "action", name).action(package, name))
+        cancel_goal, status = ("action_msgs", "CancelGoal"), ("action_msgs", "GoalStatusArray")
+        return action_class(parts, self._build, self.service(*cancel_goal), self.message(*status))
+
+    def _known(self, package: str, kind: Kind) -> frozenset[str]:
+        return frozenset().union(*(source.names(package, kind) for source in self._sources))
+
+    def _source(self, package: str, kind: Kind, name: str) -> Source:
+        for source in self._sources:
+            if name in source.names(package, kind):
+                return source
+        known = self.names(package, kind)
+        for other in _NOUNS:
+            if name in self._known(package, other):
+                raise UnknownInterfaceError(
+                    f"{package} has {name!r} as {_a(_NOUNS[other])}, not as {_a(_NOUNS[kind])}"
+                )
+        elsewhere = [f"{other}/{name}" for other in self.packages() if name in self._known(other, kind)]
+        hint = _did_you_mean(min(elsewhere, key=_rarity)) if elsewhere else _nearest(name, known)
+        raise UnknownInterfaceError(f"{package} has no {_NOUNS[kind]} {name!r}{hint}")
+
+    def _build(self, definition: Definition) -> type[Message]:
+        built = build_class(definition, self._contained)
+        self._messages[definition.type_name] = built
+        return built
+
+    def _contained(self, of: NamespacedType) -> type[Message]:
+        if of in self._under_way:
+            raise UnknownInterfaceError(f"{'/'.join(of.namespaced_name())} contains itself")
+        self._under_way.append(of)
+        try:
+            package, kind = of.namespaces
+            return self.part(package, cast("Kind", kind), of.name)
+        finally:
+            self._under_way.pop()
+
+    def _forget(self, replaced: set[str]) -> None:
+        """Drop the built classes that are, belong to or contain one of these interfaces."""
+
+        def is_stale(cls: type[Message]) -> bool:
+            parts = cls.__interface__.parts.values()
+            return _owner(cls) in replaced or any(map(is_stale, parts))
+
+        stale = {type_name for type_name, cls in self._messages.items() if is_stale(cls)}
+        owners = {_owner(self._messages[type_name]) for type_name in stale}
+        self._messages = {name: cls for name, cls in self._messages.items() if name not in stale}
+        self._services = {name: cls for name, cls in self._services.items() if name not in owners}
+        self._actions = {name: cls for name, cls in self._actions.items() if name not in owners}
+
+
+def _owner(cls: type[Message]) -> str:
+    """Return the full name of the message, service or action that a class is or belongs to."""
+    definition = cls.__interface__.definition
+    name = definition.name if definition.kind == "msg" else owner_of(definition.name)
+    return f"{definition.package}/{definition.kind}/{name}"
+
+
+def _services_of(action: ActionType) -> tuple[ServiceType, ...]:
+    return action.Impl.SendGoalService, action.Impl.GetResultService
+
+
+def _a(noun: str) -> str:
+    return f"an {noun}" if noun.startswith("a") else f"a {noun}"
+
+
+def _rarity(full_name: str) -> tuple[int, str]:
+    package = full_name.partition("/")[0]
+    return (_COMMON_PACKAGES.index(package) if package in _COMMON_PACKAGES else 99), package
+
+
+def _nearest(name: str, known: frozenset[str] | tuple[str, ...]) -> str:
+    close = get_close_matches(name, sorted(known), n=1, cutoff=0.5)
+    return _did_you_mean(close[0]) if close else ""
+
+
+def _did_you_mean(name: str) -> str:
+    return f"; did you mean {name!r}?"

@@ -1,0 +1,81 @@
+"""What a probe knows of groups, nodes, entities and messages."""
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+from sim.trace.events import AnyEvent, EntityKind, GroupKind, Reason
+
+
+class TracedGroup(Protocol):
+    """A callback group, as far as the trace shows it."""
+
+    trace_id: int
+
+    @property
+    def trace_kind(self) -> GroupKind:
+        """How it admits callbacks."""
+
+
+class TracedNode(Protocol):
+    """A node, as far as the trace shows it."""
+
+    @property
+    def trace_id(self) -> int:
+        """Its id on the trace."""
+
+
+class TracedEntity(Protocol):
+    """Something with a callback, as far as the trace shows it."""
+
+    trace_id: int
+    wait_shown: tuple[Reason, int, bool] | None
+
+    @property
+    def traced(self) -> bool:
+        """Whether the trace shows it."""
+
+    @property
+    def kind(self) -> EntityKind:
+        """What it is."""
+
+    @property
+    def name(self) -> str:
+        """The topic or service it is for; empty for none."""
+
+    @property
+    def node(self) -> TracedNode:
+        """The node that it belongs to."""
+
+    @property
+    def callback_group(self) -> TracedGroup:
+        """The group that admits its callback."""
+
+    @property
+    def depth(self) -> int:
+        """The length of its queue; 0 for none."""
+
+    @property
+    def period(self) -> int:
+        """The period of a timer in nanoseconds, 0 for others."""
+
+    @property
+    def ready_since(self) -> int:
+        """When it became ready."""
+
+    def shown_callback(self) -> Callable[..., Any] | None:
+        """The function that a learner knows it by; None: it has none of its own."""
+
+
+class MessageContents(Protocol):
+    """Turns what messages hold into events."""
+
+    @property
+    def wanted(self) -> bool:
+        """Whether somebody wants them now."""
+
+    @property
+    def keeps_messages(self) -> bool:
+        """Whether messages are looked at later, so that nobody may be handed them to change."""
+
+    def events(self, now: int, message: int, topic: str, data: Any, qos: Any) -> list[AnyEvent]:
+        """What goes on the trace besides the publication; ``qos`` is what its publisher offers."""

@@ -1,0 +1,277 @@
+"""Action clients: goals sent, and what comes back of them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+from weakref import ref
+
+from sim.ros.actions.cancelling import uuid_of
+from sim.ros.actions.goal_ids import new_goal_id
+from sim.ros.actions.goal_states import TERMINAL, GoalState
+from sim.ros.actions.parts import SubscriptionPart
+from sim.ros.actions.waitable import ActionWaitable, await_or_execute
+from sim.ros.qos.qos import QoSProfile, qos_profile_action_status_default, qos_profile_services_default
+from sim.units import wait_ns
+
+if TYPE_CHECKING:
+    from sim.ros.entities.client import Reply
+    from sim.ros.node.node import Node
+    from sim.ros.scheduling.callback_groups import CallbackGroup
+    from sim.ros.scheduling.task import Future
+
+__all__ = ["ActionClient", "ClientGoalHandle"]
+
+FeedbackCallback = Callable[[Any], Any]
+
+_POLL = 0.25
+"""Seconds between two looks of ``wait_for_server``, as in rclpy."""
+
+
+class ClientGoalHandle:
+    """A goal as the one who sent it sees it. Its status is the last that the server told."""
+
+    def __init__(self, action_client: ActionClient, goal_id: Any, goal_response: Any) -> None:
+        self._action_client = action_client
+        self._goal_id = goal_id
+        self._goal_response = goal_response
+        self._status = int(GoalState.UNKNOWN)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, ClientGoalHandle) and self._goal_id == other.goal_id
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return f"ClientGoalHandle <id={self.goal_id.uuid}, accepted={self.accepted}, status={self.status}>"
+
+    @property
+    def goal_id(self) -> Any:
+        """Its ``unique_identifier_msgs/msg/UUID``."""
+        return self._goal_id
+
+    @property
+    def stamp(self) -> Any:
+        """When the server accepted it, a ``builtin_interfaces/msg/Time``."""
+        return self._goal_response.stamp
+
+    @property
+    def accepted(self) -> bool:
+        """Whether the server accepted it."""
+        return bool(self._goal_response.accepted)
+
+    @property
+    def status(self) -> int:
+        """Its state as a number of ``action_msgs/msg/GoalStatus``."""
+        return self._status
+
+    def cancel_goal(self) -> Any:
+        """Ask the server to stop it, and wait on this thread for the answer; in a callback that may be long.
+
+        Returns the response of ``action_msgs/srv/CancelGoal``.
+        """
+        return self._action_client._cancel_goal(self)
+
+    def cancel_goal_async(self) -> Future[Any]:
+        """Ask the server to stop it; the future gets the response of ``action_msgs/srv/CancelGoal``."""
+        return self._action_client._cancel_goal_async(self)
+
+    def get_result(self) -> Any:
+        """Ask for its result, and wait on this thread until it has ended; in a callback that may be long.
+
+        Returns a response with ``status`` and ``result``.
+        """
+        return self._action_client._get_result(self)
+
+    def get_result_async(self) -> Future[Any]:
+        """Ask for its result; the future gets a response with ``status`` and ``result`` once it has ended."""
+        return self._action_client._get_result_async(self)
+
+
+class ActionClient(ActionWaitable):
+    """Sends goals to the server of one action. Replies and feedback are handled in its callback group.
+
+    Raises:
+        AttributeError: ``action_type`` is no action class.
+        ValueError: the action's name breaks the rules.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        action_type: Any,
+        action_name: str,
+        *,
+        callback_group: CallbackGroup | None = None,
+        goal_service_qos_profile: QoSProfile = qos_profile_services_default,
+        result_service_qos_profile: QoSProfile = qos_profile_services_default,
+        cancel_service_qos_profile: QoSProfile = qos_profile_services_default,
+        feedback_sub_qos_profile: QoSProfile = QoSProfile(depth=10),  # noqa: B008 -- nobody changes it
+        status_sub_qos_profile: QoSProfile = qos_profile_action_status_default,
+    ) -> None:
+        super().__init__(node, action_type, action_name, callback_group)
+        self._goal_handles: dict[bytes, ref[ClientGoalHandle]] = {}
+        self._goal_ids: dict[int, Any] = {}
+        self._feedback_callbacks: dict[bytes, FeedbackCallback] = {}
+        self._logger = node.get_logger().get_child("action_client")
+        impl = action_type.Impl
+        with self._host.lock:
+            node._agenda.add(self)
+            self._goal_client = self._add_client(
+                impl.SendGoalService, "send_goal", goal_service_qos_profile, self._take_goal_response
+            )
+            self._cancel_client = self._add_client(
+                impl.CancelGoalService, "cancel_goal", cancel_service_qos_profile, self._take_cancel_response
+            )
+            self._result_client = self._add_client(
+                impl.GetResultService, "get_result", result_service_qos_profile, self._take_result
+            )
+            self._clients = (self._goal_client, self._cancel_client, self._result_client)
+            self._subscriptions = (
+                self._add_subscription(
+                    impl.FeedbackMessage, "feedback", feedback_sub_qos_profile, self._take_feedback
+                ),
+                self._add_subscription(
+                    impl.GoalStatusMessage, "status", status_sub_qos_profile, self._take_status
+                ),
+            )
+
+    # Sending
+
+    def send_goal(
+        self, goal: Any, feedback_callback: FeedbackCallback | None = None, goal_uuid: Any = None
+    ) -> Any:
+        """Send a goal and wait on this thread until it has ended; in a callback that may be for ever.
+
+        Returns a response with ``status`` and ``result``; otherwise as ``send_goal_async``.
+        """
+        future = self.send_goal_async(goal, feedback_callback, goal_uuid)
+        return self._get_result(self._goal_client.wait_for(future))
+
+    def send_goal_async(
+        self, goal: Any, feedback_callback: FeedbackCallback | None = None, goal_uuid: Any = None
+    ) -> Future[Any]:
+        """Send a goal; the future gets a ClientGoalHandle once the server has answered.
+
+        ``feedback_callback(message)`` is called with each feedback until the result is there. ``goal_uuid``
+        is the goal's id, made up if it is None.
+
+        Raises:
+            TypeError: the goal is not of the action's type.
+        """
+        if not isinstance(goal, self._action_type.Goal):
+            raise TypeError(f"Expected {self._action_type.Goal}, got {type(goal)}")
+        goal_id = new_goal_id(self._host) if goal_uuid is None else goal_uuid
+        request = self._action_type.Impl.SendGoalService.Request(goal_id=goal_id, goal=goal)
+        with self._host.lock:
+            if feedback_callback is not None:
+                self._feedback_callbacks[uuid_of(goal_id)] = feedback_callback
+            call, future = self._goal_client._send(request)
+            self._goal_ids[call] = goal_id
+        future.add_done_callback(lambda _: self._answered(call))
+        return future
+
+    def _answered(self, call: int) -> None:
+        self._goal_ids.pop(call, None)
+
+    def _cancel_goal(self, goal_handle: ClientGoalHandle) -> Any:
+        return self._cancel_client.wait_for(self._cancel_goal_async(goal_handle))
+
+    def _cancel_goal_async(self, goal_handle: ClientGoalHandle) -> Future[Any]:
+        _check_is_goal_handle(goal_handle)
+        request = self._action_type.Impl.CancelGoalService.Request()
+        request.goal_info.goal_id = goal_handle.goal_id
+        return self._cancel_client.call_async(request)
+
+    def _get_result(self, goal_handle: ClientGoalHandle) -> Any:
+        return self._result_client.wait_for(self._get_result_async(goal_handle))
+
+    def _get_result_async(self, goal_handle: ClientGoalHandle) -> Future[Any]:
+        _check_is_goal_handle(goal_handle)
+        request = self._action_type.Impl.GetResultService.Request(goal_id=goal_handle.goal_id)
+        future = self._result_client.call_async(request)
+        future.add_done_callback(lambda _: self._no_more_feedback(goal_handle.goal_id))
+        return future
+
+    def _no_more_feedback(self, goal_id: Any) -> None:
+        self._feedback_callbacks.pop(uuid_of(goal_id), None)
+
+    # What comes back
+
+    def _take_goal_response(self, reply: Reply) -> None:
+        future, goal_id = self._goal_client.awaited(reply), self._goal_ids.get(reply.call)
+        if future is None or goal_id is None:
+            self._ignore("goal")
+            return
+        goal_handle = ClientGoalHandle(self, goal_id, reply.data)
+        if goal_handle.accepted:
+            key = uuid_of(goal_id)
+            if key in self._goal_handles:
+                raise RuntimeError(f"Two goals were accepted with the same ID ({goal_handle})")
+            self._goal_handles[key] = ref(goal_handle)
+        self._goal_client.settle(future, goal_handle)
+
+    def _take_cancel_response(self, reply: Reply) -> None:
+        future = self._cancel_client.awaited(reply)
+        if future is None:
+            self._ignore("cancel")
+        else:
+            self._cancel_client.settle(future, reply.data)
+
+    def _take_result(self, reply: Reply) -> None:
+        future = self._result_client.awaited(reply)
+        if future is None:
+            self._ignore("result")
+        else:
+            self._result_client.settle(future, reply.data)
+
+    def _ignore(self, what: str) -> None:
+        self._logger.warning(
+            f"Ignoring unexpected {what} response. There may be more than one action server for the action "
+            f"'{self._action_name}'"
+        )
+
+    async def _take_feedback(self, feedback: Any) -> None:
+        callback = self._feedback_callbacks.get(uuid_of(feedback.goal_id))
+        if callback is not None:
+            await await_or_execute(callback, feedback)
+
+    def _take_status(self, status: Any) -> None:
+        for each in status.status_list:
+            key = uuid_of(each.goal_info.goal_id)
+            known = self._goal_handles.get(key)
+            goal_handle = None if known is None else known()
+            if goal_handle is not None:
+                goal_handle._status = each.status
+            if goal_handle is None or each.status in TERMINAL:
+                self._goal_handles.pop(key, None)
+
+    # The server
+
+    def server_is_ready(self) -> bool:
+        """Whether somebody offers all of the action: its three services and its two topics."""
+        with self._host.lock:
+            return all(client.service_is_ready() for client in self._clients) and all(
+                self._is_published(subscription) for subscription in self._subscriptions
+            )
+
+    def _is_published(self, subscription: SubscriptionPart) -> bool:
+        publishers = self._node.context.network.publishers(subscription.topic_name)
+        return any(each.msg_type is subscription.msg_type for each in publishers)
+
+    def wait_for_server(self, timeout_sec: float | None = None) -> bool:
+        """Wait until somebody offers the action; False when ``timeout_sec`` seconds were not enough.
+
+        It looks four times a second, and so may come back a little after the timeout.
+        """
+        left = math.inf if timeout_sec is None else timeout_sec
+        while self._node.context.ok() and not self.server_is_ready() and left > 0:
+            self._host.clock.sleep(wait_ns(_POLL))
+            left -= _POLL
+        return self.server_is_ready()
+
+
+def _check_is_goal_handle(goal_handle: Any) -> None:
+    if not isinstance(goal_handle, ClientGoalHandle):
+        raise TypeError(f"Expected type ClientGoalHandle but received {type(goal_handle)}")

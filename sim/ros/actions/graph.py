@@ -1,0 +1,39 @@
+"""What can be asked about the actions on the graph: an action is known by its feedback topic."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from sim.ros.node.graph import NamesAndTypes
+    from sim.ros.node.node import Node
+
+_TOPIC = "/_action/feedback"
+_TYPE = "_FeedbackMessage"
+
+
+def get_action_client_names_and_types_by_node(
+    node: Node, remote_node_name: str, remote_node_namespace: str
+) -> NamesAndTypes:
+    """The actions that a node has clients of; raises NodeNameNonExistentError without that node."""
+    return _actions(node.get_subscriber_names_and_types_by_node(remote_node_name, remote_node_namespace))
+
+
+def get_action_server_names_and_types_by_node(
+    node: Node, remote_node_name: str, remote_node_namespace: str
+) -> NamesAndTypes:
+    """The actions that a node serves; raises NodeNameNonExistentError without that node."""
+    return _actions(node.get_publisher_names_and_types_by_node(remote_node_name, remote_node_namespace))
+
+
+def get_action_names_and_types(node: Node) -> NamesAndTypes:
+    """All actions with their types."""
+    return _actions(node.get_topic_names_and_types())
+
+
+def _actions(topics: NamesAndTypes) -> NamesAndTypes:
+    return [
+        (name.removesuffix(_TOPIC), [each.removesuffix(_TYPE) for each in types if each.endswith(_TYPE)])
+        for name, types in topics
+        if name.endswith(_TOPIC) and any(each.endswith(_TYPE) for each in types)
+    ]

@@ -1,0 +1,153 @@
+"""The services, clients and subscriptions that an action is made of.
+
+Each is one as any other on the network, with a queue of its own; but it makes its waitable ready instead of
+itself, and on the trace what it has queued or lost is the waitable's.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from typing import TYPE_CHECKING, Any
+
+from sim.probes.probe import SilentProbe
+from sim.probes.traced import TracedEntity
+from sim.ros.entities.client import Client, Reply
+from sim.ros.entities.event_handler import SubscriptionEventCallbacks
+from sim.ros.entities.service import Service
+from sim.ros.entities.subscription import Subscription
+from sim.ros.qos.qos import QoSProfile
+from sim.ros.scheduling.entity import Entity
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from sim.ros.actions.waitable import ActionWaitable
+    from sim.ros.scheduling.task import Future
+
+
+class PartProbe(SilentProbe):
+    """Records what happens at a part: calls and replies as they are, its queue as the waitable's."""
+
+    def __init__(self, owner: ActionWaitable) -> None:
+        super().__init__(owner.node.context.host.clock)
+        self._owner = owner
+        self._program = owner.node.context.probe
+
+    def call_id(self) -> int:
+        """A new id for a service call, among the program's."""
+        return self._program.call_id()
+
+    def ready(self, entity: TracedEntity, depth: int, message: int) -> None:
+        """Something arrived for the part."""
+        self._program.ready(self._owner, self._owner.queued, message)
+
+    def dropped(self, entity: TracedEntity, depth: int, message: int) -> None:
+        """The part's full queue lost its oldest."""
+        self._program.dropped(self._owner, self._owner.queued, message)
+
+    def service_called(self, call: int, service: str, request: object) -> None:
+        """A request left."""
+        self._program.service_called(call, service, request)
+
+    def service_replied(self, call: int, service: str, response: object) -> None:
+        """The service answered."""
+        self._program.service_replied(call, service, response)
+
+    def request_lost(self, call: int, service: str) -> None:
+        """Nobody offers the service."""
+        self._program.request_lost(call, service)
+
+    def call_blocked(self, call: int, service: str) -> None:
+        """The calling thread stands still until a reply comes."""
+        self._program.call_blocked(call, service)
+
+    def call_unblocked(self, call: int) -> None:
+        """The calling thread goes on."""
+        self._program.call_unblocked(call)
+
+
+class Part(Entity):
+    """An entity that is served as part of a waitable."""
+
+    traced = False
+    _owner: ActionWaitable
+    _queue: deque[Any]
+
+    @property
+    def queued(self) -> int:
+        """How much waits in its queue."""
+        return len(self._queue)
+
+    def become_ready(self, since: int) -> None:
+        """The waitable has something to take. With the host's lock held."""
+        self.pending = True
+        self._owner.become_ready(since)
+
+    def nothing_left(self) -> None:
+        """There is nothing more to take here. With the host's lock held."""
+        self.pending = False
+
+
+class ServicePart(Part, Service):
+    """One of an action server's services."""
+
+    def __init__(self, owner: ActionWaitable, srv_type: Any, name: str, qos_profile: QoSProfile) -> None:
+        self._owner = owner
+        super().__init__(owner.node, srv_type, name, _never_called, owner.parts_group, qos_profile)
+        self._probe = PartProbe(owner)
+
+
+class ClientPart(Part, Client):
+    """One of an action client's clients."""
+
+    def __init__(self, owner: ActionWaitable, srv_type: Any, name: str, qos_profile: QoSProfile) -> None:
+        self._owner = owner
+        super().__init__(owner.node, srv_type, name, qos_profile, owner.parts_group)
+        self._probe = PartProbe(owner)
+
+    def awaited(self, reply: Reply) -> Future[Any] | None:
+        """The future that waits for that reply, if any still does."""
+        return self._pending_requests.get(reply.call)
+
+    def wait_for(self, future: Future[Any]) -> Any:
+        """Wait on this thread until one of its futures is done; returns the result."""
+        arrived = self._host.clock.signal()
+        future.add_done_callback(lambda _: arrived.set())
+        with self._host.lock:
+            call = next((call for call, each in self._pending_requests.items() if each is future), None)
+        if call is not None:
+            self._probe.call_blocked(call, self.name)
+            try:
+                arrived.wait(None)
+            finally:
+                self._probe.call_unblocked(call)
+        return future.result()
+
+    def settle(self, future: Future[Any], result: Any) -> None:
+        """Give a future its result; its done-callbacks run as tasks of the executor that serves this."""
+        executor = self.node.executor
+        if executor is not None:
+            future._set_executor(executor)
+        future.set_result(result)
+
+
+class SubscriptionPart(Part, Subscription):
+    """One of an action client's subscriptions."""
+
+    def __init__(
+        self,
+        owner: ActionWaitable,
+        msg_type: Any,
+        name: str,
+        callback: Callable[[Any], Any],
+        qos_profile: QoSProfile,
+    ) -> None:
+        self._owner = owner
+        silent = SubscriptionEventCallbacks(use_default_callbacks=False)
+        group = owner.parts_group
+        super().__init__(owner.node, msg_type, name, callback, group, qos_profile, event_callbacks=silent)
+        self._probe = PartProbe(owner)
+
+
+def _never_called(_request: Any, _response: Any) -> None:
+    """Stand in for the callback of a service whose waitable takes the requests."""

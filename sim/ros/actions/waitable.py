@@ -1,0 +1,174 @@
+"""What action servers and clients have in common: several services and topics, served as one callback.
+
+An executor sees one waitable. What arrives at its parts makes it ready; a call takes the oldest of each part
+and handles them one after another, in the order in which the parts were added.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from sim.interfaces import ActionType
+from sim.ros.actions.parts import ClientPart, Part, ServicePart, SubscriptionPart
+from sim.ros.entities.event_handler import PublisherEventCallbacks
+from sim.ros.entities.publisher import Publisher
+from sim.ros.exceptions import NameValidationException
+from sim.ros.qos.qos import QoSProfile
+from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
+from sim.ros.scheduling.entity import Entity, Taken
+from sim.ros.scheduling.waitable import NumberOfEntities
+from sim.trace.events import EntityKind
+
+if TYPE_CHECKING:
+    from sim.ros.node.node import Node
+    from sim.ros.scheduling.callback_groups import CallbackGroup
+
+Handler = Callable[[Any], Any]
+"""Gets what one part's take brought; may return a coroutine."""
+
+
+class PartTaken(NamedTuple):
+    """What was taken from one part, and who handles it."""
+
+    handler: Handler
+    data: Any
+
+
+class ActionWaitable(Entity):
+    """Base of action servers and clients.
+
+    Raises:
+        AttributeError: ``action_type`` is no action class.
+        ValueError: the action's name breaks the rules.
+    """
+
+    kind = EntityKind.WAITABLE
+    rank = -1
+
+    def __init__(
+        self, node: Node, action_type: Any, action_name: str, callback_group: CallbackGroup | None
+    ) -> None:
+        _check_is_valid_action_type(action_type)
+        group = node.default_callback_group if callback_group is None else callback_group
+        super().__init__(node, _full_name(node, action_name), group)
+        self._node = node
+        self._action_type: Any = action_type
+        self._action_name = action_name
+        self._host = node.context.host
+        self._probe = node.context.probe
+        self._parts: list[tuple[Part, Handler]] = []
+        # The parts are never served by themselves, so they are no members of the program's group.
+        self.parts_group = ReentrantCallbackGroup()
+
+    @property
+    def action_type(self) -> Any:
+        """The action's class."""
+        return self._action_type
+
+    def shown_callback(self) -> None:
+        """None: it has several, of which a call may run any."""
+
+    # Making it, with the host's lock held
+
+    def _add_service(
+        self, srv_type: Any, part: str, qos_profile: QoSProfile, handler: Handler
+    ) -> ServicePart:
+        name = self._node.resolve_service_name(f"{self.name}/_action/{part}")
+        service = ServicePart(self, srv_type, name, qos_profile)
+        self._add_part(service, handler)
+        self._node.context.network.join_service(service)
+        return service
+
+    def _add_client(self, srv_type: Any, part: str, qos_profile: QoSProfile, handler: Handler) -> ClientPart:
+        name = self._node.resolve_service_name(f"{self.name}/_action/{part}")
+        self._node.context.network.want(name)
+        client = ClientPart(self, srv_type, name, qos_profile)
+        self._add_part(client, handler)
+        return client
+
+    def _add_subscription(
+        self, msg_type: Any, part: str, qos_profile: QoSProfile, handler: Handler
+    ) -> SubscriptionPart:
+        name = self._node.resolve_topic_name(f"{self.name}/_action/{part}")
+        subscription = SubscriptionPart(self, msg_type, name, handler, qos_profile)
+        self._add_part(subscription, handler)
+        self._node.context.network.join_subscription(subscription)
+        return subscription
+
+    def _add_publisher(self, msg_type: Any, part: str, qos_profile: QoSProfile) -> Publisher:
+        topic = f"{self.name}/_action/{part}"
+        silent = PublisherEventCallbacks(use_default_callbacks=False)
+        return self._node._node_entities.create_publisher(
+            msg_type, topic, qos_profile, event_callbacks=silent, callback_group=self.parts_group
+        )
+
+    def _add_part(self, part: Part, handler: Handler) -> None:
+        self._parts.append((part, handler))
+        self._node._agenda.add(part)
+
+    # Being served
+
+    @property
+    def queued(self) -> int:
+        """How much waits in all parts together."""
+        return sum(part.queued for part, _ in self._parts)
+
+    def take(self, now: int) -> Taken | None:
+        """Take the oldest of each part."""
+        found = [
+            (taken, handler)
+            for part, handler in self._parts
+            if part.pending and (taken := part.take(now)) is not None
+        ]
+        if any(part.pending for part, _ in self._parts):
+            self.ready_since = now
+        else:
+            self.nothing_left()
+        if not found:
+            return None
+        message = found[0][0].message
+        age = max(taken.age for taken, _ in found)
+        return Taken([PartTaken(handler, taken.data) for taken, handler in found], message, age, self.queued)
+
+    async def invoke(self, taken: Taken) -> None:
+        """Handle what was taken from each part."""
+        for handler, data in taken.data:
+            await await_or_execute(handler, data)
+
+    def get_num_entities(self) -> NumberOfEntities:
+        """How many entities of each kind it is made of."""
+        return NumberOfEntities(
+            num_subscriptions=sum(isinstance(part, SubscriptionPart) for part, _ in self._parts),
+            num_clients=sum(isinstance(part, ClientPart) for part, _ in self._parts),
+            num_services=sum(isinstance(part, ServicePart) for part, _ in self._parts),
+        )
+
+    def destroy(self) -> None:
+        """Take it and its parts off the network, and remove it from its node."""
+        with self._host.lock:
+            for part, _ in self._parts:
+                part.destroy()
+            self._node._agenda.remove(self)
+
+
+async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
+    """Call a function, and await what it returns if that is a coroutine."""
+    outcome = callback(*args)
+    return await outcome if inspect.iscoroutine(outcome) else outcome
+
+
+def _full_name(node: Node, action_name: str) -> str:
+    try:
+        return node.resolve_service_name(action_name)
+    except NameValidationException as error:
+        raise ValueError(f"Invalid action name: {error}") from None
+
+
+def _check_is_valid_action_type(action_type: Any) -> None:
+    if not isinstance(action_type, ActionType):
+        raise AttributeError(  # noqa: TRY004 -- rclpy's
+            f"{action_type!r} is no action type; one is imported as from example_interfaces.action "
+            "import Fibonacci"
+        )

@@ -1,0 +1,1 @@
+"""The clocks that programs read and sleep by."""

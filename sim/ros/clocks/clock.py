@@ -1,0 +1,286 @@
+"""The clocks that a node reads: views of the run's one clock, unless a program sets ROS time itself."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, Protocol, Self, cast
+from weakref import WeakValueDictionary
+
+from sim.ros.clocks.jumps import SOURCE_CHANGES, ClockChange, JumpHandle, JumpThreshold, TimeJump
+from sim.ros.exceptions import NotInitializedException
+from sim.ros.handle import Handle
+from sim.ros.middleware.host import Host, current_host
+from sim.ros.middleware.process import current_process
+from sim.ros.time.clock_type import ClockType
+from sim.ros.time.duration import Duration
+from sim.ros.time.time import Time
+
+if TYPE_CHECKING:
+    from sim.clock import Signal
+    from sim.ros.middleware.endpoints import Lifetime
+
+__all__ = [
+    "Clock",
+    "ClockChange",
+    "ClockEvent",
+    "ClockType",
+    "JumpHandle",
+    "JumpThreshold",
+    "ROSClock",
+    "TimeJump",
+]
+
+
+class Clock:
+    """A clock of one kind; steady time counts from the run's beginning, the others from 1970. Thread-safe.
+
+    A clock of ROS time is a ROSClock.
+    """
+
+    def __new__(cls, *, clock_type: ClockType = ClockType.SYSTEM_TIME) -> Self:
+        """Make it; TypeError for what is no type of clock."""
+        if not isinstance(clock_type, ClockType):
+            raise TypeError("Clock type must be a ClockType enum")
+        chosen: type[Any] = ROSClock if clock_type is ClockType.ROS_TIME and cls is Clock else cls
+        made: Any = object.__new__(chosen)
+        made._clock_type = clock_type
+        made._host = current_host()
+        made._jump_handles = []
+        return cast("Self", made)
+
+    _clock_type: ClockType
+    _host: Host
+    _jump_handles: list[JumpHandle]
+
+    @property
+    def clock_type(self) -> ClockType:
+        """The kind of this clock."""
+        return self._clock_type
+
+    @property
+    def handle(self) -> Handle:
+        """What ClockEvent wants of it."""
+        return Handle(self)
+
+    @property
+    def destroyed(self) -> bool:
+        """Never, as its handle asks."""
+        return False
+
+    def destroy(self) -> None:
+        """Leave it to whoever uses it still."""
+
+    def now(self) -> Time:
+        """The time it is."""
+        self._host.clock.switch_point()
+        return self._time_at(self._host.clock.now())
+
+    def _time_at(self, elapsed: int) -> Time:
+        """The time of this clock at a moment of the run."""
+        if self._clock_type != ClockType.STEADY_TIME:
+            elapsed += self._host.clock.epoch
+        return Time(nanoseconds=elapsed, clock_type=self._clock_type)
+
+    def create_jump_callback(
+        self,
+        threshold: JumpThreshold,
+        *,
+        pre_callback: Callable[[], None] | None = None,
+        post_callback: Callable[[TimeJump], None] | None = None,
+    ) -> JumpHandle:
+        """Have callbacks called before and after the clock jumps, which only ROS time can.
+
+        Raises:
+            ValueError: there is no callback.
+        """
+        return JumpHandle(
+            clock=self, threshold=threshold, pre_callback=pre_callback, post_callback=post_callback
+        )
+
+    def sleep_until(self, until: Time, context: Lifetime | None = None) -> bool:
+        """Sleep until a time of this clock has come; False if the context ended first, or the source changed.
+
+        Raises:
+            NotInitializedException: the context has not begun.
+            ValueError: the time belongs to another kind of clock.
+        """
+        chosen = current_process().default_context if context is None else context
+        if chosen is None or not chosen.ok():
+            raise NotInitializedException
+        if until.clock_type != self._clock_type:
+            raise ValueError("until's clock type does not match this clock's type")
+        event = ClockEvent()
+        chosen._wake_at_end(event.set)
+        changes: list[TimeJump] = []
+
+        def on_jump(jump: TimeJump) -> None:
+            if jump.clock_change in SOURCE_CHANGES:
+                changes.append(jump)
+            if changes or self.now() >= until:
+                event.set()
+
+        threshold = JumpThreshold(
+            min_forward=Duration(nanoseconds=1), min_backward=None, on_clock_change=True
+        )
+        with self.create_jump_callback(threshold, post_callback=on_jump):
+            if self.now() < until and chosen.ok():
+                event.wait_until(self, until)
+            else:
+                self._host.clock.poll()
+        return chosen.ok() and not changes
+
+    def sleep_for(self, rel_time: Duration, context: Lifetime | None = None) -> bool:
+        """Sleep for a length of time of this clock; otherwise as ``sleep_until``."""
+        return self.sleep_until(self.now() + rel_time, context)
+
+    def _deadline(self, until: Time) -> int | None:
+        """When on the run's clock a time comes; None: that depends on who sets this clock."""
+        return self._host.clock.now() + (until - self.now()).nanoseconds
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}(clock_type={self._clock_type.name})"
+
+
+class DrivenTimer(Protocol):
+    """A timer that follows ROS time while that is active. With the host's lock held."""
+
+    @property
+    def destroyed(self) -> bool:
+        """Whether it follows nothing any more."""
+
+    def _begin_on_ros_time(self) -> None:
+        """It was made while its clock follows ROS time."""
+
+    def _time_credit(self) -> int:
+        """Nanoseconds left before the next call, for a change of the source; 0 if that is not known."""
+
+    def _follow_ros_time(self, credit: int) -> None:
+        """The clock follows ROS time from now on."""
+
+    def _follow_system_time(self, credit: int) -> None:
+        """The clock follows the run's clock again."""
+
+    def _ros_time_set(self) -> None:
+        """The clock was set."""
+
+
+class ROSClock(Clock):
+    """The clock that nodes use by default.
+
+    While ROS time is active, its time is the one last set, 0 at first, and its timers follow that.
+    """
+
+    _override = Time(clock_type=ClockType.ROS_TIME)
+    _active = False
+    _timers: WeakValueDictionary[int, DrivenTimer]
+
+    def __new__(cls, *, clock_type: ClockType = ClockType.ROS_TIME) -> Self:  # noqa: ARG004
+        """Make it, a clock of ROS time whatever it is told, as rclpy's."""
+        made = super().__new__(cls, clock_type=ClockType.ROS_TIME)
+        made._timers = WeakValueDictionary()
+        return made
+
+    @property
+    def ros_time_is_active(self) -> bool:
+        """Whether the time that was set counts."""
+        return self._active
+
+    def now(self) -> Time:
+        """The time it is, or the one that was set."""
+        return self._override if self._active else super().now()
+
+    def set_ros_time_override(self, time: Time) -> None:
+        """Set the time that counts while ROS time is active.
+
+        Raises:
+            TypeError: it is no Time.
+        """
+        if not isinstance(time, Time):
+            raise TypeError(f"Time must be specified as rclpy.time.Time. Received type: {type(time)}")
+        override = Time(nanoseconds=time.nanoseconds, clock_type=ClockType.ROS_TIME)
+        if self._active:
+            self._jump(TimeJump(ClockChange.ROS_TIME_NO_CHANGE, override - self._override), True, override)
+        else:
+            self._override = override
+
+    def _set_ros_time_is_active(self, enabled: bool) -> None:
+        if enabled != self._active:
+            change = ClockChange.ROS_TIME_ACTIVATED if enabled else ClockChange.ROS_TIME_DEACTIVATED
+            self._jump(TimeJump(change, Duration()), enabled, self._override)
+
+    def _drive(self, timer: DrivenTimer) -> None:
+        """Have a new timer follow this clock."""
+        with self._host.lock:
+            self._timers[id(timer)] = timer
+            if self._active:
+                timer._begin_on_ros_time()
+
+    def _jump(self, jump: TimeJump, active: bool, override: Time) -> None:
+        told = [each for each in self._jump_handles if each.threshold.met_by(jump)]
+        for each in told:
+            if each.pre_callback is not None:
+                each.pre_callback()
+        with self._host.lock:
+            timers = [each for each in self._timers.values() if not each.destroyed]
+            credits_ = [each._time_credit() for each in timers] if active != self._active else []
+            self._active, self._override = active, override
+            match jump.clock_change:
+                case ClockChange.ROS_TIME_ACTIVATED:
+                    for timer, credit in zip(timers, credits_, strict=True):
+                        timer._follow_ros_time(credit)
+                case ClockChange.ROS_TIME_DEACTIVATED:
+                    for timer, credit in zip(timers, credits_, strict=True):
+                        timer._follow_system_time(credit)
+                case _:
+                    for timer in timers:
+                        timer._ros_time_set()
+        for each in told:
+            if each.post_callback is not None:
+                each.post_callback(jump)
+
+    def _deadline(self, until: Time) -> int | None:
+        return None if self._active else super()._deadline(until)
+
+
+class ClockEvent:
+    """A flag that threads wait for until a clock shows a time. Thread-safe."""
+
+    def __init__(self) -> None:
+        self._host = current_host()
+        self._set = False
+        self._waiters: list[Signal] = []
+
+    def is_set(self) -> bool:
+        """Whether it is set."""
+        return self._set
+
+    def set(self) -> None:
+        """Set it: whoever waits goes on."""
+        with self._host.lock:
+            self._set = True
+            for each in self._waiters:
+                each.set()
+
+    def clear(self) -> None:
+        """Take it back."""
+        self._set = False
+
+    def wait_until(self, clock: Clock | Handle, until: Time) -> None:
+        """Wait until it is set, or ``clock`` shows ``until``.
+
+        A time of active ROS time ends no wait: whoever sets that time has to set the flag.
+        """
+        with self._host.lock:
+            if self._set:
+                return
+            signal = self._host.clock.signal()
+            self._waiters.append(signal)
+            owner: Clock = clock.owner if isinstance(clock, Handle) else clock
+            deadline = owner._deadline(until)
+        try:
+            signal.wait(deadline)
+        finally:
+            with self._host.lock:
+                self._waiters.remove(signal)
+
+    wait_until_steady = wait_until_system = wait_until_ros = wait_until

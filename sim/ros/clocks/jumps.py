@@ -1,0 +1,112 @@
+"""Jumps of a clock: what counts as one, and who is told."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from enum import IntEnum
+from typing import TYPE_CHECKING, Self
+
+from sim.ros.time.duration import Duration
+
+if TYPE_CHECKING:
+    from sim.ros.clocks.clock import Clock
+
+
+class ClockChange(IntEnum):
+    """Whether the source of a clock's time has changed with a jump."""
+
+    ROS_TIME_NO_CHANGE = 1
+    ROS_TIME_ACTIVATED = 2
+    ROS_TIME_DEACTIVATED = 3
+    SYSTEM_TIME_NO_CHANGE = 4
+
+
+SOURCE_CHANGES = frozenset((ClockChange.ROS_TIME_ACTIVATED, ClockChange.ROS_TIME_DEACTIVATED))
+"""The jumps at which the beginning of time changes too."""
+
+
+class JumpThreshold:
+    """Which jumps a program wants to hear of: at least so far forward or back, or a change of the source.
+
+    Raises:
+        ValueError: a length has the wrong sign, or nothing is wanted.
+    """
+
+    def __init__(
+        self,
+        *,
+        min_forward: Duration | None,
+        min_backward: Duration | None,
+        on_clock_change: bool = True,
+    ) -> None:
+        if min_forward is not None and min_forward.nanoseconds <= 0:
+            raise ValueError("min_forward must be a positive non-zero duration")
+        if min_backward is not None and min_backward.nanoseconds >= 0:
+            raise ValueError("min_backward must be a negative non-zero duration")
+        if min_forward is None and min_backward is None and not on_clock_change:
+            raise ValueError("At least one jump threshold must be enabled")
+        self.min_forward = min_forward
+        self.min_backward = min_backward
+        self.on_clock_change = on_clock_change
+
+    def met_by(self, jump: TimeJump) -> bool:
+        """Whether a jump is wanted."""
+        if jump.clock_change in SOURCE_CHANGES:
+            return self.on_clock_change
+        forward, backward = self.min_forward, self.min_backward
+        return (forward is not None and jump.delta >= forward) or (
+            backward is not None and jump.delta <= backward
+        )
+
+
+class TimeJump:
+    """A jump: how far (0 when the source changed), and whether the source changed."""
+
+    def __init__(self, clock_change: ClockChange, delta: Duration) -> None:
+        self._clock_change = clock_change
+        self._delta = delta
+
+    @property
+    def clock_change(self) -> ClockChange:
+        """Whether the source changed."""
+        return self._clock_change
+
+    @property
+    def delta(self) -> Duration:
+        """How far it was."""
+        return self._delta
+
+
+class JumpHandle:
+    """Has callbacks called before and after the jumps of a clock, until it is unregistered.
+
+    Raises:
+        ValueError: there is no callback.
+    """
+
+    def __init__(
+        self,
+        *,
+        clock: Clock,
+        threshold: JumpThreshold,
+        pre_callback: Callable[[], None] | None,
+        post_callback: Callable[[TimeJump], None] | None,
+    ) -> None:
+        if pre_callback is None and post_callback is None:
+            raise ValueError("One of pre_callback or post_callback must be callable")
+        self._clock = clock
+        self.threshold = threshold
+        self.pre_callback = pre_callback
+        self.post_callback = post_callback
+        clock._jump_handles.append(self)
+
+    def unregister(self) -> None:
+        """Call back no more."""
+        if self in self._clock._jump_handles:
+            self._clock._jump_handles.remove(self)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_error: object) -> None:
+        self.unregister()

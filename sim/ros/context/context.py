@@ -1,0 +1,214 @@
+"""Contexts: what ``rclpy.init`` begins and ``rclpy.shutdown`` ends."""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections.abc import Callable, Sequence
+from inspect import ismethod
+from types import TracebackType
+from typing import Any, NamedTuple
+from weakref import WeakMethod, ref
+
+from sim.probes.own_code import place_of_caller
+from sim.probes.probe import Probe
+from sim.ros.context.arguments import Arguments, arguments_of_program
+from sim.ros.exceptions import NotInitializedException, RCLError
+from sim.ros.handle import Handle
+from sim.ros.middleware.domain import DOMAIN_VARIABLE, domain_of
+from sim.ros.middleware.host import Host, current_host
+from sim.ros.middleware.network import Network
+from sim.ros.middleware.process import Process, current_process
+
+
+class _EndCallback(NamedTuple):
+    """Something to call when a context ends; ``by_signal`` tells whether also when a signal ends it."""
+
+    get: Callable[[], Callable[[], None] | None]
+    by_signal: bool
+
+
+class _Begun:
+    """The contexts of a process that have begun and not ended."""
+
+    def __init__(self) -> None:
+        self.contexts: list[ref[Context]] = []
+
+
+class Context:
+    """One program's stay on the network. Thread-safe.
+
+    It belongs to the process that makes it; one that is given a host or a probe is a process of its own.
+    """
+
+    def __init__(self, *, host: Host | None = None, probe: Probe | None = None) -> None:
+        own = host is not None or probe is not None
+        self.process = Process(host or current_host(), probe=probe) if own else current_process()
+        self.host = self.process.host
+        self.probe = self.process.probe or self.host.probe
+        self.arguments = Arguments()
+        self._initialized = False
+        self._valid = False
+        self._domain_id = self.host.default_domain
+        self._network = self.host.network
+        self._end_callbacks: list[_EndCallback] = []
+
+    def init(self, args: Sequence[str] | None = None, *, domain_id: int | None = None) -> None:
+        """Begin; ``args`` None means the program's own arguments.
+
+        Raises:
+            RuntimeError: it was called before, or the domain id is negative.
+            RCLError, UnknownROSArgsError: a ROS argument cannot be read, or is none; or ``ROS_DOMAIN_ID``,
+                which counts without a ``domain_id``, is no number.
+        """
+        if domain_id is not None and domain_id < 0:
+            raise RuntimeError(f"Domain id ({domain_id}) should not be lower than zero.")
+        if self._initialized:
+            raise RuntimeError("Context.init() must only be called once")
+        arguments = arguments_of_program(sys.argv if args is None else args)
+        domain = self._domain_of_environment() if domain_id is None else domain_id
+        with self.host.lock:
+            self._initialized = True
+            self._valid = True
+            self.arguments = arguments
+            self._domain_id = domain
+            self._network = self.host.network_of(domain)
+            begun = self.process.keep(_Begun)
+            begun.contexts = [*_living(begun), ref(self)]
+        arguments.configure_logging()
+
+    def _domain_of_environment(self) -> int:
+        own = self.process.environment
+        return domain_of(own if DOMAIN_VARIABLE in own else os.environ)
+
+    @property
+    def handle(self) -> Handle:
+        """What keeps it from ending while it is used."""
+        return Handle(self)
+
+    @property
+    def destroyed(self) -> bool:
+        """Whether it has ended, or not begun."""
+        return not self._valid
+
+    def destroy(self) -> None:
+        """End, if that has not been done."""
+        self.try_shutdown()
+
+    def get_domain_id(self) -> int:
+        """The domain whose nodes this context's nodes see.
+
+        Raises:
+            RuntimeError: it has not begun.
+        """
+        if not self._initialized:
+            raise RuntimeError("Context must be initialized before it can have a domain id")
+        return self._domain_id
+
+    @property
+    def network(self) -> Network:
+        """The network of its domain; before it begins, that of the default domain."""
+        return self._network
+
+    def ok(self) -> bool:
+        """Whether it has begun and not ended."""
+        return self._valid
+
+    def shutdown(self) -> None:
+        """End: every executor of this context stops spinning.
+
+        Raises:
+            RuntimeError: it had not begun.
+            RCLError: it has ended already.
+        """
+        with self.host.lock:
+            if not self._initialized:
+                raise RuntimeError("Context must be initialized before it can be shutdown")
+            if not self._valid:
+                raise RCLError("failed to shutdown: rcl_shutdown already called on the given context")
+            if self.probe.callback_here():
+                self.process.shut_down_at = place_of_caller()
+            callbacks = self._end()
+        for each in callbacks:
+            _call(each)
+
+    def _end(self) -> list[_EndCallback]:
+        """End, and return what is to be called then. With the host's lock held."""
+        self._valid = False
+        callbacks, self._end_callbacks = self._end_callbacks, []
+        return callbacks
+
+    def _end_by_signal(self) -> None:
+        """End as rclpy's signal handler does it: what waits is woken, and nobody else is told."""
+        with self.host.lock:
+            callbacks = self._end() if self._valid else []
+        for each in callbacks:
+            if each.by_signal:
+                _call(each)
+
+    def try_shutdown(self) -> None:
+        """End, if that has not been done."""
+        if self._valid:
+            self.shutdown()
+
+    def on_shutdown(self, callback: Callable[[], None]) -> None:
+        """Have ``callback`` run when it is shut down, though not by a signal; bound methods are held weakly.
+
+        Raises:
+            TypeError: it cannot be called.
+        """
+        if not callable(callback):
+            raise TypeError("callback should be a callable, got {}", type(callback))
+        self._call_at_end(callback, by_signal=False)
+
+    def _wake_at_end(self, callback: Callable[[], None]) -> None:
+        """Have ``callback``, a bound method held weakly, run however it ends."""
+        self._call_at_end(callback, by_signal=True)
+
+    def _call_at_end(self, callback: Callable[[], None], *, by_signal: bool) -> None:
+        with self.host.lock:
+            if self._valid or not self._initialized:
+                get = WeakMethod(callback, self._forget) if ismethod(callback) else _always(callback)
+                self._end_callbacks.append(_EndCallback(get, by_signal))
+                return
+        callback()
+
+    def _forget(self, reference: WeakMethod[Any]) -> None:
+        self._end_callbacks = [each for each in self._end_callbacks if each.get is not reference]
+
+    def require_ok(self) -> None:
+        """Raise NotInitializedException unless it has begun and not ended."""
+        if not self._valid:
+            raise NotInitializedException("cannot use Context")
+
+    def __enter__(self) -> Context:
+        if not self._initialized:
+            self.init()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.try_shutdown()
+
+
+def end_contexts_by_signal(process: Process) -> None:
+    """End every context of a process as rclpy's signal handler does it."""
+    for reference in tuple(process.keep(_Begun).contexts):
+        context = reference()
+        if context is not None:
+            context._end_by_signal()
+
+
+def _living(begun: _Begun) -> list[ref[Context]]:
+    return [each for each in begun.contexts if (context := each()) is not None and context.ok()]
+
+
+def _always(callback: Callable[[], None]) -> Callable[[], Callable[[], None]]:
+    return lambda: callback
+
+
+def _call(end_callback: _EndCallback) -> None:
+    callback = end_callback.get()
+    if callback is not None:
+        callback()

@@ -1,0 +1,1 @@
+"""What a node has: publishers, subscriptions, timers, services, clients, guard conditions, events."""

@@ -1,0 +1,37 @@
+"""Services that a node offers by itself: no part of a learner's program, so the trace does not show them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from sim.ros.entities.service import Service
+
+if TYPE_CHECKING:
+    from sim.ros.qos.qos import QoSProfile
+    from sim.ros.scheduling.callback_groups import CallbackGroup
+    from sim.ros.scheduling.entity import OwnerNode
+
+
+class HiddenService(Service):
+    """A service that runs as any other does, unseen."""
+
+    traced = False
+
+
+def offer_hidden(
+    node: OwnerNode,
+    srv_type: Any,
+    srv_name: str,
+    callback: Callable[[Any, Any], Any],
+    qos_profile: QoSProfile,
+    callback_group: CallbackGroup | None = None,
+) -> HiddenService:
+    """Have a node offer a hidden service, by default in its default group."""
+    group = node.default_callback_group if callback_group is None else callback_group
+    name = node.resolve_service_name(srv_name)
+    with node.context.host.lock:
+        service = HiddenService(node, srv_type, name, callback, group, qos_profile)
+        node._agenda.add(service)
+        node.context.network.join_service(service)
+    return service

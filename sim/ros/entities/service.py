@@ -1,0 +1,151 @@
+"""Services: a queue of requests, and a callback that answers one at a time."""
+
+from __future__ import annotations
+
+import inspect
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from sim.interfaces import copy_message
+from sim.ros.entities.entity_handles import RequestId, ServiceHandle, ServiceInfo, answered
+from sim.ros.entities.service_introspection import (
+    ServiceIntrospection,
+    ServiceIntrospectionState,
+    reconfigured,
+)
+from sim.ros.middleware.delivery import Request
+from sim.ros.qos.qos import QoSProfile
+from sim.ros.scheduling.entity import Entity, OwnerNode, Taken
+from sim.trace.events import EntityKind
+
+if TYPE_CHECKING:
+    from sim.ros.clocks.clock import Clock
+    from sim.ros.scheduling.callback_groups import CallbackGroup
+
+SrvType = TypeVar("SrvType")
+SrvTypeRequest = TypeVar("SrvTypeRequest")
+SrvTypeResponse = TypeVar("SrvTypeResponse")
+"""For the type hints of programs, which import these from here as from rclpy."""
+
+
+class Service(Entity):
+    """Answers calls of one service. A callback that raises sends no reply.
+
+    ``srv_name`` is the service's name as the program wrote it; ``service_name`` is the full one.
+    """
+
+    kind = EntityKind.SERVICE
+    rank = 4
+
+    def __init__(
+        self,
+        node: OwnerNode,
+        srv_type: Any,
+        service_name: str,
+        callback: Callable[[Any, Any], Any],
+        callback_group: CallbackGroup,
+        qos_profile: QoSProfile,
+        *,
+        srv_name: str | None = None,
+    ) -> None:
+        super().__init__(node, service_name, callback_group)
+        self.srv_type = srv_type
+        self.srv_name = service_name if srv_name is None else srv_name
+        self.callback = callback
+        self.qos_profile = qos_profile
+        self.depth = qos_profile.queue_length or 0
+        self._probe = node.context.probe
+        self._introspection: ServiceIntrospection | None = None
+        self._queue: deque[Request] = deque()
+
+    @property
+    def handle(self) -> ServiceHandle:
+        """What keeps it alive while it is used, and takes from it."""
+        return ServiceHandle(self)
+
+    @property
+    def is_shown(self) -> bool:
+        """Whether it is part of a program that is on the trace."""
+        return self._probe.visible
+
+    @property
+    def service_name(self) -> str:
+        """The service's full name."""
+        return self.name
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Have every request taken and response sent told on ``<service>/_service_event``, or no more."""
+        self._introspection = reconfigured(
+            self._introspection, self, clock, service_event_qos_profile, introspection_state
+        )
+
+    def stop_introspection(self) -> None:
+        """Tell nothing any more. With the host's lock held."""
+        if self._introspection is not None:
+            self._introspection.stop()
+            self._introspection = None
+
+    def deliver(self, request: Request) -> None:
+        """A request arrived; a full queue loses its oldest. With the host's lock held."""
+        if self.depth and len(self._queue) >= self.depth:
+            lost = self._queue.popleft()
+            self._probe.dropped(self, len(self._queue), lost.call)
+        self._queue.append(request)
+        self._probe.ready(self, len(self._queue), request.call)
+        self.become_ready(request.sent)
+
+    def shown_callback(self) -> Callable[..., Any]:
+        """The callback."""
+        return self.callback
+
+    def take(self, now: int) -> Taken | None:
+        """Take the oldest request."""
+        if not self._queue:
+            return None
+        request = self._queue.popleft()
+        if self._queue:
+            self.ready_since = now
+        else:
+            self.nothing_left()
+        if self._introspection is not None:
+            self._introspection.request_received(request.client, request.call, request.data)
+        return Taken(request, request.call, now - request.sent, len(self._queue))
+
+    def invoke(self, taken: Taken) -> Any:
+        """Run the callback and send what it returns."""
+        request: Request = taken.data
+        outcome = self.callback(request.data, self.srv_type.Response())
+        if inspect.iscoroutine(outcome):
+            return self._answer_later(request, outcome)
+        self.send_response(outcome, request)
+        return None
+
+    async def _answer_later(self, request: Request, outcome: Any) -> None:
+        self.send_response(await outcome, request)
+
+    def send_response(self, response: Any, header: Request | ServiceInfo | RequestId) -> None:
+        """Answer the request of that header, or of its request id.
+
+        Raises:
+            TypeError: the response is not of the service's type, or the header came with no request.
+        """
+        request = header if isinstance(header, Request) else answered(header)
+        if not isinstance(response, self.srv_type.Response):
+            raise TypeError(f"Expected {self.srv_type.Response}, got {type(response)}")
+        copy = copy_message(response)
+        with self.node.context.host.lock:
+            self._probe.service_replied(request.call, self.name, copy)
+            if self._introspection is not None:
+                self._introspection.response_sent(request.client, request.call, copy)
+            request.answer(copy)
+
+    def removed(self) -> None:
+        """Its node has let it go."""
+        self.node.context.network.leave_service(self)
+        self.stop_introspection()

@@ -1,0 +1,93 @@
+"""Watching a service's calls: each step of a call is told on the topic ``<service>/_service_event``."""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from sim.interfaces import message
+
+if TYPE_CHECKING:
+    from sim.ros.clocks.clock import Clock
+    from sim.ros.entities.client import Client
+    from sim.ros.entities.service import Service
+    from sim.ros.qos.qos import QoSProfile
+
+_TOPIC_SUFFIX = "/_service_event"
+
+
+class ServiceIntrospectionState(IntEnum):
+    """How much of every call is told: nothing, its steps, or requests and responses too."""
+
+    OFF = 0
+    METADATA = 1
+    CONTENTS = 2
+
+
+class ServiceIntrospection:
+    """What one client or service tells of its calls; ``client`` is the gid of who asked.
+
+    Everything is called with the host's lock held.
+    """
+
+    def __init__(
+        self, owner: Client | Service, clock: Clock, qos_profile: QoSProfile, state: ServiceIntrospectionState
+    ) -> None:
+        self._event_type = owner.srv_type.Event
+        self._clock = clock
+        self._with_contents = state is ServiceIntrospectionState.CONTENTS
+        topic = f"{owner.name}{_TOPIC_SUFFIX}"
+        self._publisher = owner.node.create_publisher(self._event_type, topic, qos_profile)
+
+    def stop(self) -> None:
+        """Tell nothing any more."""
+        self._publisher.node.destroy_publisher(self._publisher)
+
+    def request_sent(self, client: bytes, call: int, request: Any) -> None:
+        """The client sent a request."""
+        self._tell("REQUEST_SENT", client, call, request=request)
+
+    def request_received(self, client: bytes, call: int, request: Any) -> None:
+        """The service took a request."""
+        self._tell("REQUEST_RECEIVED", client, call, request=request)
+
+    def response_sent(self, client: bytes, call: int, response: Any) -> None:
+        """The service answered a request."""
+        self._tell("RESPONSE_SENT", client, call, response=response)
+
+    def response_received(self, client: bytes, call: int, response: Any) -> None:
+        """The client took the answer to its request."""
+        self._tell("RESPONSE_RECEIVED", client, call, response=response)
+
+    def _tell(self, step: str, client: bytes, call: int, **contents: Any) -> None:
+        info_type: Any = message("service_msgs", "ServiceEventInfo")
+        event: Any = self._event_type()
+        event.info = info_type(
+            event_type=getattr(info_type, step),
+            stamp=self._clock.now().to_msg(),
+            client_gid=np.frombuffer(client, np.uint8),
+            sequence_number=call,
+        )
+        if self._with_contents:
+            for field, value in contents.items():
+                setattr(event, field, [value])
+        self._publisher.publish(event)
+
+
+def reconfigured(
+    former: ServiceIntrospection | None,
+    owner: Client | Service,
+    clock: Clock,
+    qos_profile: QoSProfile,
+    state: ServiceIntrospectionState,
+) -> ServiceIntrospection | None:
+    """What tells of an owner's calls in place of ``former``; None for OFF."""
+    chosen = ServiceIntrospectionState(state)
+    with owner.node.context.host.lock:
+        if former is not None:
+            former.stop()
+        if chosen is ServiceIntrospectionState.OFF:
+            return None
+        return ServiceIntrospection(owner, clock, qos_profile, chosen)

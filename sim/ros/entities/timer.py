@@ -1,0 +1,345 @@
+"""Timers, and rates that sleep by them.
+
+The rule of the next due time is rcl's: one period after the last due time, and if that is past, forward by
+whole periods. Ticks missed meanwhile are not made up.
+"""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
+
+from sim.ros.clocks.clock import Clock, ROSClock
+from sim.ros.clocks.ros_time_schedule import RosTimeSchedule, after_change
+from sim.ros.exceptions import ROSInterruptException
+from sim.ros.scheduling.entity import NEVER, Entity, OwnerNode, Taken
+from sim.ros.time.clock_type import ClockType
+from sim.ros.time.time import Time
+from sim.trace.events import EntityKind
+
+if TYPE_CHECKING:
+    from sim.clock import Signal
+    from sim.ros.context.context import Context
+    from sim.ros.scheduling.callback_groups import CallbackGroup
+
+
+def next_due(due: int, period: int, now: int) -> int:
+    """When a timer called at ``now``, due at ``due``, is due next. All in nanoseconds.
+
+    A tick at the very moment of a late call is missed like those before it: on a real machine the call is
+    always a little later than the moment that set it free.
+    """
+    following = due + period
+    if following > now:
+        return following
+    if period == 0:
+        return now
+    missed = (now - following) // period + 1
+    return following + missed * period
+
+
+class TimerInfo:
+    """A call of a timer: when it was due, and when it came."""
+
+    def __init__(
+        self,
+        *,
+        expected_call_time: int = 0,
+        actual_call_time: int = 0,
+        clock_type: ClockType = ClockType.SYSTEM_TIME,
+    ) -> None:
+        self._expected_call_time = Time(nanoseconds=expected_call_time, clock_type=clock_type)
+        self._actual_call_time = Time(nanoseconds=actual_call_time, clock_type=clock_type)
+
+    @property
+    def expected_call_time(self) -> Time:
+        """When the call was due."""
+        return self._expected_call_time
+
+    @property
+    def actual_call_time(self) -> Time:
+        """When the call came."""
+        return self._actual_call_time
+
+
+class Timer(Entity):
+    """Calls back every ``timer_period_ns`` nanoseconds, the first time one period after its creation.
+
+    A callback with a parameter annotated as TimerInfo gets one.
+
+    Whatever is asked of it or done with it after it was destroyed raises InvalidHandle.
+
+    Raises:
+        ValueError: the period is negative.
+    """
+
+    kind = EntityKind.TIMER
+    rank = 0
+
+    def __init__(
+        self,
+        node: OwnerNode,
+        timer_period_ns: int,
+        callback: Callable[..., Any] | None,
+        callback_group: CallbackGroup,
+        clock: Clock,
+        *,
+        autostart: bool = True,
+    ) -> None:
+        if timer_period_ns < 0:
+            raise ValueError("timer period must be non-negative")
+        super().__init__(node, "", callback_group)
+        self.callback = callback
+        self.clock = clock
+        self.period = timer_period_ns
+        self._host = node.context.host
+        self._last_call = self._host.clock.now()
+        self._canceled = True
+        self._ros_schedule: RosTimeSchedule | None = None
+        if isinstance(clock, ROSClock):
+            clock._drive(self)
+        if autostart:
+            self.reset()
+
+    @property
+    def callback(self) -> Callable[..., Any] | None:
+        """What is called when it is due."""
+        return self._callback
+
+    @callback.setter
+    def callback(self, value: Callable[..., Any] | None) -> None:
+        self._info_parameter = _info_parameter(value)
+        self._callback = value
+
+    @property
+    def timer_period_ns(self) -> int:
+        """The period; a new one keeps the pending due time."""
+        return self.period
+
+    @timer_period_ns.setter
+    def timer_period_ns(self, value: int) -> None:
+        if value < 0:
+            raise ValueError("timer period must be non-negative")
+        self.period = int(value)
+
+    def cancel(self) -> None:
+        """Call back no more until ``reset``."""
+        self.require_alive()
+        with self._host.lock:
+            self._canceled = True
+            self.nothing_left()
+
+    def reset(self) -> None:
+        """Be due one period from now, cancelled or not."""
+        self.require_alive()
+        with self._host.lock:
+            self._canceled = False
+            self.nothing_left()
+            if self._ros_schedule is not None:
+                self._ros_schedule.due = self.clock.now().nanoseconds + self.period
+                self._look_at_ros_time()
+                return
+            self.due = self._host.clock.now() + self.period
+            self.node._agenda.timer_set(self)
+
+    def is_canceled(self) -> bool:
+        """Whether it was cancelled."""
+        self.require_alive()
+        return self._canceled
+
+    def is_ready(self) -> bool:
+        """Whether it is due."""
+        self.require_alive()
+        return self.still_ready(self._host.clock.now())
+
+    def time_until_next_call(self) -> int | None:
+        """Nanoseconds until it is due, negative when late; None while cancelled."""
+        self.require_alive()
+        if self._canceled:
+            return None
+        if self._ros_schedule is not None:
+            return self._ros_schedule.due - self.clock.now().nanoseconds
+        return self.due - self._host.clock.now()
+
+    def time_since_last_call(self) -> int:
+        """Nanoseconds since the last call, or since it was made."""
+        self.require_alive()
+        if self._ros_schedule is not None:
+            return self.clock.now().nanoseconds - self._ros_schedule.last_call
+        return self._host.clock.now() - self._last_call
+
+    def shown_callback(self) -> Callable[..., Any] | None:
+        """The callback."""
+        return self._callback
+
+    def ready_at(self, now: int) -> bool:
+        """Whether it is due."""
+        return self.still_ready(now)
+
+    def falls_due(self, due: int) -> bool:
+        """Whether it still becomes ready at ``due``."""
+        return self.due == due and not (self.pending or self.destroyed or self._canceled)
+
+    def still_ready(self, now: int) -> bool:
+        """Whether it is due and neither cancelled nor destroyed."""
+        return not (self._canceled or self.destroyed) and self.due <= now
+
+    def take(self, now: int) -> Taken | None:
+        """Count this call and move on to the next due time."""
+        if not self.still_ready(now):
+            return None
+        late = now - self.due
+        if self._ros_schedule is not None:
+            return Taken(self._take_of_ros_time(self._ros_schedule), 0, late, 0)
+        info = None if self._info_parameter is None else self._info(now)
+        self.due = next_due(self.due, self.period, now)
+        self._last_call = now
+        self.nothing_left()
+        self.node._agenda.timer_set(self)
+        return Taken(info, 0, late, 0)
+
+    # While its clock follows ROS time; with the host's lock held
+
+    def _time_credit(self) -> int:
+        """What is left before the next call, for a change of its clock's source; 0 if that is not known."""
+        schedule = self._ros_schedule
+        if schedule is None:
+            return self.due - self._host.clock.now()
+        now = self.clock.now().nanoseconds
+        return schedule.credit if now == 0 else schedule.due - now
+
+    def _begin_on_ros_time(self) -> None:
+        """It was made while its clock follows ROS time."""
+        now = self.clock.now().nanoseconds
+        self._ros_schedule = RosTimeSchedule(now + self.period, now)
+
+    def _follow_ros_time(self, credit: int) -> None:
+        """The clock follows ROS time from now on."""
+        epoch = self._host.clock.epoch
+        before = RosTimeSchedule(epoch + self.due, epoch + self._last_call)
+        self._ros_schedule = after_change(before, self.clock.now().nanoseconds, self.period, credit)
+        self._look_at_ros_time()
+
+    def _follow_system_time(self, credit: int) -> None:
+        """The clock follows the run's clock again."""
+        schedule, self._ros_schedule = self._ros_schedule, None
+        if schedule is None:
+            return
+        clock = self._host.clock
+        now = clock.now()
+        schedule = after_change(schedule, clock.epoch + now, self.period, credit)
+        self.nothing_left()
+        self.due = max(schedule.due - clock.epoch, now)
+        self._last_call = max(schedule.last_call - clock.epoch, 0)
+        if not self._canceled:
+            self.node._agenda.timer_set(self)
+
+    def _ros_time_set(self) -> None:
+        """The clock was set."""
+        if self._ros_schedule is not None:
+            self._ros_schedule.time_set(self.clock.now().nanoseconds, self.period)
+            self._look_at_ros_time()
+
+    def _look_at_ros_time(self) -> None:
+        """Be ready, or not, as the schedule says."""
+        schedule = self._ros_schedule
+        if schedule is None or self._canceled or schedule.due > self.clock.now().nanoseconds:
+            self.due = NEVER  # until ROS time is set
+            self.nothing_left()
+        elif not self.pending:
+            self.due = self._host.clock.now()
+            self.become_ready(self.due)
+
+    def _take_of_ros_time(self, schedule: RosTimeSchedule) -> TimerInfo | None:
+        now = self.clock.now().nanoseconds
+        info = None
+        if self._info_parameter is not None:
+            info = TimerInfo(
+                expected_call_time=schedule.due, actual_call_time=now, clock_type=self.clock.clock_type
+            )
+        schedule.called(now, self.period)
+        self.nothing_left()
+        self._look_at_ros_time()
+        return info
+
+    def invoke(self, taken: Taken) -> Any:
+        """Run the callback."""
+        if self._callback is None:
+            return None
+        if self._info_parameter is None:
+            return self._callback()
+        return self._callback(**{self._info_parameter: taken.data})
+
+    def _info(self, now: int) -> TimerInfo:
+        return TimerInfo(
+            expected_call_time=self.clock._time_at(self.due).nanoseconds,
+            actual_call_time=self.clock._time_at(now).nanoseconds,
+            clock_type=self.clock.clock_type,
+        )
+
+
+def _info_parameter(callback: Callable[..., Any] | None) -> str | None:
+    """The name of the parameter by which a callback asks for a TimerInfo."""
+    if callback is None:
+        return None
+    try:
+        parameters = inspect.signature(callback).parameters.values()
+    except ValueError:  # some functions written in C do not tell theirs
+        return None
+    return next((each.name for each in parameters if each.annotation is TimerInfo), None)
+
+
+class Rate:
+    """Sleeps in step with a timer, whose callback it becomes; needs somebody else to spin the timer's node.
+
+    A tick that nobody slept for ends the next sleep at once. Thread-safe.
+    """
+
+    def __init__(self, timer: Timer, *, context: Context) -> None:
+        self._context = context
+        self._host = context.host
+        self._sleepers: list[Signal] = []
+        self._ticked = False
+        self._destroyed = False
+        self._timer = timer
+        timer.callback = self.tick
+        context._wake_at_end(self._let_all_go)
+
+    def tick(self) -> None:
+        """The timer's callback: let the sleepers go on."""
+        with self._host.lock:
+            self._ticked = not self._sleepers
+            self._let_all_go()
+
+    def sleep(self) -> None:
+        """Sleep until the timer's next tick.
+
+        Raises:
+            RuntimeError: the rate was destroyed.
+            ROSInterruptException: the context ended.
+        """
+        with self._host.lock:
+            if not self._context.ok():
+                raise ROSInterruptException
+            if self._destroyed:
+                raise RuntimeError("Rate cannot sleep because it has been destroyed")
+            if self._ticked:
+                self._ticked = False
+                return
+            tick = self._host.clock.signal()
+            self._sleepers.append(tick)
+        tick.wait(None)
+        if not self._context.ok():
+            raise ROSInterruptException
+
+    def destroy(self) -> None:
+        """Let the sleepers go, and sleep no more."""
+        self._destroyed = True
+        self._let_all_go()
+
+    def _let_all_go(self) -> None:
+        with self._host.lock:
+            sleepers, self._sleepers = self._sleepers, []
+            for each in sleepers:
+                each.set()

@@ -1,0 +1,75 @@
+"""Checking that a class is one of ROS 2's message or service types."""
+
+from __future__ import annotations
+
+from typing import Any, TypeVar
+
+from sim.interfaces import Message, ServiceType
+
+Msg = Message
+Srv = ServiceType
+MsgT = TypeVar("MsgT", bound=Message)
+SrvT = TypeVar("SrvT", bound=ServiceType)
+SrvRequestT = TypeVar("SrvRequestT", bound=Message)
+SrvResponseT = TypeVar("SrvResponseT", bound=Message)
+SrvEventT = TypeVar("SrvEventT", bound=Message)
+
+
+class NoTypeSupportImportedException(Exception):
+    """A type's support could not be loaded; the types made here need none."""
+
+    __module__ = "rclpy.type_support"
+
+
+def check_for_type_support(msg_or_srv_type: Any) -> None:
+    """Nothing for a class made from a definition.
+
+    Raises:
+        AttributeError: it is something else.
+        NoTypeSupportImportedException: it is a foreign interface class that cannot load its support.
+    """
+    if _is_message(msg_or_srv_type) or isinstance(msg_or_srv_type, ServiceType):
+        return
+    kind = type(msg_or_srv_type)
+    if not hasattr(kind, "_TYPE_SUPPORT"):
+        raise AttributeError(
+            f"type object '{kind.__name__}' has no attribute '_TYPE_SUPPORT' "
+            "This might be a ROS 1 message type but it should be a ROS 2 message type. "
+            "Make sure to source your ROS 2 workspace after your ROS 1 workspace."
+        )
+    if kind._TYPE_SUPPORT is None:
+        kind.__import_type_support__()
+    if kind._TYPE_SUPPORT is None:
+        raise NoTypeSupportImportedException
+
+
+def check_is_valid_msg_type(msg_type: Any) -> None:
+    """Nothing for a message class.
+
+    Raises:
+        AttributeError: it was not made from a definition.
+        RuntimeError: it is a service class.
+    """
+    check_for_type_support(msg_type)
+    if not _is_message(msg_type):
+        raise RuntimeError(
+            f"The message type provided is not valid ({msg_type}), this might be a service or action"
+        )
+
+
+def check_is_valid_srv_type(srv_type: Any) -> None:
+    """Nothing for a service class.
+
+    Raises:
+        AttributeError: it was not made from a definition.
+        RuntimeError: it is a message class.
+    """
+    check_for_type_support(srv_type)
+    if _is_message(srv_type):
+        raise RuntimeError(
+            f"The service type provided is not valid ({srv_type}), this might be a message or action"
+        )
+
+
+def _is_message(kind: Any) -> bool:
+    return isinstance(kind, type) and issubclass(kind, Message)

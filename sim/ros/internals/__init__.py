@@ -1,0 +1,1 @@
+"""What only programs need that reach into rclpy's compiled part."""

@@ -1,0 +1,157 @@
+"""Events of publishers and subscriptions without a callback: a program takes their state itself."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from sim.ros.entities.event_handler import (
+    DeadlineMissedInfo,
+    EventHandler,
+    IncompatibleQoSInfo,
+    IncompatibleTypeInfo,
+    LivelinessChangedInfo,
+    LivelinessLostInfo,
+    MatchedInfo,
+    MessageLostInfo,
+    QoSPublisherEventType,
+    QoSSubscriptionEventType,
+)
+from sim.ros.entities.publisher import Publisher
+from sim.ros.entities.qos_timing import limit
+from sim.ros.entities.subscription import Subscription
+from sim.ros.handle import Handle
+from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
+from sim.ros.scheduling.watched import BareEntity
+
+_PUBLISHER_INFOS: dict[QoSPublisherEventType, type] = {
+    QoSPublisherEventType.RCL_PUBLISHER_OFFERED_DEADLINE_MISSED: DeadlineMissedInfo,
+    QoSPublisherEventType.RCL_PUBLISHER_LIVELINESS_LOST: LivelinessLostInfo,
+    QoSPublisherEventType.RCL_PUBLISHER_OFFERED_INCOMPATIBLE_QOS: IncompatibleQoSInfo,
+    QoSPublisherEventType.RCL_PUBLISHER_INCOMPATIBLE_TYPE: IncompatibleTypeInfo,
+    QoSPublisherEventType.RCL_PUBLISHER_MATCHED: MatchedInfo,
+}
+_SUBSCRIPTION_INFOS: dict[QoSSubscriptionEventType, type] = {
+    QoSSubscriptionEventType.RCL_SUBSCRIPTION_REQUESTED_DEADLINE_MISSED: DeadlineMissedInfo,
+    QoSSubscriptionEventType.RCL_SUBSCRIPTION_LIVELINESS_CHANGED: LivelinessChangedInfo,
+    QoSSubscriptionEventType.RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS: IncompatibleQoSInfo,
+    QoSSubscriptionEventType.RCL_SUBSCRIPTION_MESSAGE_LOST: MessageLostInfo,
+    QoSSubscriptionEventType.RCL_SUBSCRIPTION_INCOMPATIBLE_TYPE: IncompatibleTypeInfo,
+    QoSSubscriptionEventType.RCL_SUBSCRIPTION_MATCHED: MatchedInfo,
+}
+
+
+class BareEvent(BareEntity, EventHandler):
+    """One kind of event of a publisher or subscription: what comes from now on, and the matches there are.
+
+    Deadlines and leases are for handlers with a callback; where none is set, none is ever missed.
+
+    Raises:
+        NotImplementedError: the endpoint has a deadline, or a lease, that this event is about.
+    """
+
+    def __init__(self, endpoint: Publisher | Subscription, info: Any) -> None:
+        node = endpoint.node
+        _demand_no_limit(endpoint, info)
+        with node.context.host.lock:
+            super().__init__(node, endpoint.topic_name, _never_called, ReentrantCallbackGroup(), info)
+            self._endpoint = endpoint
+            endpoint.events.tell(self)
+            if isinstance(info, MatchedInfo):
+                self._count_matches(_number_of_matches(endpoint))
+            self._alive = None
+            if isinstance(info, LivelinessChangedInfo) and isinstance(endpoint, Subscription):
+                self._alive = _AliveCount(self, endpoint)
+
+    def take_event(self) -> Any:
+        """Take the state, whether it has changed or not; its changes count anew.
+
+        NotImplementedError: a publisher has a lease that it may let end.
+        """
+        if self._alive is not None and self._alive.met_lease:
+            raise NotImplementedError("EventHandle: the liveliness of a publisher with a lease")
+        with self, self.node.context.host.lock:
+            return self.take_info()
+
+    def _count_matches(self, made: int) -> None:
+        if made:
+            self.info = MatchedInfo(made, made, made, made)
+            self.changed()
+
+    def destroy(self) -> None:
+        """Count nothing any more."""
+        with self.node.context.host.lock:
+            if not self.destroyed:
+                self.destroyed = True
+                self._endpoint.events.tell_no_more(self)
+                if self._alive is not None:
+                    self._alive.stop()
+
+
+class _AliveCount:
+    """Counts the publishers of a subscription, all of which are alive as long as none has a lease."""
+
+    def __init__(self, event: BareEvent, subscription: Subscription) -> None:
+        self.met_lease = False
+        self._event = event
+        self._watchers = subscription.liveliness_watchers
+        self._watchers.append(self)
+        for each in _publishers_of(subscription):
+            self.found(each)
+
+    def found(self, publisher: Publisher) -> None:
+        """A publisher is matched."""
+        self.met_lease = self.met_lease or publisher.lease is not None
+        self._count(1)
+
+    def gone(self, _publisher: Publisher) -> None:
+        """A publisher that was matched is gone."""
+        self._count(-1)
+
+    def stop(self) -> None:
+        """Count nothing any more."""
+        self._watchers.remove(self)
+
+    def _count(self, alive: int) -> None:
+        info = self._event.info
+        info.alive_count += alive
+        info.alive_count_change += alive
+        self._event.changed()
+
+
+def event_handle(
+    endpoint: Handle | Subscription, event_type: QoSPublisherEventType | QoSSubscriptionEventType
+) -> BareEvent:
+    """Make the event of that type of a publisher or subscription, given by its handle.
+
+    Raises:
+        TypeError: the handle is of neither, or the other one has events of this type.
+        NotImplementedError: as ``BareEvent`` does.
+    """
+    owner = endpoint.owner if isinstance(endpoint, Handle) else endpoint
+    if isinstance(owner, Publisher) and isinstance(event_type, QoSPublisherEventType):
+        return BareEvent(owner, _PUBLISHER_INFOS[event_type]())
+    if isinstance(owner, Subscription) and isinstance(event_type, QoSSubscriptionEventType):
+        return BareEvent(owner, _SUBSCRIPTION_INFOS[event_type]())
+    raise TypeError(f"{type(owner).__name__} has no event {event_type!r}")
+
+
+def _publishers_of(subscription: Subscription) -> list[Any]:
+    publishers = subscription.node.context.network.publishers(subscription.name)
+    return [each for each in publishers if each.reaches(subscription)]
+
+
+def _number_of_matches(endpoint: Publisher | Subscription) -> int:
+    if isinstance(endpoint, Publisher):
+        return endpoint.get_subscription_count()
+    return len(_publishers_of(endpoint))
+
+
+def _demand_no_limit(endpoint: Publisher | Subscription, info: Any) -> None:
+    if isinstance(info, DeadlineMissedInfo) and limit(endpoint.qos_profile.deadline) is not None:
+        raise NotImplementedError("EventHandle: a deadline is told to deadline callbacks only")
+    if isinstance(info, LivelinessLostInfo) and isinstance(endpoint, Publisher) and endpoint.lease:
+        raise NotImplementedError("EventHandle: a lost lease is told to liveliness callbacks only")
+
+
+def _never_called(_info: Any) -> None:
+    """Stand in for a callback: the state is taken by the program."""

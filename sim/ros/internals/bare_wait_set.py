@@ -1,0 +1,91 @@
+"""A wait set that a program fills and waits on itself, without an executor."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sim.ros.entities.guard_condition import NodeGuardCondition
+from sim.ros.exceptions import RCLError
+from sim.ros.scheduling.program_wait_set import ProgramWaitSet
+from sim.ros.scheduling.waitable import NumberOfEntities
+
+if TYPE_CHECKING:
+    from sim.ros.context.context import Context
+    from sim.ros.handle import Handle
+    from sim.ros.scheduling.entity import Entity
+    from sim.ros.scheduling.watched import Watcher
+
+
+class BareWaitSet(ProgramWaitSet):
+    """Waits for as many entities of each kind as are announced; one thread at a time uses it.
+
+    Entities of a node can only be waited for while no executor serves that node.
+    """
+
+    def __init__(
+        self,
+        number_of_subscriptions: int,
+        number_of_guard_conditions: int,
+        number_of_timers: int,
+        number_of_clients: int,
+        number_of_services: int,
+        number_of_events: int,
+        context: Handle,
+    ) -> None:
+        super().__init__(
+            NumberOfEntities(
+                number_of_subscriptions,
+                number_of_guard_conditions,
+                number_of_timers,
+                number_of_clients,
+                number_of_services,
+                number_of_events,
+            )
+        )
+        owner: Context = context.owner
+        self._host = owner.host
+        self._more = owner.host.clock.signal()
+
+    def clear_entities(self) -> None:
+        """Wait for nothing any more; as much can be added as at first."""
+        for waited in self._waited.values():
+            waited.clear()
+        for ready in self._ready.values():
+            ready.clear()
+
+    def wait(self, timeout_nsec: int = -1) -> None:
+        """Wait until something is ready, or so many nanoseconds; a negative time waits for ever.
+
+        Raises:
+            RCLError: there is nothing to wait for.
+            NotImplementedError: an executor serves something of it.
+        """
+        if not any(self._waited.values()):
+            raise RCLError("failed to wait on wait set: wait set is empty")
+        clock = self._host.clock
+        deadline = None if timeout_nsec < 0 else clock.now() + timeout_nsec
+        while True:
+            with self._host.lock:
+                now = clock.now()
+                due = self.look(self, now)
+            if any(map(any, self._ready.values())) or (deadline is not None and now >= deadline):
+                return
+            self._more.wait(min((each for each in (due, deadline) if each is not None), default=None))
+
+    def wake(self) -> None:
+        """Have the waiting thread look again."""
+        self._more.set()
+
+    def _entity_is_ready(self, entity: Entity, watcher: Watcher, now: int) -> bool:
+        agenda = entity.node._agenda
+        if agenda.executor is not None:
+            raise NotImplementedError("WaitSet: waiting for what an executor serves is not supported")
+        agenda.watch(watcher)
+        agenda.collect_due(now)
+        ready = entity.pending and entity.still_ready(now)
+        if isinstance(entity, NodeGuardCondition):
+            entity.nothing_left()
+        return ready
+
+    def _entity_due(self, entity: Entity) -> int | None:
+        return entity.node._agenda.next_due()

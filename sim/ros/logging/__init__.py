@@ -1,0 +1,1 @@
+"""Loggers, their filters, and how a line looks on a terminal."""

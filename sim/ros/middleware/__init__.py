@@ -1,0 +1,1 @@
+"""The machine: host, processes, network, and what is on its way; knows endpoints by small protocols."""

@@ -1,0 +1,134 @@
+"""What published messages hold, on its way to the trace."""
+
+from collections.abc import Callable
+from typing import Any, cast
+
+import msgspec
+
+from sim.interfaces import Message, definition, to_cdr, type_name
+from sim.ros.middleware.type_description import type_hash
+from sim.ros.qos.offered import offered_qos_text
+from sim.ros.qos.qos import QoSProfile
+from sim.trace.events import (
+    AnyEvent,
+    ContentsLost,
+    Event,
+    MessageId,
+    MessageSent,
+    TopicAppeared,
+    TopicId,
+    escape_surrogates,
+)
+
+_BOUND = 32_000_000
+"""Bytes of messages, as far as can be told, that may wait to be encoded."""
+
+
+class _Topic:
+    """A topic's number, and how long its last message was."""
+
+    __slots__ = ("number", "size")
+
+    def __init__(self, number: TopicId) -> None:
+        self.number = number
+        self.size = 0
+
+
+class _Content:
+    """A message of a topic that nobody changes any more."""
+
+    __slots__ = ("message", "topic")
+
+    def __init__(self, message: Message, topic: _Topic) -> None:
+        self.message = message
+        self.topic = topic
+
+
+class _MessageWaiting(Event, frozen=True, tag="message"):
+    """A ``MessageSent`` whose data are not encoded yet: packed, the two are the same."""
+
+    message: MessageId
+    topic: TopicId
+    data: _Content
+
+
+class Contents:
+    """Turns messages into events with their contents, while ``wanted``.
+
+    On the real clock encoding would hold up the thread that publishes, so it happens in ``pack``, on the
+    thread that sends the events; what does not fit meanwhile is thrown away and counted. ``make_room`` is
+    given on virtual time: nothing is thrown away, since it has waiting events sent, and messages are encoded
+    at once, which costs no virtual time and saves a copy.
+
+    ``events`` is called with the host's lock held, ``pack`` on one thread at a time.
+    """
+
+    def __init__(self, *, wanted: bool, make_room: Callable[[], None] | None = None) -> None:
+        self.wanted = wanted
+        self._make_room = make_room
+        self._encoder = msgspec.msgpack.Encoder(enc_hook=_encode)
+        self._topics: dict[tuple[str, type[Message]], _Topic] = {}
+        # Two counters, each with a thread of its own that sets it.
+        self._taken = 0
+        self._packed = 0
+        self._lost = 0
+
+    @property
+    def keeps_messages(self) -> bool:
+        """Whether messages are looked at later, so that nobody may be handed them to change."""
+        return self.wanted and self._make_room is None
+
+    def events(
+        self, now: int, message: MessageId, topic: str, data: Message, qos: QoSProfile
+    ) -> list[AnyEvent]:
+        """What goes on the trace besides the publication; ``qos`` is what its publisher offers."""
+        if self._taken - self._packed > _BOUND and self._make_room is not None:
+            self._make_room()
+        if self._taken - self._packed > _BOUND:
+            self._lost += 1
+            return [ContentsLost(now, self._lost)]
+        known = self._topics.get((topic, type(data)))
+        if known is None:
+            known = self._topics[topic, type(data)] = _Topic(len(self._topics) + 1)
+            return [
+                _appeared(now, known.number, topic, type(data), qos),
+                self._sent(now, message, known, data),
+            ]
+        return [self._sent(now, message, known, data)]
+
+    def _sent(self, now: int, message: MessageId, topic: _Topic, data: Message) -> AnyEvent:
+        self._taken += topic.size
+        if self._make_room is None:
+            return cast("AnyEvent", _MessageWaiting(now, message, topic.number, _Content(data, topic)))
+        packed = _cdr(data)
+        topic.size = 0 if packed is None else len(packed)
+        return MessageSent(now, message, topic.number, packed)
+
+    def pack(self, events: list[AnyEvent]) -> bytes:
+        """Do what ``sim.trace.events.encode`` does, for events among which are some of ``events``."""
+        taken = self._taken
+        try:
+            packed = self._encoder.encode(events)
+        except UnicodeEncodeError:
+            packed = self._encoder.encode(escape_surrogates(events))
+        self._packed = taken
+        return packed
+
+
+def _appeared(now: int, number: TopicId, topic: str, kind: type[Message], qos: QoSProfile) -> TopicAppeared:
+    return TopicAppeared(
+        now, number, topic, type_name(kind), definition(kind), str(type_hash(kind)), offered_qos_text(qos)
+    )
+
+
+def _encode(content: Any) -> bytes | None:
+    packed = _cdr(content.message)
+    content.topic.size = 0 if packed is None else len(packed)
+    return packed
+
+
+def _cdr(message: Message) -> bytes | None:
+    try:
+        return to_cdr(message)
+    except Exception:  # noqa: BLE001 -- what a program put into a list of a message's can be anything
+        return None

@@ -1,0 +1,109 @@
+"""The machine that nodes run on: its clock, its network, its trace, and what the run was set up with.
+
+An engine installs a host before the learner's program is imported; without one, the first use makes a host
+on wall time that keeps no trace, so that the model works as a plain library too.
+"""
+
+import threading
+from collections.abc import Iterator
+from contextlib import AbstractContextManager
+from dataclasses import dataclass, field
+from itertools import count
+from typing import Protocol
+from weakref import ref
+
+from sim.clock import Clock, RealClock
+from sim.probes.probe import Probe, SilentProbe
+from sim.ros.middleware.domain import domain_of_machine
+from sim.ros.middleware.host_lock import lock_on
+from sim.ros.middleware.network import Network
+from sim.ros.middleware.tuning import Tuning
+
+# Kept from before sim.clock.stdlib puts the virtual one in its place.
+_RLock = threading.RLock
+
+
+@dataclass(eq=False)
+class Host:
+    """What every context of this process shares.
+
+    ``lock`` guards all state of executors, groups and queues; it is never held while something waits or
+    while a callback runs. ``threads`` replaces the number of threads of every executor made (None: as the
+    program says), ``tuning`` is what else was changed about the programs. ``default_domain`` is that of
+    whatever is no program. ``takes_signals`` tells that the whole process is the program's, so that rclpy's
+    signal handlers may be installed in it.
+    """
+
+    clock: Clock
+    probe: Probe
+    threads: int | None = None
+    tuning: Tuning | None = None
+    lock: AbstractContextManager[bool] = field(init=False)
+    default_domain: int = field(default_factory=domain_of_machine)
+    takes_signals: bool = False
+    _gids: Iterator[int] = field(default_factory=lambda: count(1))
+    _networks: dict[int, Network] = field(default_factory=dict)
+    _waiters: "list[ref[WaitsExplained]]" = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        self.lock = lock_on(self.clock)
+
+    @property
+    def network(self) -> Network:
+        """The network of the default domain."""
+        return self.network_of(self.default_domain)
+
+    def network_of(self, domain: int) -> Network:
+        """The network of a domain."""
+        with self.lock:
+            return self._networks.setdefault(domain, Network())
+
+    def new_gid(self) -> bytes:
+        """16 bytes that no other publisher, subscription or client has; the same in every run alike."""
+        return next(self._gids).to_bytes(16, "little")
+
+    def explain_waits(self) -> int | None:
+        """Put on the trace which callbacks wait now, and why; call it before time passes.
+
+        Returns when the next timer falls due: whether it has to wait shows only then.
+        """
+        with self.lock:
+            waiters = [each for reference in self._waiters if (each := reference()) is not None]
+            dues = [waiter.explain_waits() for waiter in waiters]
+        return min((due for due in dues if due is not None), default=None)
+
+    def explain_waits_of(self, waiter: "WaitsExplained") -> None:
+        """Ask ``waiter`` too, after those that came before it, for as long as it lives."""
+        with self.lock:
+            self._waiters.append(ref(waiter, self._waiters.remove))
+
+
+class WaitsExplained(Protocol):
+    """Something that can tell why its callbacks wait."""
+
+    def explain_waits(self) -> int | None:
+        """Record the waits that began or whose reason changed; returns when the next timer falls due.
+
+        Called with the host's lock held.
+        """
+
+
+_host: Host | None = None
+_making = _RLock()
+
+
+def current_host() -> Host:
+    """The host of this process."""
+    global _host  # noqa: PLW0603 -- a process has one host, as a machine has one network
+    with _making:
+        if _host is None:
+            clock = RealClock()
+            _host = Host(clock=clock, probe=SilentProbe(clock), takes_signals=True)
+        return _host
+
+
+def install(host: Host) -> None:
+    """Make ``host`` the host of this process; contexts made before keep theirs."""
+    global _host  # noqa: PLW0603
+    with _making:
+        _host = host

@@ -1,0 +1,189 @@
+"""What an operating system's process is to rclpy: a program's arguments, and what modules keep globally.
+
+Programs that would be processes of their own on a real machine run here on threads of one process. Each has
+its own default context, global executor, loggers and arguments all the same: whatever rclpy keeps in a
+module is kept by ``of_process`` instead. A thread belongs to the process of the thread that made it.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+from collections import UserList
+from collections.abc import Callable, Iterator, Mapping, MutableMapping
+from dataclasses import dataclass, field
+from itertools import count
+from typing import Any, Self, SupportsIndex, TypeVar
+
+from sim.probes.probe import Probe
+from sim.ros.middleware.endpoints import Lifetime
+from sim.ros.middleware.host import Host, current_host
+
+KeptT = TypeVar("KeptT")
+
+
+@dataclass(eq=False)
+class Process:
+    """One program on the host. Thread-safe.
+
+    ``number`` and ``label`` tell it from others on the trace, 0 and empty for the only one. ``arguments``
+    is what its ``sys.argv`` shows, ``environment`` the variables that differ from the others'. ``probe`` None
+    stands for the host's; ``shows_stdout`` tells whether what it prints is for the person to see.
+    ``take_output`` gets every line that it prints or logs, and whether it belongs on stderr, in place of the
+    run; None: the run has them.
+    ``has_keyboard`` tells whether it gets what is typed at the run's terminal.
+    ``default_context`` is what functions use that are given none; None before it is first asked for and
+    after its end.
+    ``pool_numbers`` numbers its thread pools in the order of their making; ``callbacks`` and ``spins`` count
+    the callbacks made and the spins begun so far; ``shut_down_at`` is where one of its own callbacks shut
+    rclpy down, empty as long as none did.
+    """
+
+    host: Host
+    number: int = 0
+    label: str = ""
+    arguments: list[str] = field(default_factory=lambda: list(sys.argv))
+    environment: dict[str, str] = field(default_factory=dict)
+    probe: Probe | None = None
+    shows_stdout: bool = True
+    take_output: Callable[[str, bool], None] | None = None
+    has_keyboard: bool = True
+    default_context: Lifetime | None = None
+    pool_numbers: Iterator[int] = field(default_factory=count)
+    callbacks: int = 0
+    spins: int = 0
+    shut_down_at: str = ""
+    _kept: dict[Callable[[], Any], Any] = field(default_factory=dict)
+
+    def keep(self, make: Callable[[], KeptT]) -> KeptT:
+        """What ``make`` made for this process, now or when first asked."""
+        if make not in self._kept:
+            with self.host.lock:
+                self._kept.setdefault(make, make())
+        kept: KeptT = self._kept[make]
+        return kept
+
+    def enter(self) -> None:
+        """Have the calling thread, and all that it starts from now on, belong to this process."""
+        _here().ros_process = self
+
+    def start_thread(self, target: Callable[[], None], name: str) -> None:
+        """Run ``target`` on a new thread of this process, on the host's time."""
+
+        def run() -> None:
+            self.enter()
+            target()
+
+        self.host.clock.start_thread(run, name)
+
+
+_main: Process | None = None
+
+
+def current_process() -> Process:
+    """The process that the calling thread belongs to: the host's first unless it was told otherwise."""
+    return process_of(_here())
+
+
+def process_of(thread: threading.Thread) -> Process:
+    """The process that a thread belongs to."""
+    process: Process | None = getattr(thread, "ros_process", None)
+    return _main_process() if process is None else process
+
+
+def of_process(make: Callable[[], KeptT]) -> KeptT:
+    """What ``make`` made for the calling thread's process, now or when first asked."""
+    return current_process().keep(make)
+
+
+def _main_process() -> Process:
+    global _main  # noqa: PLW0603 -- goes with the one host
+    host = current_host()
+    if _main is None or _main.host is not host:
+        _main = Process(host)
+    return _main
+
+
+def _here() -> Any:
+    return threading.current_thread()
+
+
+def share_machine() -> None:
+    """Let several processes live in this one.
+
+    Threads inherit theirs; ``sys.argv`` is each one's own, and ``os.environ`` shows its own variables first.
+    The threads that belong to none keep the present arguments. Call it once, with the host installed.
+    """
+    _main_process()
+    make: Any = threading.Thread.__init__
+
+    def make_inheriting(thread: Any, *args: Any, **kwargs: Any) -> None:
+        make(thread, *args, **kwargs)
+        thread.ros_process = getattr(_here(), "ros_process", None)
+
+    thread_class: Any = threading.Thread
+    thread_class.__init__ = make_inheriting
+    sys.argv = _Arguments()  # type: ignore[assignment]
+    os.environ = _Environment(os.environ)  # type: ignore[assignment]  # noqa: B003 -- nothing is to be cleared
+
+
+class _Arguments(UserList[str]):
+    """The arguments of whichever process asks."""
+
+    def __init__(self) -> None:
+        """Take over nothing: the processes hold the arguments."""
+
+    @property
+    def data(self) -> list[str]:  # type: ignore[override]
+        """The arguments of the calling thread's process."""
+        return current_process().arguments
+
+    def __getitem__(self, index: SupportsIndex | slice) -> Any:
+        return self.data[index]
+
+    def copy(self) -> list[str]:  # type: ignore[override]
+        """A plain list of them."""
+        return list(self.data)
+
+
+class _Environment(MutableMapping[str, str]):
+    """The environment of whichever process asks: the machine's, with the process's own variables over it."""
+
+    def __init__(self, machine: MutableMapping[str, str]) -> None:
+        self._machine = machine
+
+    def _own(self) -> dict[str, str]:
+        return current_process().environment
+
+    def __getitem__(self, name: str) -> str:
+        own = self._own()
+        return own[name] if name in own else self._machine[name]
+
+    def __setitem__(self, name: str, value: str) -> None:
+        self._own().pop(name, None)
+        self._machine[name] = value
+
+    def __delitem__(self, name: str) -> None:
+        if self._own().pop(name, None) is None:
+            del self._machine[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter({**self._machine, **self._own()})
+
+    def __len__(self) -> int:
+        return len({**self._machine, **self._own()})
+
+    def __or__(self, other: Mapping[str, str]) -> dict[str, str]:
+        return {**self, **other}
+
+    def __ror__(self, other: Mapping[str, str]) -> dict[str, str]:
+        return {**other, **self}
+
+    def __ior__(self, other: Mapping[str, str]) -> Self:
+        self.update(other)
+        return self
+
+    def copy(self) -> dict[str, str]:
+        """A plain dictionary of it."""
+        return dict(self)

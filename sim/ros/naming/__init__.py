@@ -1,0 +1,1 @@
+"""Names of nodes, topics, services and parameters: rules, expansion, remapping."""

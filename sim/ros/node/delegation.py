@@ -1,0 +1,31 @@
+"""Methods of a node that a part of it does: rclpy has them all on one class."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import wraps
+from typing import Any, Concatenate, Generic, ParamSpec, TypeVar
+
+PartT = TypeVar("PartT")
+ParametersT = ParamSpec("ParametersT")
+ResultT = TypeVar("ResultT")
+
+
+class Delegated(Generic[PartT]):
+    """Makes methods of Node out of those of the part that a node has as ``attribute``."""
+
+    def __init__(self, attribute: str) -> None:
+        self._attribute = attribute
+
+    def __call__(
+        self, method: Callable[Concatenate[PartT, ParametersT], ResultT]
+    ) -> Callable[Concatenate[Any, ParametersT], ResultT]:
+        """Have a node's part do it; a wrong call is told as one of Node's: programs know no other class."""
+        attribute = self._attribute
+
+        @wraps(method)
+        def call(node: Any, /, *args: ParametersT.args, **kwargs: ParametersT.kwargs) -> ResultT:
+            return method(getattr(node, attribute), *args, **kwargs)
+
+        method.__qualname__ = call.__qualname__ = f"Node.{method.__name__}"
+        return call

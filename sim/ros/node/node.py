@@ -1,0 +1,346 @@
+"""Nodes: what a program builds its publishers, subscriptions, timers, services and clients on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+from sim.ros.clocks.clock import Clock, ROSClock
+from sim.ros.context.arguments import arguments_of_node, parameters_for
+from sim.ros.context.context import Context
+from sim.ros.context.utilities import get_default_context
+from sim.ros.entities.client import Client
+from sim.ros.entities.guard_condition import NodeGuardCondition
+from sim.ros.entities.publisher import Publisher
+from sim.ros.entities.service import Service
+from sim.ros.entities.subscription import Subscription
+from sim.ros.entities.timer import Timer
+from sim.ros.handle import Handle
+from sim.ros.logging.logger import RcutilsLogger, get_logger
+from sim.ros.naming.node_names import NodeNames
+from sim.ros.naming.remapping import Remapping
+from sim.ros.node.delegation import Delegated
+from sim.ros.node.graph import Graph
+from sim.ros.node.logging_service import LoggingService
+from sim.ros.node.node_entities import NodeEntities
+from sim.ros.node.parameter_events import parameter_event_publisher, publish_change
+from sim.ros.node.parameter_service import ParameterService
+from sim.ros.node.rosout import RosoutPublisher, offer_rosout, withdraw_rosout
+from sim.ros.node.time_source import TimeSource
+from sim.ros.node.tuned_node import TunedNode
+from sim.ros.node.type_description_service import TypeDescriptionService
+from sim.ros.parameters.checks import PARAM_REL_TOL
+from sim.ros.parameters.parameter import Parameter
+from sim.ros.parameters.store import ParameterChange, ParameterStore
+from sim.ros.scheduling.agenda import Agenda
+from sim.ros.scheduling.callback_groups import (
+    CallbackGroup,
+)
+
+if TYPE_CHECKING:
+    from sim.ros.scheduling.executors import Executor
+
+HIDDEN_NODE_PREFIX = "_"
+
+
+_parameters = Delegated[ParameterStore]("_parameter_store")
+_graph = Delegated[Graph]("_graph_queries")
+_entities = Delegated[NodeEntities]("_node_entities")
+
+
+class Node:
+    """A node of the ROS graph.
+
+    ``cli_args`` are arguments for this node alone and count before the program's, which are left out
+    without ``use_global_arguments``. ``parameter_overrides`` count before both. Without
+    ``enable_rosout`` its log lines do not go to ``/rosout``.
+
+    Raises:
+        NotInitializedException: ``rclpy.init()`` has not been called.
+        InvalidNodeNameException, InvalidNamespaceException: a name breaks the rules.
+        RCLInvalidROSArgsError, UnknownROSArgsError: ``cli_args`` cannot be read.
+    """
+
+    def __init__(
+        self,
+        node_name: str,
+        *,
+        context: Context | None = None,
+        cli_args: Sequence[str] | None = None,
+        namespace: str | None = None,
+        use_global_arguments: bool = True,
+        enable_rosout: bool = True,
+        start_parameter_services: bool = True,
+        parameter_overrides: list[Parameter[Any]] | None = None,
+        allow_undeclared_parameters: bool = False,
+        automatically_declare_parameters_from_overrides: bool = False,
+        enable_logger_service: bool = False,
+    ) -> None:
+        self._context = get_default_context() if context is None else context
+        self._context.require_ok()
+        own_arguments = arguments_of_node(cli_args or ())
+        sources = [self._context.arguments, own_arguments] if use_global_arguments else [own_arguments]
+        rules = [rule for source in reversed(sources) for rule in source.remap_rules]
+        self._node_names = NodeNames(node_name, namespace or "", Remapping(rules))
+        given = parameters_for(self._node_names.full_name, sources)
+        overrides = [Parameter(name, value=value) for name, value in given.items()]
+        self._parameter_store = ParameterStore(
+            [*overrides, *(parameter_overrides or ())],
+            self._tell_parameter_change,
+            allow_undeclared=allow_undeclared_parameters,
+        )
+        self._graph_queries = Graph(self)
+        self._rosout_publisher: RosoutPublisher | None = None
+        self.destroyed = False
+        self._clock = ROSClock()
+        self._logger = get_logger(self._node_names.logger_name)
+        self._agenda = Agenda(self._context.host, self._context.probe)
+        self._node_entities = NodeEntities(self)
+        self.trace_id = self._context.probe.node_made(self.get_fully_qualified_name())
+        with self._agenda.host.lock:
+            self._context.network.join_node(self)
+        if enable_rosout:
+            self._rosout_publisher = offer_rosout(self)
+        self._parameter_event_publisher = parameter_event_publisher(self)
+        if automatically_declare_parameters_from_overrides:
+            self._parameter_store.declare_overrides()
+        self._time_source = TimeSource(node=self)
+        self._time_source.attach_clock(self._clock)
+        if start_parameter_services:
+            self._parameter_service = ParameterService(self)
+        if enable_logger_service:
+            self._logger_service = LoggingService(self)
+        self._type_description_service = TypeDescriptionService(self)
+        self._node_entities.tuned = self._tuning()
+
+    __module__ = "rclpy.node"  # as its name is printed
+
+    PARAM_REL_TOL = PARAM_REL_TOL
+
+    # What its parts do
+    declare_parameter = _parameters(ParameterStore.declare_parameter)
+    declare_parameters = _parameters(ParameterStore.declare_parameters)
+    undeclare_parameter = _parameters(ParameterStore.undeclare_parameter)
+    has_parameter = _parameters(ParameterStore.has_parameter)
+    get_parameter = _parameters(ParameterStore.get_parameter)
+    get_parameters = _parameters(ParameterStore.get_parameters)
+    get_parameter_or = _parameters(ParameterStore.get_parameter_or)
+    get_parameters_by_prefix = _parameters(ParameterStore.get_parameters_by_prefix)
+    get_parameter_type = _parameters(ParameterStore.get_parameter_type)
+    get_parameter_types = _parameters(ParameterStore.get_parameter_types)
+    list_parameters = _parameters(ParameterStore.list_parameters)
+    set_parameters = _parameters(ParameterStore.set_parameters)
+    set_parameters_atomically = _parameters(ParameterStore.set_parameters_atomically)
+    add_pre_set_parameters_callback = _parameters(ParameterStore.add_pre_set_parameters_callback)
+    add_on_set_parameters_callback = _parameters(ParameterStore.add_on_set_parameters_callback)
+    add_post_set_parameters_callback = _parameters(ParameterStore.add_post_set_parameters_callback)
+    remove_pre_set_parameters_callback = _parameters(ParameterStore.remove_pre_set_parameters_callback)
+    remove_on_set_parameters_callback = _parameters(ParameterStore.remove_on_set_parameters_callback)
+    remove_post_set_parameters_callback = _parameters(ParameterStore.remove_post_set_parameters_callback)
+    describe_parameter = _parameters(ParameterStore.describe_parameter)
+    describe_parameters = _parameters(ParameterStore.describe_parameters)
+    set_descriptor = _parameters(ParameterStore.set_descriptor)
+
+    get_node_names = _graph(Graph.get_node_names)
+    get_node_names_and_namespaces = _graph(Graph.get_node_names_and_namespaces)
+    get_node_names_and_namespaces_with_enclaves = _graph(Graph.get_node_names_and_namespaces_with_enclaves)
+    get_fully_qualified_node_names = _graph(Graph.get_fully_qualified_node_names)
+    wait_for_node = _graph(Graph.wait_for_node)
+    get_topic_names_and_types = _graph(Graph.get_topic_names_and_types)
+    get_service_names_and_types = _graph(Graph.get_service_names_and_types)
+    get_publisher_names_and_types_by_node = _graph(Graph.get_publisher_names_and_types_by_node)
+    get_subscriber_names_and_types_by_node = _graph(Graph.get_subscriber_names_and_types_by_node)
+    get_service_names_and_types_by_node = _graph(Graph.get_service_names_and_types_by_node)
+    get_client_names_and_types_by_node = _graph(Graph.get_client_names_and_types_by_node)
+    count_publishers = _graph(Graph.count_publishers)
+    count_subscribers = _graph(Graph.count_subscribers)
+    count_clients = _graph(Graph.count_clients)
+    count_services = _graph(Graph.count_services)
+    get_publishers_info_by_topic = _graph(Graph.get_publishers_info_by_topic)
+    get_subscriptions_info_by_topic = _graph(Graph.get_subscriptions_info_by_topic)
+
+    add_waitable = _entities(NodeEntities.add_waitable)
+    remove_waitable = _entities(NodeEntities.remove_waitable)
+    create_publisher = _entities(NodeEntities.create_publisher)
+    create_subscription = _entities(NodeEntities.create_subscription)
+    create_timer = _entities(NodeEntities.create_timer)
+    create_rate = _entities(NodeEntities.create_rate)
+    create_service = _entities(NodeEntities.create_service)
+    create_client = _entities(NodeEntities.create_client)
+    create_guard_condition = _entities(NodeEntities.create_guard_condition)
+    destroy_publisher = _entities(NodeEntities.destroy_publisher)
+    destroy_subscription = _entities(NodeEntities.destroy_subscription)
+    destroy_service = _entities(NodeEntities.destroy_service)
+    destroy_client = _entities(NodeEntities.destroy_client)
+    destroy_timer = _entities(NodeEntities.destroy_timer)
+    destroy_guard_condition = _entities(NodeEntities.destroy_guard_condition)
+    destroy_rate = _entities(NodeEntities.destroy_rate)
+
+    # What it has
+
+    @property
+    def publishers(self) -> Iterator[Publisher]:
+        """Its publishers."""
+        return self._node_entities.publishers
+
+    @property
+    def subscriptions(self) -> Iterator[Subscription]:
+        """Its subscriptions, oldest first."""
+        return self._node_entities.subscriptions
+
+    @property
+    def timers(self) -> Iterator[Timer]:
+        """Its timers, oldest first."""
+        return self._node_entities.timers
+
+    @property
+    def services(self) -> Iterator[Service]:
+        """Its services, oldest first."""
+        return self._node_entities.services
+
+    @property
+    def clients(self) -> Iterator[Client]:
+        """Its clients, oldest first."""
+        return self._node_entities.clients
+
+    @property
+    def guards(self) -> Iterator[NodeGuardCondition]:
+        """Its guard conditions, oldest first."""
+        return self._node_entities.guards
+
+    @property
+    def waitables(self) -> Iterator[Any]:
+        """Its waitables, oldest first: the program's own, and what tells of events and serves actions."""
+        return self._node_entities.waitables
+
+    # What it is
+
+    @property
+    def context(self) -> Context:
+        """The context it lives in."""
+        return self._context
+
+    @property
+    def default_callback_group(self) -> CallbackGroup:
+        """The mutually exclusive group of all entities that name none."""
+        return self._node_entities.default_group
+
+    @property
+    def handle(self) -> Handle:
+        """What keeps it alive while it is used."""
+        return Handle(self)
+
+    def destroy(self) -> None:
+        """Remove everything, as ``destroy_node``."""
+        self.destroy_node()
+
+    def get_name(self) -> str:
+        """Its name without namespace; InvalidHandle once it was destroyed."""
+        with self.handle:
+            return self._node_names.name
+
+    def get_namespace(self) -> str:
+        """Its namespace, ``/`` for none; InvalidHandle once it was destroyed."""
+        with self.handle:
+            return self._node_names.namespace
+
+    def get_fully_qualified_name(self) -> str:
+        """Namespace and name, such as ``/arm/sub_node``; InvalidHandle once it was destroyed."""
+        with self.handle:
+            return self._node_names.full_name
+
+    def assert_liveliness(self) -> None:
+        """Tell that it lives, which nobody watches."""
+
+    def get_logger(self) -> RcutilsLogger:
+        """Its logger."""
+        return self._logger
+
+    def get_clock(self) -> Clock:
+        """Its clock."""
+        return self._clock
+
+    def resolve_topic_name(self, topic: str, *, only_expand: bool = False) -> str:
+        """The full name of a topic as this node means it; remapped, unless ``only_expand``.
+
+        Raises:
+            InvalidTopicNameException, ValueError: the name breaks the rules, or a substitution is unknown.
+            InvalidHandle: the node was destroyed.
+        """
+        with self.handle:
+            return self._node_names.expanded_topic(topic) if only_expand else self._node_names.topic(topic)
+
+    def resolve_service_name(self, service: str, *, only_expand: bool = False) -> str:
+        """The full name of a service as this node means it; remapped, unless ``only_expand``.
+
+        Raises:
+            InvalidServiceNameException, ValueError: the name breaks the rules, or a substitution is unknown.
+            InvalidHandle: the node was destroyed.
+        """
+        with self.handle:
+            names = self._node_names
+            return names.expanded_service(service) if only_expand else names.service(service)
+
+    @property
+    def executor(self) -> Executor | None:
+        """The executor that serves it, or that did last: removing a node from one changes nothing here."""
+        return self._agenda.latest_executor
+
+    @executor.setter
+    def executor(self, new_executor: Executor | None) -> None:
+        current = self.executor
+        if current is new_executor:
+            return
+        self._agenda.forget_executors()
+        if current is not None:
+            current.remove_node(self)
+        if new_executor is not None:
+            self._agenda.executor = new_executor
+            new_executor.add_node(self)
+
+    # Its end
+
+    def destroy_node(self) -> None:
+        """Remove everything; the executor that serves the node lets go of it."""
+        with self._agenda.host.lock:
+            if self.destroyed:
+                return
+            self._tell_of_own_end()
+            self.destroyed = True
+            self.executor = None
+            for publisher in self._node_entities.publishers:
+                self.destroy_publisher(publisher)
+            for entity in tuple(self._agenda.entities):
+                entity.destroy()
+            withdraw_rosout(self, self._rosout_publisher)
+            self._context.network.leave_node(self)
+
+    def _tell_of_own_end(self) -> None:
+        """Tell of it if one of the node's own callbacks is what destroys it."""
+        probe = self._context.probe
+        here = probe.callback_here()
+        running = (each for each in self._agenda.entities if each.trace_id == here)
+        if here and (entity := next(running, None)) is not None:
+            probe.node_destroyed_by_itself(self._node_names.full_name, entity)
+
+    def _tuning(self) -> TunedNode | None:
+        """What a person changed about the node; only what is on the screen can be changed there."""
+        tuning = self._context.host.tuning
+        if tuning is None or not self._context.probe.visible:
+            return None
+        return TunedNode(self._node_names.full_name, tuning)
+
+    def _tell_parameter_change(self, change: ParameterChange) -> None:
+        publish_change(self._parameter_event_publisher, change)
+
+    def __enter__(self) -> Node:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.destroy_node()
+
+    def __repr__(self) -> str:
+        return f"<{type(self).__module__}.{type(self).__qualname__} {self._node_names.full_name}>"

@@ -1,0 +1,152 @@
+"""Callbacks for changes of parameters, one's own or another node's, as ``/parameter_events`` tells them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from contextlib import AbstractContextManager
+from itertools import chain
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from sim.interfaces import rcl_interfaces
+from sim.ros.qos.qos import QoSProfile, qos_profile_parameter_events
+
+if TYPE_CHECKING:
+    from sim.ros.node.node import Node
+
+MessageCallback: TypeAlias = Callable[[Any], Any]
+
+
+class ParameterCallbackHandle:
+    """A callback for one parameter of one node."""
+
+    def __init__(self, parameter_name: str, node_name: str, callback: MessageCallback) -> None:
+        self.parameter_name = parameter_name
+        self.node_name = node_name
+        self.callback = callback
+
+
+class ParameterEventCallbackHandle:
+    """A callback for every event."""
+
+    def __init__(self, callback: MessageCallback) -> None:
+        self.callback = callback
+
+
+class ParameterEventHandler:
+    """Listens to ``/parameter_events`` on behalf of a node. Thread-safe.
+
+    Of several callbacks the newest is called first; those for one parameter come before those for events.
+    """
+
+    class Callbacks:
+        """The callbacks of a handler, and which of them an event concerns. ``lock`` guards them."""
+
+        def __init__(self, lock: AbstractContextManager[bool]) -> None:
+            self.event_callbacks: list[ParameterEventCallbackHandle] = []
+            self.parameter_callbacks: dict[tuple[str, str], list[ParameterCallbackHandle]] = {}
+            self.node_names: frozenset[str] = frozenset()
+            self._lock = lock
+
+        def event_callback(self, event: Any) -> None:
+            """Call those that the event concerns; with ``node_names``, events of other nodes concern none."""
+            with self._lock:
+                if self.node_names and event.node not in self.node_names:
+                    return
+                concerned: list[tuple[MessageCallback, Any]] = []
+                for (parameter_name, node_name), handles in self.parameter_callbacks.items():
+                    parameter = ParameterEventHandler.get_parameter_from_event(
+                        event, parameter_name, node_name
+                    )
+                    if parameter is not None:
+                        concerned += [(each.callback, parameter) for each in handles]
+                concerned += [(each.callback, event) for each in self.event_callbacks]
+            for callback, message in concerned:
+                callback(message)
+
+        def add_parameter_event_callback(self, callback: MessageCallback) -> ParameterEventCallbackHandle:
+            """Have ``callback`` called with every event."""
+            handle = ParameterEventCallbackHandle(callback)
+            with self._lock:
+                self.event_callbacks.insert(0, handle)
+            return handle
+
+        def remove_parameter_event_callback(self, handle: ParameterEventCallbackHandle) -> None:
+            """Call it no more; ValueError if it was not called."""
+            with self._lock:
+                self.event_callbacks.remove(handle)
+
+        def add_parameter_callback(
+            self, parameter_name: str, node_name: str, callback: MessageCallback
+        ) -> ParameterCallbackHandle:
+            """Have ``callback`` called with every new value of a parameter."""
+            handle = ParameterCallbackHandle(parameter_name, node_name, callback)
+            with self._lock:
+                self.parameter_callbacks.setdefault((parameter_name, node_name), []).insert(0, handle)
+            return handle
+
+        def remove_parameter_callback(self, handle: ParameterCallbackHandle) -> None:
+            """Call it no more; KeyError or ValueError if it was not called."""
+            key = (handle.parameter_name, handle.node_name)
+            with self._lock:
+                self.parameter_callbacks[key].remove(handle)
+                if not self.parameter_callbacks[key]:
+                    del self.parameter_callbacks[key]
+
+    def __init__(self, node: Node, qos_profile: QoSProfile = qos_profile_parameter_events) -> None:
+        self.node = node
+        self.qos_profile = qos_profile
+        self._callbacks = ParameterEventHandler.Callbacks(node.context.host.lock)
+        self._parameter_event_subscription = node.create_subscription(
+            rcl_interfaces.ParameterEvent, "/parameter_events", self._callbacks.event_callback, qos_profile
+        )
+
+    def destroy(self) -> None:
+        """Listen no more."""
+        self.node.destroy_subscription(self._parameter_event_subscription)
+
+    @staticmethod
+    def get_parameter_from_event(event: Any, parameter_name: str, node_name: str) -> Any:
+        """The message of a node's parameter that is new or changed in an event, else None."""
+        if event.node != node_name:
+            return None
+        every = ParameterEventHandler.get_parameters_from_event(event)
+        return next((each for each in every if each.name == parameter_name), None)
+
+    @staticmethod
+    def get_parameters_from_event(event: Any) -> Iterable[Any]:
+        """The messages of all parameters that are new or changed in an event."""
+        yield from chain(event.new_parameters, event.changed_parameters)
+
+    def configure_nodes_filter(self, node_names: list[str] | None = None) -> bool:
+        """Hear the events of these nodes only (none named: of all); True, for that always works here."""
+        names = frozenset(self._resolve_path(name) for name in node_names or ())
+        self._callbacks.node_names = names
+        return True
+
+    def add_parameter_event_callback(self, callback: MessageCallback) -> ParameterEventCallbackHandle:
+        """Have ``callback`` called with every rcl_interfaces/msg/ParameterEvent."""
+        return self._callbacks.add_parameter_event_callback(callback)
+
+    def remove_parameter_event_callback(self, callback_handle: ParameterEventCallbackHandle) -> None:
+        """Call it no more; ValueError if it was not called."""
+        self._callbacks.remove_parameter_event_callback(callback_handle)
+
+    def add_parameter_callback(
+        self, parameter_name: str, node_name: str, callback: MessageCallback
+    ) -> ParameterCallbackHandle:
+        """Have ``callback`` called with the rcl_interfaces/msg/Parameter whenever one node's changes.
+
+        A relative ``node_name`` counts from this node's namespace; an empty one means this node.
+        """
+        return self._callbacks.add_parameter_callback(parameter_name, self._resolve_path(node_name), callback)
+
+    def remove_parameter_callback(self, callback_handle: ParameterCallbackHandle) -> None:
+        """Call it no more; KeyError or ValueError if it was not called."""
+        self._callbacks.remove_parameter_callback(callback_handle)
+
+    def _resolve_path(self, node_path: str | None = None) -> str:
+        if not node_path:
+            return self.node.get_fully_qualified_name()
+        if node_path.startswith("/"):
+            return node_path
+        return f"{self.node.get_namespace().rstrip('/')}/{node_path}"

@@ -1,0 +1,35 @@
+"""What ``/parameter_events`` tells of a node whose parameters were set."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from sim.interfaces import rcl_interfaces
+from sim.ros.qos.qos import qos_profile_parameter_events
+
+if TYPE_CHECKING:
+    from sim.ros.entities.publisher import Publisher
+    from sim.ros.node.node import Node
+    from sim.ros.parameters.store import ParameterChange
+
+
+def parameter_event_publisher(node: Node) -> Publisher:
+    """Make the publisher of a node's parameter events."""
+    return node.create_publisher(
+        rcl_interfaces.ParameterEvent, "/parameter_events", qos_profile_parameter_events
+    )
+
+
+def publish_change(publisher: Publisher, change: ParameterChange) -> None:
+    """Tell whoever listens; without a listener nothing is sent, for the trace is the program's own."""
+    if publisher.get_subscription_count() == 0:
+        return
+    node = publisher.node
+    event = rcl_interfaces.ParameterEvent(
+        stamp=node.get_clock().now().to_msg(),
+        node=node.get_fully_qualified_name(),
+        new_parameters=[each.to_parameter_msg() for each in change.new],
+        changed_parameters=[each.to_parameter_msg() for each in change.changed],
+        deleted_parameters=[each.to_parameter_msg() for each in change.deleted],
+    )
+    publisher.publish(event)

@@ -1,0 +1,225 @@
+"""Parameters: named values of a node, each of one of ten types, and how they travel as messages."""
+
+from __future__ import annotations
+
+import array
+from collections.abc import Mapping
+from enum import IntEnum
+from pathlib import Path
+from typing import Any, Generic, TypeAlias, TypeVar
+
+from sim import foreign_file
+from sim.interfaces import rcl_interfaces
+from sim.ros.parameters import yaml_files as parameter_yaml
+from sim.ros.parameters.yaml_files import ParameterYamlError, PlainValue
+
+PARAMETER_SEPARATOR_STRING = "."
+
+AllowableParameterValue: TypeAlias = (
+    "bool | int | float | str | list[bytes] | list[bool] | list[int] | list[float] | list[str] "
+    "| tuple[bytes, ...] | tuple[bool, ...] | tuple[int, ...] | tuple[float, ...] | tuple[str, ...] "
+    "| array.array[int] | array.array[float] | None"
+)
+"""What the value of a parameter can be."""
+
+AllowableParameterValueT = TypeVar("AllowableParameterValueT")
+
+_SEQUENCES = (list, tuple)
+_NUMBER_SEQUENCES = (list, tuple, array.array)
+
+
+class Parameter(Generic[AllowableParameterValueT]):
+    """A parameter's name, type and value; immutable. Without a type, the value decides.
+
+    Raises:
+        TypeError: ``type_`` is no ``Parameter.Type``, or no type fits the value.
+        ValueError: the value is not of that type.
+    """
+
+    class Type(IntEnum):
+        """The types of parameters, with the numbers of rcl_interfaces/msg/ParameterType."""
+
+        NOT_SET = 0
+        BOOL = 1
+        INTEGER = 2
+        DOUBLE = 3
+        STRING = 4
+        BYTE_ARRAY = 5
+        BOOL_ARRAY = 6
+        INTEGER_ARRAY = 7
+        DOUBLE_ARRAY = 8
+        STRING_ARRAY = 9
+
+        @classmethod
+        def from_parameter_value(cls, parameter_value: object) -> Parameter.Type:
+            """The type of a parameter with that value; an empty list counts as BYTE_ARRAY.
+
+            Raises:
+                TypeError: no parameter can have such a value.
+            """
+            if parameter_value is None:
+                return cls.NOT_SET
+            for kind, element in _SCALARS.items():
+                if isinstance(parameter_value, element):
+                    return kind
+            if isinstance(parameter_value, _NUMBER_SEQUENCES):
+                for kind, element in _ARRAYS.items():
+                    if all(isinstance(each, element) for each in parameter_value):
+                        return kind
+                raise TypeError("The given value is not a list of one of the allowed types")
+            raise TypeError(f"The given value is not one of the allowed types '{parameter_value}'.")
+
+        def check(self, parameter_value: object) -> bool:
+            """Whether a parameter of this type can have that value."""
+            if self is Parameter.Type.NOT_SET:
+                return parameter_value is None
+            if self in _SCALARS:
+                return isinstance(parameter_value, _SCALARS[self])
+            fits = (
+                _NUMBER_SEQUENCES
+                if self in (Parameter.Type.INTEGER_ARRAY, Parameter.Type.DOUBLE_ARRAY)
+                else _SEQUENCES
+            )
+            if not isinstance(parameter_value, fits):
+                return False
+            element = _ARRAYS[self]
+            return all(isinstance(each, element) for each in parameter_value) and (
+                self is not Parameter.Type.BYTE_ARRAY or all(len(each) == 1 for each in parameter_value)
+            )
+
+        def __str__(self) -> str:
+            return f"Type.{self.name}"
+
+        def __format__(self, format_spec: str) -> str:
+            return format(str(self), format_spec)
+
+    @classmethod
+    def from_parameter_msg(cls, param_msg: Any) -> Parameter[Any]:
+        """From an rcl_interfaces/msg/Parameter."""
+        type_ = Parameter.Type(param_msg.value.type)
+        value = None if type_ is Parameter.Type.NOT_SET else getattr(param_msg.value, _field(type_))
+        return cls(param_msg.name, type_, value)
+
+    def __init__(
+        self, name: str, type_: Parameter.Type | None = None, value: AllowableParameterValueT | None = None
+    ) -> None:
+        if type_ is None:
+            type_ = Parameter.Type.from_parameter_value(value)
+        if not isinstance(type_, Parameter.Type):
+            raise TypeError(f"type must be an instance of '{Parameter.Type!r}'")
+        if not type_.check(value):
+            raise ValueError(f"Type '{type_}' and value '{value}' do not agree")
+        self._type_ = type_
+        self._name = name
+        self._value = value
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        return self._name
+
+    @property
+    def type_(self) -> Parameter.Type:
+        """Its type."""
+        return self._type_
+
+    @property
+    def value(self) -> Any:
+        """Its value; None while it has none."""
+        return self._value
+
+    def get_parameter_value(self) -> Any:
+        """The value as an rcl_interfaces/msg/ParameterValue."""
+        message = rcl_interfaces.ParameterValue(type=self._type_.value)
+        if self._type_ is not Parameter.Type.NOT_SET:
+            # An array.array of another type code than the message's is converted, as a list is.
+            value = list(self._value) if isinstance(self._value, array.array) else self._value
+            setattr(message, _field(self._type_), value)
+        return message
+
+    def to_parameter_msg(self) -> Any:
+        """The same as an rcl_interfaces/msg/Parameter."""
+        return rcl_interfaces.Parameter(name=self._name, value=self.get_parameter_value())
+
+
+# In the order in which a value's type is looked for: True is an int too.
+_SCALARS: dict[Parameter.Type, type] = {
+    Parameter.Type.BOOL: bool,
+    Parameter.Type.INTEGER: int,
+    Parameter.Type.DOUBLE: float,
+    Parameter.Type.STRING: str,
+}
+_ARRAYS: dict[Parameter.Type, type] = {
+    Parameter.Type.BYTE_ARRAY: bytes,
+    Parameter.Type.BOOL_ARRAY: bool,
+    Parameter.Type.INTEGER_ARRAY: int,
+    Parameter.Type.DOUBLE_ARRAY: float,
+    Parameter.Type.STRING_ARRAY: str,
+}
+
+
+def _field(type_: Parameter.Type) -> str:
+    """Where a ParameterValue message keeps a value of that type."""
+    return f"{type_.name.lower()}_value"
+
+
+def parameter_value_to_python(parameter_value: Any) -> Any:
+    """The value in an rcl_interfaces/msg/ParameterValue, arrays as lists; None if it is not set.
+
+    Raises:
+        RuntimeError: the message's type is none of the known ones.
+    """
+    try:
+        type_ = Parameter.Type(parameter_value.type)
+    except ValueError:
+        raise RuntimeError(f"unexpected parameter type {parameter_value.type}") from None
+    if type_ is Parameter.Type.NOT_SET:
+        return None
+    value = getattr(parameter_value, _field(type_))
+    return list(value) if type_ in _ARRAYS else value
+
+
+def get_parameter_value(string_value: str) -> Any:
+    """An rcl_interfaces/msg/ParameterValue of a value written as YAML; what is no value is a text."""
+    try:
+        plain = parameter_yaml.read_value(string_value)
+    except ParameterYamlError:
+        plain = string_value
+    # An empty list has no type; the command line takes it for one of truth values.
+    parameter = Parameter("", Parameter.Type.BOOL_ARRAY, []) if plain is None else Parameter("", value=plain)
+    return parameter.get_parameter_value()
+
+
+def parameter_dict_from_yaml_file(
+    parameter_file: str,
+    use_wildcard: bool = False,
+    target_nodes: list[str] | None = None,
+    namespace: str = "",
+) -> dict[str, Any]:
+    """Read a parameter file: rcl_interfaces/msg/Parameter messages by name, ``namespace`` put before each.
+
+    Those of ``target_nodes`` only, if any are named, else of every node; those under ``/**`` count with
+    ``use_wildcard``, and are overridden by a node's own.
+
+    Raises:
+        RuntimeError: a node is not in the file, or nothing is selected.
+        OSError: the file cannot be read.
+        ParameterYamlError: it is no parameter file.
+    """
+    by_node = parameter_yaml.read_nodes(foreign_file.read_text(Path(parameter_file)))
+    chosen = ["/**"] if use_wildcard and "/**" in by_node else []
+    for node in target_nodes or ():
+        if node not in by_node:
+            raise RuntimeError(
+                f"Param file does not contain parameters for {node},only for nodes: {list(by_node)} "
+            )
+    chosen += target_nodes or [node for node in by_node if node != "/**"]
+    if not chosen:
+        raise RuntimeError("Param file does not contain selected parameters")
+    values = {name: value for node in chosen for name, value in by_node[node].items()}
+    return _as_messages(values, namespace)
+
+
+def _as_messages(values: Mapping[str, PlainValue], namespace: str) -> dict[str, Any]:
+    parameters = (Parameter(namespace + name, value=value) for name, value in values.items())
+    return {each.name: each.to_parameter_msg() for each in parameters}

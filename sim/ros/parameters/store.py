@@ -1,0 +1,387 @@
+"""What a node does with parameters: it declares, sets, describes and removes them, and asks its callbacks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, TypeAlias
+
+from sim.interfaces import rcl_interfaces
+from sim.ros.exceptions import (
+    InvalidParameterTypeException,
+    InvalidParameterValueException,
+    ParameterAlreadyDeclaredException,
+    ParameterImmutableException,
+    ParameterNotDeclaredException,
+    ParameterUninitializedException,
+)
+from sim.ros.naming.validate_parameter_name import validate_parameter_name
+from sim.ros.parameters.checks import WRONG_TYPE, objection
+from sim.ros.parameters.declaration import read_declaration
+from sim.ros.parameters.listing import listed
+from sim.ros.parameters.parameter import PARAMETER_SEPARATOR_STRING, Parameter, parameter_value_to_python
+
+AnyParameter: TypeAlias = Parameter[Any]
+PreSetCallback: TypeAlias = Callable[[list[AnyParameter]], list[AnyParameter]]
+OnSetCallback: TypeAlias = Callable[[list[AnyParameter]], Any]
+PostSetCallback: TypeAlias = Callable[[list[AnyParameter]], None]
+
+_NOT_SET = Parameter.Type.NOT_SET
+
+_NOTHING_LEFT = (
+    "parameter list cannot be empty, this might be due to pre_set_parameters_callback modifying the original "
+    "parameters list."
+)
+
+
+@dataclass(slots=True)
+class ParameterChange:
+    """What one setting of parameters did."""
+
+    new: list[AnyParameter] = field(default_factory=list)
+    changed: list[AnyParameter] = field(default_factory=list)
+    deleted: list[AnyParameter] = field(default_factory=list)
+
+
+class ParameterStore:
+    """The parameters of a node, by name. Callbacks run on the thread that sets, the newest first.
+
+    ``tell`` hears of every change.
+    """
+
+    def __init__(
+        self,
+        overrides: Iterable[AnyParameter],
+        tell: Callable[[ParameterChange], None],
+        *,
+        allow_undeclared: bool,
+    ) -> None:
+        self._tell = tell
+        self._parameters: dict[str, AnyParameter] = {}
+        self._descriptors: dict[str, Any] = {}
+        self._parameter_overrides = {each.name: each for each in overrides}
+        self._allow_undeclared_parameters = allow_undeclared
+        self._pre_set_parameters_callbacks: list[PreSetCallback] = []
+        self._on_set_parameters_callbacks: list[OnSetCallback] = []
+        self._post_set_parameters_callbacks: list[PostSetCallback] = []
+
+    # Declaring
+
+    def declare_parameter(
+        self, name: str, value: Any = None, descriptor: Any = None, ignore_override: bool = False
+    ) -> AnyParameter:
+        """Declare a parameter with a value, or with a ``Parameter.Type`` and no value yet.
+
+        An override from the command line, a file or the node's construction counts before ``value``.
+
+        Raises:
+            ParameterAlreadyDeclaredException, InvalidParameterException, InvalidParameterTypeException:
+                it exists, has no name, or is overridden by a value of another type.
+            InvalidParameterValueException: its descriptor or a callback refuses the value.
+        """
+        declared: tuple[Any, ...] = (name,)
+        if value is not None or descriptor is not None:
+            declared = (
+                name,
+                value,
+                rcl_interfaces.ParameterDescriptor() if descriptor is None else descriptor,
+            )
+        return self.declare_parameters("", [declared], ignore_override)[0]
+
+    def declare_parameters(
+        self, namespace: str, parameters: Sequence[tuple[Any, ...]], ignore_override: bool = False
+    ) -> list[AnyParameter]:
+        """Declare parameters given as (name,), (name, value or type) or (name, value or type, descriptor).
+
+        ``namespace`` and a dot come before each name, unless it is empty.
+
+        Raises:
+            TypeError, ValueError: an entry is not of that form, or contradicts itself.
+            ParameterAlreadyDeclaredException, InvalidParameterException, InvalidParameterTypeException,
+            InvalidParameterValueException: as ``declare_parameter``; what came before it stays declared.
+        """
+        wanted: list[tuple[AnyParameter, Any]] = []
+        for index, entry in enumerate(parameters):
+            name, value, descriptor = read_declaration(index, entry)
+            full_name = f"{namespace}{PARAMETER_SEPARATOR_STRING}{name}" if namespace else name
+            if not ignore_override and full_name in self._parameter_overrides:
+                value = self._parameter_overrides[full_name].value
+            validate_parameter_name(full_name)
+            wanted.append((Parameter(full_name, value=value), descriptor))
+        names = [parameter.name for parameter, _ in wanted]
+        if known := [name for name in names if name in self._parameters]:
+            raise ParameterAlreadyDeclaredException(known)
+        for parameter, descriptor in wanted:
+            self._declare(parameter, descriptor)
+        return [self._parameters[name] for name in names]
+
+    def declare_overrides(self) -> None:
+        """Declare every parameter that is overridden from outside."""
+        declared = [
+            (each.name, each.value, rcl_interfaces.ParameterDescriptor())
+            for each in self._parameter_overrides.values()
+        ]
+        self.declare_parameters("", declared, ignore_override=True)
+
+    def _declare(self, parameter: AnyParameter, descriptor: Any) -> None:
+        descriptor.name = parameter.name
+        reason = objection(parameter, descriptor)
+        if reason.startswith(WRONG_TYPE):
+            raise InvalidParameterTypeException(parameter, Parameter.Type(descriptor.type).name)
+        if not reason:
+            result = self._ask_callbacks([parameter])
+            if result.successful:
+                self._descriptors[parameter.name] = descriptor
+                change = ParameterChange()
+                self._store(parameter, change)
+                self._finish_setting([parameter], change)
+                return
+            reason = result.reason
+        raise InvalidParameterValueException(parameter.name, parameter.value, reason)
+
+    def undeclare_parameter(self, name: str) -> None:
+        """Remove a parameter.
+
+        Raises:
+            ParameterNotDeclaredException, ParameterImmutableException: it does not exist, or is read-only.
+        """
+        if not self.has_parameter(name):
+            raise ParameterNotDeclaredException(name)
+        if self._descriptors[name].read_only:
+            raise ParameterImmutableException(name)
+        del self._parameters[name]
+        del self._descriptors[name]
+
+    # Reading
+
+    def has_parameter(self, name: str) -> bool:
+        """Whether it is declared."""
+        return name in self._parameters
+
+    def get_parameter(self, name: str) -> AnyParameter:
+        """A parameter.
+
+        Raises:
+            ParameterNotDeclaredException: it is not declared, and undeclared ones are not allowed.
+            ParameterUninitializedException: it has a type but no value yet.
+        """
+        parameter = self._parameters.get(name)
+        if parameter is None:
+            self._require_undeclared_allowed(name)
+            return Parameter(name, _NOT_SET)
+        if parameter.type_ is _NOT_SET and not self._descriptors[name].dynamic_typing:
+            raise ParameterUninitializedException(name)
+        return parameter
+
+    def get_parameters(self, names: list[str]) -> list[AnyParameter]:
+        """Parameters in the order of their names; raises as ``get_parameter``."""
+        _require_names(names)
+        return [self.get_parameter(name) for name in names]
+
+    def get_parameter_or(self, name: str, alternative_value: AnyParameter | None = None) -> AnyParameter:
+        """A parameter, or the alternative (by default one that is not set) if it has no value."""
+        parameter = self._parameters.get(name)
+        if parameter is not None and parameter.type_ is not _NOT_SET:
+            return parameter
+        return Parameter(name, _NOT_SET) if alternative_value is None else alternative_value
+
+    def get_parameters_by_prefix(self, prefix: str) -> dict[str, AnyParameter]:
+        """Every parameter called ``prefix.…`` by the rest of its name; the empty prefix means all."""
+        start = prefix + PARAMETER_SEPARATOR_STRING if prefix else ""
+        return {
+            name.removeprefix(start): parameter
+            for name, parameter in tuple(self._parameters.items())
+            if name.startswith(start)
+        }
+
+    def get_parameter_type(self, name: str) -> Parameter.Type:
+        """The type of a parameter.
+
+        Raises:
+            ParameterNotDeclaredException: it is not declared, and undeclared ones are not allowed.
+        """
+        if name in self._parameters:
+            return self._parameters[name].type_
+        self._require_undeclared_allowed(name)
+        return _NOT_SET
+
+    def get_parameter_types(self, names: list[str]) -> list[Parameter.Type]:
+        """The types of parameters; raises as ``get_parameter_type``."""
+        _require_names(names)
+        return [self.get_parameter_type(name) for name in names]
+
+    def list_parameters(self, prefixes: list[str], depth: int) -> Any:
+        """The names at most ``depth`` parts deep (0: any) under the prefixes (none: all), as a message.
+
+        Raises:
+            TypeError, ValueError: the prefixes are not texts in a list, the depth is not a number from 0 on.
+        """
+        names, nested = listed(self._parameters, prefixes, depth)
+        return rcl_interfaces.ListParametersResult(names=names, prefixes=nested)
+
+    # Setting
+
+    def set_parameters(self, parameter_list: list[AnyParameter]) -> list[Any]:
+        """Set parameters one by one; a result for each. ``NOT_SET`` removes a dynamically typed one.
+
+        Raises:
+            ParameterNotDeclaredException: one is not declared, and undeclared ones are not allowed; then
+                none is set.
+            TypeError: one is no ``Parameter``.
+        """
+        if not self._pre_set_parameters_callbacks:
+            self._require_declared(parameter_list)
+        return [self.set_parameters_atomically([parameter]) for parameter in parameter_list]
+
+    def set_parameters_atomically(self, parameter_list: list[AnyParameter]) -> Any:
+        """Set all of the parameters, or none; one result. Raises as ``set_parameters``."""
+        chosen = list(parameter_list)
+        if self._pre_set_parameters_callbacks:
+            asked = tuple(self._pre_set_parameters_callbacks)
+            chosen = [parameter for callback in asked for parameter in callback(list(parameter_list))]
+            if not chosen:
+                return _result(_NOTHING_LEFT)
+        self._require_declared(chosen)
+        if reason := self._objection_to(chosen):
+            return _result(reason)
+        result = self._ask_callbacks(chosen)
+        if result.successful:
+            change = ParameterChange()
+            for parameter in chosen:
+                if parameter.type_ is _NOT_SET:
+                    self._drop(parameter, change)
+                else:
+                    self._store(parameter, change)
+            self._finish_setting(chosen, change)
+        return result
+
+    def _objection_to(self, parameters: list[AnyParameter]) -> str:
+        for parameter in parameters:
+            descriptor = self._descriptors.get(parameter.name)
+            if descriptor is None:
+                continue
+            if descriptor.read_only:
+                return f"Trying to set a read-only parameter: {parameter.name}."
+            if parameter.type_ is _NOT_SET and not descriptor.dynamic_typing:
+                return "Static parameter cannot be undeclared"
+            if reason := objection(parameter, descriptor):
+                return reason
+        return ""
+
+    def _ask_callbacks(self, parameters: list[AnyParameter]) -> Any:
+        for callback in tuple(self._on_set_parameters_callbacks):
+            result = callback(parameters)
+            if not result.successful:
+                return result
+        return _result("")
+
+    def _store(self, parameter: AnyParameter, change: ParameterChange) -> None:
+        known = self.get_parameter_or(parameter.name).type_ is not _NOT_SET
+        (change.changed if known else change.new).append(parameter)
+        if parameter.name not in self._descriptors:
+            self._descriptors[parameter.name] = rcl_interfaces.ParameterDescriptor(dynamic_typing=True)
+        self._parameters[parameter.name] = parameter
+
+    def _drop(self, parameter: AnyParameter, change: ParameterChange) -> None:
+        if self.get_parameter_or(parameter.name).type_ is not _NOT_SET:
+            change.deleted.append(parameter)
+        self._parameters.pop(parameter.name, None)
+        self._descriptors.pop(parameter.name, None)
+
+    def _finish_setting(self, parameters: list[AnyParameter], change: ParameterChange) -> None:
+        self._tell(change)
+        for callback in tuple(self._post_set_parameters_callbacks):
+            callback(parameters)
+
+    # Callbacks
+
+    def add_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
+        """Have ``callback`` say, before anything is checked, what is to be set in place of what was asked."""
+        self._pre_set_parameters_callbacks.insert(0, callback)
+
+    def add_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
+        """Have ``callback`` allow or refuse what is about to be set, by a SetParametersResult."""
+        self._on_set_parameters_callbacks.insert(0, callback)
+
+    def add_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
+        """Have ``callback`` told what was set."""
+        self._post_set_parameters_callbacks.insert(0, callback)
+
+    def remove_pre_set_parameters_callback(self, callback: PreSetCallback) -> None:
+        """Ask ``callback`` no more; ValueError if it was not asked."""
+        self._pre_set_parameters_callbacks.remove(callback)
+
+    def remove_on_set_parameters_callback(self, callback: OnSetCallback) -> None:
+        """Ask ``callback`` no more; ValueError if it was not asked."""
+        self._on_set_parameters_callbacks.remove(callback)
+
+    def remove_post_set_parameters_callback(self, callback: PostSetCallback) -> None:
+        """Tell ``callback`` no more; ValueError if it was not told."""
+        self._post_set_parameters_callbacks.remove(callback)
+
+    # Describing
+
+    def describe_parameter(self, name: str) -> Any:
+        """The descriptor of a parameter.
+
+        Raises:
+            ParameterNotDeclaredException: it is not declared, and undeclared ones are not allowed.
+        """
+        if name in self._descriptors:
+            return self._descriptors[name]
+        self._require_undeclared_allowed(name)
+        return rcl_interfaces.ParameterDescriptor()
+
+    def describe_parameters(self, names: list[str]) -> list[Any]:
+        """The descriptors of parameters; raises as ``describe_parameter``."""
+        return [self.describe_parameter(name) for name in names]
+
+    def set_descriptor(self, name: str, descriptor: Any, alternative_value: Any = None) -> Any:
+        """Give a parameter another descriptor; returns its value, a ParameterValue, afterwards.
+
+        Where the new descriptor does not allow the value, the alternative, also a ParameterValue, replaces
+        it. A descriptor that names no type keeps the parameter's.
+
+        Raises:
+            ParameterNotDeclaredException, ParameterImmutableException: it is not declared, or is read-only.
+            InvalidParameterValueException: neither value is allowed.
+        """
+        current = self.get_parameter(name)
+        if not self.has_parameter(name):
+            return current.get_parameter_value()
+        if self.describe_parameter(name).read_only:
+            raise ParameterImmutableException(name)
+        descriptor.name = name
+        if descriptor.type == _NOT_SET:
+            descriptor.type = current.type_.value
+        if reason := objection(current, descriptor):
+            if alternative_value is not None:
+                current = Parameter(name, value=parameter_value_to_python(alternative_value))
+                reason = objection(current, descriptor)
+            if reason:
+                raise InvalidParameterValueException(name, current.value, reason)
+        self._descriptors[name] = descriptor
+        self._parameters[name] = current
+        return current.get_parameter_value()
+
+    # Rules
+
+    def _require_undeclared_allowed(self, name: str) -> None:
+        if not self._allow_undeclared_parameters:
+            raise ParameterNotDeclaredException(name)
+
+    def _require_declared(self, parameters: Iterable[AnyParameter]) -> None:
+        if not all(isinstance(each, Parameter) for each in parameters):
+            raise TypeError(f"parameter must be instance of type '{Parameter!r}'")
+        undeclared = [each.name for each in parameters if each.name not in self._parameters]
+        if undeclared and not self._allow_undeclared_parameters:
+            raise ParameterNotDeclaredException(undeclared)
+
+
+def _require_names(names: Iterable[object]) -> None:
+    if not all(isinstance(name, str) for name in names):
+        raise TypeError("All names must be instances of type str")
+
+
+def _result(reason: str) -> Any:
+    return rcl_interfaces.SetParametersResult(successful=not reason, reason=reason)

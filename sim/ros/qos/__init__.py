@@ -1,0 +1,1 @@
+"""Quality of service: policies, profiles, and which offer meets which request."""

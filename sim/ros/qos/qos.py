@@ -1,0 +1,253 @@
+"""Quality of service: how many messages are kept, and which publishers a subscription can hear."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass, fields
+from enum import Enum
+from typing import Any
+
+from sim.ros.qos.compatibility import QoSCompatibility, mismatches, qos_check_compatible
+from sim.ros.qos.policies import (
+    DurabilityPolicy,
+    HistoryPolicy,
+    LivelinessPolicy,
+    QoSPolicyEnum,
+    QoSPolicyKind,
+    ReliabilityPolicy,
+    qos_policy_name_from_kind,
+)
+from sim.ros.time.duration import Duration
+
+__all__ = [
+    "DurabilityPolicy",
+    "HistoryPolicy",
+    "InvalidQoSProfileException",
+    "LivelinessPolicy",
+    "QoSCompatibility",
+    "QoSDurabilityPolicy",
+    "QoSHistoryPolicy",
+    "QoSLivelinessPolicy",
+    "QoSPolicyEnum",
+    "QoSPolicyKind",
+    "QoSPresetProfiles",
+    "QoSProfile",
+    "QoSReliabilityPolicy",
+    "RmwQoSProfile",
+    "ReliabilityPolicy",
+    "as_profile",
+    "mismatches",
+    "qos_check_compatible",
+    "qos_policy_name_from_kind",
+    "qos_profile_action_status_default",
+    "qos_profile_best_available",
+    "qos_profile_default",
+    "qos_profile_parameter_events",
+    "qos_profile_parameters",
+    "qos_profile_sensor_data",
+    "qos_profile_services_default",
+    "qos_profile_system_default",
+    "qos_profile_unknown",
+]
+
+QoSHistoryPolicy = HistoryPolicy
+QoSReliabilityPolicy = ReliabilityPolicy
+QoSDurabilityPolicy = DurabilityPolicy
+QoSLivelinessPolicy = LivelinessPolicy
+
+
+class InvalidQoSProfileException(Exception):
+    """A quality of service that contradicts itself."""
+
+    __module__ = "rclpy.qos"
+
+    def __init__(self, *args: object) -> None:
+        super().__init__("Invalid QoSProfile", *args)
+
+
+_UNSPECIFIED = Duration()
+
+
+@dataclass(slots=True, init=False)
+class QoSProfile:
+    """How a publisher, subscription, service or client treats its messages.
+
+    Raises:
+        InvalidQoSProfileException: neither a history nor a depth is given, or KEEP_LAST without a depth.
+        AssertionError: there is no such policy, or a value is of the wrong type.
+        ValueError: the depth is negative, or a policy has no such value.
+    """
+
+    history: HistoryPolicy = HistoryPolicy.KEEP_LAST
+    depth: int = 10
+    reliability: ReliabilityPolicy = ReliabilityPolicy.RELIABLE
+    durability: DurabilityPolicy = DurabilityPolicy.VOLATILE
+    lifespan: Duration = _UNSPECIFIED
+    deadline: Duration = _UNSPECIFIED
+    liveliness: LivelinessPolicy = LivelinessPolicy.SYSTEM_DEFAULT
+    liveliness_lease_duration: Duration = _UNSPECIFIED
+    avoid_ros_namespace_conventions: bool = False
+
+    def __init__(self, **settings: Any) -> None:
+        known = {each.name for each in fields(QoSProfile)}
+        assert settings.keys() <= known, f"Invalid arguments passed to constructor: {settings.keys()!r}"
+        if "history" not in settings:
+            if "depth" not in settings:
+                raise InvalidQoSProfileException("History and/or depth settings are required.")
+            settings["history"] = HistoryPolicy.KEEP_LAST
+        if settings["history"] == HistoryPolicy.KEEP_LAST and "depth" not in settings:
+            raise InvalidQoSProfileException("History set to KEEP_LAST without a depth setting.")
+        for name, default in _DEFAULTS.items():
+            setattr(self, name, settings.get(name, default))
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        object.__setattr__(self, name, _CHECKS[name](value) if name in _CHECKS else value)
+        if name == "depth" and value == 0 and self.history == HistoryPolicy.KEEP_LAST:
+            warnings.warn(
+                "A zero depth with KEEP_LAST doesn't make sense; no data could be stored. "
+                "This will be interpreted as SYSTEM_DEFAULT",
+                stacklevel=3,
+            )
+
+    def __str__(self) -> str:
+        values = (f"{each.name}={getattr(self, each.name)}" for each in fields(self))
+        return f"{type(self).__name__}({', '.join(values)})"
+
+    def get_c_qos_profile(self) -> RmwQoSProfile:
+        """The same as the layers below rclpy know it."""
+        return RmwQoSProfile({each.name: getattr(self, each.name) for each in fields(self)})
+
+    @property
+    def queue_length(self) -> int | None:
+        """How many messages a queue keeps; None for all of them. A depth of 0 keeps one, as DDS does."""
+        return None if self.history == HistoryPolicy.KEEP_ALL else max(self.depth, 1)
+
+
+@dataclass(frozen=True)
+class RmwQoSProfile:
+    """A profile as the layers below rclpy know it; ``QoSProfile(**profile.to_dict())`` makes it one again."""
+
+    settings: dict[str, Any]
+
+    def to_dict(self) -> dict[str, Any]:
+        """The settings, policies as numbers."""
+        return {
+            name: int(value) if isinstance(value, QoSPolicyEnum) else value
+            for name, value in self.settings.items()
+        }
+
+
+def _policy(kind: type[QoSPolicyEnum]) -> Any:
+    def check(value: Any) -> QoSPolicyEnum:
+        assert isinstance(value, int)
+        return kind(value)
+
+    return check
+
+
+def _depth(value: Any) -> int:
+    assert isinstance(value, int)
+    if value < 0:
+        raise ValueError("depth must be an integer of 0 or more")
+    return value
+
+
+def _duration(value: Any) -> Duration:
+    assert isinstance(value, Duration)
+    return value
+
+
+def _truth(value: Any) -> bool:
+    assert isinstance(value, bool)
+    return value
+
+
+_CHECKS: dict[str, Any] = {
+    "history": _policy(HistoryPolicy),
+    "depth": _depth,
+    "reliability": _policy(ReliabilityPolicy),
+    "durability": _policy(DurabilityPolicy),
+    "lifespan": _duration,
+    "deadline": _duration,
+    "liveliness": _policy(LivelinessPolicy),
+    "liveliness_lease_duration": _duration,
+    "avoid_ros_namespace_conventions": _truth,
+}
+_DEFAULTS: dict[str, Any] = {
+    "history": HistoryPolicy.KEEP_LAST,
+    "depth": 10,
+    "reliability": ReliabilityPolicy.RELIABLE,
+    "durability": DurabilityPolicy.VOLATILE,
+    "lifespan": _UNSPECIFIED,
+    "deadline": _UNSPECIFIED,
+    "liveliness": LivelinessPolicy.SYSTEM_DEFAULT,
+    "liveliness_lease_duration": _UNSPECIFIED,
+    "avoid_ros_namespace_conventions": False,
+}
+
+qos_profile_unknown = QoSProfile(
+    history=HistoryPolicy.UNKNOWN,
+    depth=0,
+    reliability=ReliabilityPolicy.UNKNOWN,
+    durability=DurabilityPolicy.UNKNOWN,
+    liveliness=LivelinessPolicy.UNKNOWN,
+)
+qos_profile_default = QoSProfile(depth=10)
+qos_profile_system_default = QoSProfile(
+    history=HistoryPolicy.SYSTEM_DEFAULT,
+    depth=0,
+    reliability=ReliabilityPolicy.SYSTEM_DEFAULT,
+    durability=DurabilityPolicy.SYSTEM_DEFAULT,
+)
+qos_profile_sensor_data = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+qos_profile_services_default = QoSProfile(depth=10)
+qos_profile_parameters = QoSProfile(depth=1000)
+qos_profile_parameter_events = QoSProfile(depth=1000)
+qos_profile_action_status_default = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+qos_profile_best_available = QoSProfile(
+    depth=10,
+    reliability=ReliabilityPolicy.BEST_AVAILABLE,
+    durability=DurabilityPolicy.BEST_AVAILABLE,
+    liveliness=LivelinessPolicy.BEST_AVAILABLE,
+)
+
+
+class QoSPresetProfiles(Enum):
+    """The profiles that ROS 2 has made up; of equal ones the first gives its name to all, as in rclpy."""
+
+    UNKNOWN = qos_profile_unknown
+    DEFAULT = qos_profile_default
+    SYSTEM_DEFAULT = qos_profile_system_default
+    SENSOR_DATA = qos_profile_sensor_data
+    SERVICES_DEFAULT = qos_profile_services_default
+    PARAMETERS = qos_profile_parameters
+    PARAMETER_EVENTS = qos_profile_parameter_events
+    ACTION_STATUS_DEFAULT = qos_profile_action_status_default
+    BEST_AVAILABLE = qos_profile_best_available
+
+    @classmethod
+    def short_keys(cls) -> list[str]:
+        """Every short name of a profile."""
+        return [name.lower() for name in cls.__members__]
+
+    @classmethod
+    def get_from_short_key(cls, name: str) -> QoSProfile:
+        """The profile of a short name; KeyError for an unknown one."""
+        found: QoSProfile = cls[name.upper()].value
+        return found
+
+
+def as_profile(qos: QoSProfile | int) -> QoSProfile:
+    """A profile as it is; a number as the depth of a default profile.
+
+    Raises:
+        TypeError: it is neither.
+        ValueError: the depth is negative.
+    """
+    if isinstance(qos, QoSProfile):
+        return qos
+    if isinstance(qos, int) and not isinstance(qos, bool):
+        if qos < 0:
+            raise ValueError(f"Depth must be greater than or equal to zero; got {qos!r}")
+        return QoSProfile(depth=qos)
+    raise TypeError(f"Expected QoSProfile or int, but received {type(qos)!r}")

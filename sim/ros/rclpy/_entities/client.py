@@ -1,0 +1,3 @@
+"""``rclpy.client``, as programs import it."""
+
+from sim.ros.entities.client import *

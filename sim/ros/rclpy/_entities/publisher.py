@@ -1,0 +1,3 @@
+"""``rclpy.publisher``, as programs import it."""
+
+from sim.ros.entities.publisher import *

@@ -1,0 +1,3 @@
+"""``rclpy.service``, as programs import it."""
+
+from sim.ros.entities.service import *

@@ -1,0 +1,3 @@
+"""``rclpy.subscription``, as programs import it."""
+
+from sim.ros.entities.subscription import *

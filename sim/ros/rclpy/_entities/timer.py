@@ -1,0 +1,3 @@
+"""``rclpy.timer``, as programs import it."""
+
+from sim.ros.entities.timer import *

@@ -1,0 +1,73 @@
+"""Waiting for one message of a topic."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from sim.ros.entities.subscription import Subscription
+from sim.ros.entities.type_support import check_is_valid_msg_type
+from sim.ros.middleware.delivery import Delivery
+from sim.ros.qos.qos import QoSProfile, as_profile
+from sim.units import wait_ns
+
+if TYPE_CHECKING:
+    from sim.ros.node.node import Node
+
+
+class _AwaitedMessage(Subscription):
+    """A subscription that no executor serves: whoever waits takes the message."""
+
+    traced = False
+
+    def __init__(self, node: Node, msg_type: type, topic: str, qos_profile: QoSProfile) -> None:
+        name = node.resolve_topic_name(topic)
+        group = node.default_callback_group
+        super().__init__(node, msg_type, name, _ignore, group, qos_profile, topic=topic)
+        self.handed_out = True
+        self.arrived = node.context.host.clock.signal()
+
+    def deliver(self, delivery: Delivery) -> None:
+        """A message arrived: whoever waits goes on."""
+        super().deliver(delivery)
+        self.wake()
+
+    def wake(self) -> None:
+        """Let whoever waits look."""
+        self.arrived.set()
+
+
+def wait_for_message(
+    msg_type: type,
+    node: Node,
+    topic: str,
+    *,
+    qos_profile: QoSProfile | int = 1,
+    time_to_wait: int | float = -1,
+) -> tuple[bool, Any]:
+    """Wait for a message of a topic: True and the message; False and None after ``time_to_wait`` seconds.
+
+    Nobody needs to spin the node. A negative time waits until a message comes or the context ends.
+
+    Raises:
+        InvalidTopicNameException: the topic's name breaks the rules.
+        AttributeError, RuntimeError: ``msg_type`` is no message class.
+    """
+    check_is_valid_msg_type(msg_type)
+    host = node.context.host
+    deadline = None if time_to_wait < 0 else host.clock.now() + wait_ns(time_to_wait)
+    with host.lock:
+        awaited = _AwaitedMessage(node, msg_type, topic, as_profile(qos_profile))
+        node._agenda.add(awaited)
+        node.context.network.join_subscription(awaited)
+    node.context._wake_at_end(awaited.wake)
+    try:
+        awaited.arrived.wait(deadline)
+        with host.lock:
+            taken = awaited.take(host.clock.now())
+    finally:
+        awaited.destroy()
+    return (False, None) if taken is None else (True, taken.data)
+
+
+def _ignore(_message: object) -> None:
+    """Stands where a callback is wanted; it is never called."""

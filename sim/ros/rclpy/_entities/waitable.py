@@ -1,0 +1,3 @@
+"""``rclpy.waitable``, as programs import it."""
+
+from sim.ros.scheduling.waitable import *

@@ -1,0 +1,3 @@
+"""``rclpy.expand_topic_name``, as programs import it."""
+
+from sim.ros.naming.expand_topic_name import *

@@ -1,0 +1,3 @@
+"""``rclpy.validate_namespace``, as programs import it."""
+
+from sim.ros.naming.validate_namespace import *

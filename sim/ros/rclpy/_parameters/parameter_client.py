@@ -1,0 +1,3 @@
+"""``rclpy.parameter_client``, as programs import it."""
+
+from sim.ros.node.parameter_client import *

@@ -1,0 +1,3 @@
+"""``rclpy.parameter_event_handler``, as programs import it."""
+
+from sim.ros.node.parameter_event_handler import *

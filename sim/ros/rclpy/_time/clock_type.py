@@ -1,0 +1,3 @@
+"""``rclpy.clock_type``, as programs import it."""
+
+from sim.ros.time.clock_type import *

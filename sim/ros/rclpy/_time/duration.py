@@ -1,0 +1,3 @@
+"""``rclpy.duration``, as programs import it."""
+
+from sim.ros.time.duration import *

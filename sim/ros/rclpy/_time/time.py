@@ -1,0 +1,3 @@
+"""``rclpy.time``, as programs import it."""
+
+from sim.ros.time.time import *

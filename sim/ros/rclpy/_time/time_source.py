@@ -1,0 +1,3 @@
+"""``rclpy.time_source``, as programs import it."""
+
+from sim.ros.node.time_source import *

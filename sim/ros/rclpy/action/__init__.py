@@ -1,0 +1,3 @@
+"""``rclpy.action``, as programs import it."""
+
+from sim.ros.actions import *

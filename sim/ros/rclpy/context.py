@@ -1,0 +1,3 @@
+"""``rclpy.context``, as programs import it."""
+
+from sim.ros.context.context import *

@@ -1,0 +1,3 @@
+"""``rclpy.exceptions``, as programs import it."""
+
+from sim.ros.exceptions import *

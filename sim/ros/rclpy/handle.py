@@ -1,0 +1,3 @@
+"""``rclpy.handle``, as programs import it."""
+
+from sim.ros.handle import *

@@ -1,0 +1,3 @@
+"""``rclpy.lifecycle``, as programs import it."""
+
+from sim.ros.lifecycle import *

@@ -1,0 +1,3 @@
+"""``rclpy.serialization``, as programs import it."""
+
+from sim.ros.entities.serialization import *

@@ -1,0 +1,3 @@
+"""``rclpy.signals``, as programs import it."""
+
+from sim.ros.context.signals import *

@@ -1,0 +1,3 @@
+"""``rclpy.task``, as programs import it."""
+
+from sim.ros.scheduling.task import *

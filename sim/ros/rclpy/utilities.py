@@ -1,0 +1,3 @@
+"""``rclpy.utilities``, as programs import it."""
+
+from sim.ros.context.utilities import *

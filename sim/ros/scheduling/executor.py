@@ -1,0 +1,373 @@
+"""What all executors share: waiting until something is ready, and running it.
+
+The order is decided by the wait set, the exclusion by the callback groups; the kinds of executor add the
+threads. Whoever changes what is ready wakes the executor if it waits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator, Iterable
+from contextlib import contextmanager
+from types import TracebackType
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from sim.ros.context.context import Context
+from sim.ros.context.utilities import get_default_context, timeout_sec_to_nsec
+from sim.ros.scheduling.cycle import Cycle, Work
+from sim.ros.scheduling.entity import Entity
+from sim.ros.scheduling.handlers import Handler
+from sim.ros.scheduling.running import Runner
+from sim.ros.scheduling.task import Future, Task
+from sim.ros.scheduling.waitable_entity import WaitableEntity, ask_waitables
+from sim.ros.scheduling.waiting_ends import (
+    ConditionReachedException,
+    ExternalShutdownException,
+    ShutdownException,
+    Timeout,
+    TimeoutException,
+    TimeoutObject,
+    never,
+    seconds_of,
+)
+
+if TYPE_CHECKING:
+    from sim.ros.scheduling.entity import OwnerNode
+
+FoundT = TypeVar("FoundT")
+
+
+class Executor:
+    """Base of all executors; a program may write its own kind by ``_spin_once_impl`` or ``spin_once``."""
+
+    threads = 1
+    """How many callbacks can run at once."""
+
+    def __init__(self, *, context: Context | None = None) -> None:
+        self._context = get_default_context() if context is None else context
+        self._host = self._context.host
+        self._lock = self._host.lock
+        self._clock = self._host.clock
+        self._probe = self._context.probe
+        self._nodes: list[OwnerNode] = []
+        self._runner = Runner(self)
+        chooses = type(self).can_execute is not Executor.can_execute
+        self._cycle = Cycle(self._nodes, self._runner.entity_of, self.can_execute if chooses else None)
+        self._signal = self._clock.signal()
+        self._asks_waitables = False
+        self._waitables_due: int | None = None
+        self._waits_until: int | None = None
+        self._waiting = False
+        self._spinning = False
+        self._is_shutdown = False
+        self._context._wake_at_end(self.wake)
+        self.trace_id = self._probe.executor_made(type(self).__name__, self.threads)
+
+    # Public
+
+    @property
+    def context(self) -> Context:
+        """The context it lives in."""
+        return self._context
+
+    def add_node(self, node: OwnerNode) -> bool:
+        """Serve a node from now on, and let its former executor go; whether it was not served already."""
+        with self._lock:
+            if node in self._nodes:
+                return False
+            self._nodes.append(node)
+            former = node._agenda.executor
+            if former is not None and former is not self and former._spinning:
+                self._probe.spin_clashed(node.trace_id)
+            node.executor = self
+            node._agenda.executor = self
+            self._waitables_changed()
+            self.wake()
+            return True
+
+    def remove_node(self, node: OwnerNode) -> None:
+        """Serve a node no more."""
+        with self._lock:
+            if node in self._nodes:
+                self._nodes.remove(node)
+                if node._agenda.executor is self:
+                    node._agenda.executor = None
+                self._waitables_changed()
+                self.wake()
+
+    def get_nodes(self) -> list[OwnerNode]:
+        """The nodes it serves."""
+        return list(self._nodes)
+
+    def wake(self) -> None:
+        """Have it look again at what is ready."""
+        with self._lock:
+            self._wake()
+
+    def create_future(self) -> Future[Any]:
+        """Make a future whose done-callbacks run as tasks of this executor."""
+        return Future(executor=self)
+
+    def create_task(self, callback: Any, *args: Any, **kwargs: Any) -> Task[Any]:
+        """Run a function or coroutine soon, before whatever else is ready."""
+        task: Task[Any] = Task(callback, args, kwargs, executor=self)
+        self._resume(task)
+        return task
+
+    def shutdown(self, timeout_sec: float | None = None) -> bool:
+        """Yield nothing more and wait for what runs; False if ``timeout_sec`` seconds were not enough.
+
+        A callback that shuts its own executor down waits for nothing.
+        """
+        with self._lock:
+            self._is_shutdown = self._runner.refuses = True
+            self.wake()
+        timeout = timeout_sec_to_nsec(timeout_sec)
+        if not self._runner.runs_here() and not self._runner.wait_until_idle(timeout):
+            return False
+        for node in self.get_nodes():
+            self.remove_node(node)
+        return True
+
+    def spin(self) -> None:
+        """Run callbacks until the context ends or the executor is shut down.
+
+        Raises:
+            RuntimeError: it is already spinning.
+            ExternalShutdownException: the context ended (single-threaded only).
+        """
+        with self._enter_spin():
+            while self._context.ok() and not self._is_shutdown:
+                self._spin_once_impl()
+
+    def spin_once(self, timeout_sec: float | None = None) -> None:
+        """Run one callback; wait at most ``timeout_sec`` seconds for it (None or negative: for ever)."""
+        with self._enter_spin():
+            self._spin_once_impl(timeout_sec)
+
+    def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
+        """Run callbacks until the future is done, for at most ``timeout_sec`` seconds."""
+        with self._enter_spin():
+            future._set_executor(self)
+            future.add_done_callback(lambda _: self.wake())
+            nanoseconds = timeout_sec_to_nsec(timeout_sec)
+            if nanoseconds < 0:
+                while self._context.ok() and not future._settled() and not self._is_shutdown:
+                    self._spin_once_impl(timeout_sec, future._settled)
+                return
+            end = self._clock.now() + nanoseconds
+            left = TimeoutObject(nanoseconds / 1e9)
+            while self._context.ok() and not future._settled() and not self._is_shutdown:
+                self._spin_once_impl(left, future._settled)
+                now = self._clock.now()
+                if now >= end:
+                    return
+                left.timeout = (end - now) / 1e9
+
+    def spin_once_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
+        """Run one callback, unless the future is done first."""
+        with self._enter_spin():
+            future._set_executor(self)
+            future.add_done_callback(lambda _: self.wake())
+            self._spin_once_impl(timeout_sec, future._settled)
+
+    # Waiting for work
+
+    def _spin_once_impl(
+        self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never
+    ) -> None:
+        if type(self).spin_once is Executor.spin_once:
+            raise NotImplementedError
+        # Programs written for Humble say by this method how to spin.
+        self.spin_once(seconds_of(timeout_sec))
+
+    @contextmanager
+    def _enter_spin(self) -> Generator[None, None, None]:
+        with self._lock:
+            if self._spinning:
+                self._probe.spin_clashed()
+                raise RuntimeError("Executor is already spinning")
+            self._spinning = True
+            self._context.process.spins += 1
+        try:
+            yield
+        finally:
+            self._spinning = False
+
+    def _want(
+        self, timeout_sec: Timeout, nodes: Iterable[OwnerNode] | None, condition: Callable[[], bool]
+    ) -> None:
+        """Tell what is waited for next; if that is not what was last, the rest of the snapshot is let go."""
+        wanted = (timeout_sec, nodes, condition)
+        if wanted != self._cycle.wanted:
+            with self._lock:
+                self._cycle.want(wanted, nodes)
+                self._wake()
+
+    def _await_work(
+        self,
+        timeout_sec: Timeout,
+        condition: Callable[[], bool],
+        on_found: Callable[[Work, int], FoundT],
+    ) -> FoundT:
+        """Wait for the next thing to run, marked as handed out, and return what ``on_found`` makes of it.
+
+        ``on_found`` gets the time too and is called with the lock still held.
+
+        Raises:
+            ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException:
+                there is none for that reason.
+        """
+        nanoseconds = -1 if timeout_sec is None else timeout_sec_to_nsec(seconds_of(timeout_sec))
+        deadline = None if nanoseconds < 0 else self._clock.now() + nanoseconds
+        if nanoseconds == 0:
+            self._clock.poll()
+        while True:
+            asked = self._asks_waitables and self._cycle.about_to_look and self._ask_waitables()
+            with self._lock:
+                self._waiting = False
+                if self._is_shutdown:
+                    raise ShutdownException
+                if not self._context.ok():
+                    raise ExternalShutdownException
+                if condition():
+                    raise ConditionReachedException
+                now = self._clock.now()
+                work = self._next_work(now)
+                if work is not None:
+                    return on_found(work, now)
+                if deadline is not None and now >= deadline:
+                    self._wake()
+                    raise TimeoutException
+                if self._asks_waitables and not asked and self._cycle.about_to_look:
+                    continue
+                dues = (node._agenda.next_due() for node in self._cycle.view)
+                until = _earliest((deadline, self._waitables_due, *dues))
+                self._waits_until = until
+                self._waiting = True
+            self._signal.wait(until)
+
+    def _next_work(self, now: int) -> Work | None:
+        """Yield the next of this cycle, of a new one once it is served to its end. With the lock held."""
+        cycle = self._cycle
+        if not cycle.served:
+            work = cycle.next(now)
+            if work is not None:
+                return work
+        if not self._may_begin_cycle():
+            return None
+        cycle.begin()
+        return cycle.next(now)
+
+    def _may_begin_cycle(self) -> bool:
+        return True
+
+    def _ask_waitables(self) -> bool:
+        """Ask a program's waitables, for a cycle that is about to begin; True."""
+        with self._lock:
+            # What becomes ready while they are asked has to end the waiting that may follow.
+            self._waiting = True
+            self._waits_until = None
+        self._waitables_due = ask_waitables(self, tuple(self._cycle.view))
+        return True
+
+    def _waitables_changed(self) -> None:
+        """Nodes or a program's waitables came or went. With the lock held."""
+        self._asks_waitables = any(node._agenda.asked for node in self._nodes)
+        self._waitables_due = None
+        self.wake()
+
+    # Being told; with the host's lock held
+
+    def _entity_ready(self, entity: Entity) -> None:
+        if self._waiting and not entity.handed_out and entity.callback_group.can_execute(entity):
+            self._work_came()
+
+    def _timer_set(self, timer: Entity) -> None:
+        if not self._waiting:
+            return
+        if timer.due <= self._clock.now():
+            self._entity_ready(timer)
+        elif self._waits_until is None or timer.due < self._waits_until:
+            self._signal.set()
+
+    def _wake(self) -> None:
+        if self._cycle.foreign_awaits:
+            self._cycle.recall_foreign_awaits()
+        if self._waiting:
+            self._signal.set()
+
+    def _work_came(self) -> None:
+        """There is something to run now, while the thread that spins waits."""
+        self._signal.set()
+
+    def _look_again(self) -> None:
+        """Something may be ready that was not; whoever calls this does not look for it."""
+        self._wake()
+
+    def _resume(self, task: Task[Any]) -> None:
+        with self._lock:
+            self._cycle.add_task(task)
+            self._cycle.recall_foreign_awaits()
+            if self._waiting:
+                self._work_came()
+
+    def _resume_at_wake_up(self, task: Task[Any]) -> None:
+        with self._lock:
+            self._cycle.foreign_awaits.append(task)
+
+    def _workers_busy(self) -> bool:
+        return self._runner.at_work >= self.threads
+
+    # For executors written by a program
+
+    def can_execute(self, entity: Entity) -> bool:
+        """Whether an entity is waited on: it is not handed out, and its group would let it in.
+
+        A program's own kind of executor may leave more out of a cycle. It is asked with the host's lock held.
+        """
+        return not entity.handed_out and entity.callback_group.can_execute(entity)
+
+    def wait_for_ready_callbacks(
+        self,
+        timeout_sec: Timeout = None,
+        nodes: Iterable[OwnerNode] | None = None,
+        condition: Callable[[], bool] = never,
+    ) -> tuple[Task[Any], Any, OwnerNode | None]:
+        """Wait for the next callback, of ``nodes`` or of all: a task that runs it, its entity and its node.
+
+        For a task of ``create_task`` there is neither entity nor node.
+
+        Raises:
+            ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException:
+                there is none for that reason.
+            NotImplementedError: one of ``nodes`` was not added.
+        """
+        self._want(timeout_sec, nodes, condition)
+        work = self._await_work(timeout_sec, condition, lambda work, _now: work)
+        task = work if isinstance(work, Task) else Handler(work, self)
+        entity = self._runner.entity_of(task)
+        if entity is None:
+            return task, None, None
+        return task, entity.waitable if isinstance(entity, WaitableEntity) else entity, entity.node
+
+    def _wait_for_ready_callbacks(
+        self,
+        timeout_sec: Timeout = None,
+        nodes: Iterable[OwnerNode] | None = None,
+        condition: Callable[[], bool] = never,
+    ) -> Generator[tuple[Task[Any], Any, OwnerNode | None], None, None]:
+        """What ``wait_for_ready_callbacks`` returns, time after time."""
+        while True:
+            yield self.wait_for_ready_callbacks(timeout_sec, nodes, condition)
+
+    def __enter__(self) -> Executor:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.shutdown()
+
+
+def _earliest(times: Iterable[int | None]) -> int | None:
+    return min((time for time in times if time is not None), default=None)

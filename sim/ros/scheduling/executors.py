@@ -1,0 +1,178 @@
+"""The executors of rclpy: one runs callbacks in the thread that spins, one on a pool of workers."""
+
+from __future__ import annotations
+
+import inspect
+import warnings
+from collections.abc import Callable, Generator
+from contextlib import contextmanager, suppress
+from typing import Any, Self
+
+from sim.ros.context.context import Context
+from sim.ros.context.utilities import get_available_threads, get_default_context
+from sim.ros.scheduling.cycle import Work
+from sim.ros.scheduling.executor import Executor
+from sim.ros.scheduling.running import Started
+from sim.ros.scheduling.task import Future
+from sim.ros.scheduling.waiting_ends import (
+    ConditionReachedException,
+    ExternalShutdownException,
+    ShutdownException,
+    Timeout,
+    TimeoutException,
+    TimeoutObject,
+    never,
+)
+from sim.ros.scheduling.workers import WorkerPool
+
+__all__ = [
+    "ConditionReachedException",
+    "Executor",
+    "ExternalShutdownException",
+    "MultiThreadedExecutor",
+    "ShutdownException",
+    "SingleThreadedExecutor",
+    "TimeoutException",
+    "TimeoutObject",
+    "await_or_execute",
+]
+
+
+async def await_or_execute(callback: Callable[..., Any], *args: Any) -> Any:
+    """Call a function, or await what a coroutine function returns; gives what comes of it."""
+    if inspect.iscoroutinefunction(callback):
+        return await callback(*args)
+    return callback(*args)
+
+
+class SingleThreadedExecutor(Executor):
+    """Runs callbacks one after another in the thread that spins.
+
+    An exception in a callback leaves ``spin`` at once; spinning again goes on.
+    """
+
+    def __new__(cls, *, context: Context | None = None) -> Self:
+        """Make it; where the run was set up with a number of threads, the kind with that many."""
+        chosen = get_default_context() if context is None else context
+        if cls is SingleThreadedExecutor and (chosen.host.threads or 1) > 1 and chosen.probe.visible:
+            return MultiThreadedExecutor(context=chosen)  # type: ignore[return-value]
+        return super().__new__(cls)
+
+    def _spin_once_impl(
+        self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never
+    ) -> None:
+        self._want(timeout_sec, None, wait_condition)
+        try:
+            started = self._await_work(timeout_sec, wait_condition, self._begin_and_start)
+        except (ShutdownException, TimeoutException, ConditionReachedException):
+            return
+        if started is not None:
+            self._runner.run(started)
+
+    def _begin_and_start(self, work: Work, now: int) -> Started | None:
+        begun = self._runner.begin(work, now)
+        return None if begun is None else self._runner.start(begun)
+
+
+class MultiThreadedExecutor(Executor):
+    """Runs callbacks on a pool of ``num_threads`` workers; the thread that spins only dispatches.
+
+    None: as many as the CPUs this process may use, else 2. An exception of a callback comes out of ``spin``
+    only when a later callback is handed to the pool.
+    """
+
+    def __init__(self, num_threads: int | None = None, *, context: Context | None = None) -> None:
+        chosen = get_default_context() if context is None else context
+        override = chosen.host.threads if chosen.probe.visible else None
+        self.threads = override or (get_available_threads() if num_threads is None else num_threads)
+        if self.threads < 1:
+            raise ValueError("max_workers must be greater than 0")
+        if self.threads == 1:
+            warnings.warn(
+                "MultiThreadedExecutor is used with a single thread.\n"
+                "Use the SingleThreadedExecutor instead.",
+                stacklevel=2,
+            )
+        super().__init__(context=chosen)
+        self._pool = WorkerPool(self)
+        self._spinning_on = False
+
+    @property
+    def _executor(self) -> WorkerPool:
+        """The pool, by the name that rclpy has for it."""
+        return self._pool
+
+    def shutdown(self, timeout_sec: float | None = None, *, wait_for_threads: bool = True) -> bool:
+        """Yield nothing more, wait for what runs, and end the workers.
+
+        False if what ran took longer than ``timeout_sec`` seconds. Even then it waits for the end of all
+        workers, as rclpy does, unless ``wait_for_threads`` is False.
+        """
+        done = super().shutdown(timeout_sec)
+        self._pool.dismiss()
+        if wait_for_threads:
+            self._pool.wait_for_end()
+        return done
+
+    def spin(self) -> None:
+        """Run callbacks until the context ends or the executor is shut down.
+
+        Raises:
+            RuntimeError: it is already spinning.
+        """
+        with self._spin_on():
+            super().spin()
+
+    def spin_until_future_complete(self, future: Future[Any], timeout_sec: float | None = None) -> None:
+        """Run callbacks until the future is done, for at most ``timeout_sec`` seconds."""
+        with self._spin_on(until=future._settled):
+            super().spin_until_future_complete(future, timeout_sec)
+
+    @contextmanager
+    def _spin_on(self, until: Callable[[], bool] = never) -> Generator[None, None, None]:
+        """Meanwhile workers may look for their next callback themselves, ``until`` a condition holds."""
+        outer = self._spinning_on, self._pool.enough
+        self._set_spinning_on(True, until)
+        try:
+            yield
+        finally:
+            self._set_spinning_on(*outer)
+
+    def _set_spinning_on(self, spinning_on: bool, enough: Callable[[], bool]) -> None:
+        with self._lock:
+            self._spinning_on = spinning_on
+            self._pool.enough = enough
+            self._waitables_changed()
+
+    def _waitables_changed(self) -> None:
+        """Only the thread that spins can ask waitables, for it holds no lock then."""
+        super()._waitables_changed()
+        self._pool.dispatches_itself = self._spinning_on and not self._asks_waitables
+
+    def _spin_once_impl(
+        self, timeout_sec: Timeout = None, wait_condition: Callable[[], bool] = never
+    ) -> None:
+        self._want(timeout_sec, None, wait_condition)
+        with suppress(
+            ExternalShutdownException, ShutdownException, TimeoutException, ConditionReachedException
+        ):
+            self._await_work(
+                timeout_sec, lambda: wait_condition() or self._pool.error_surfaces, self._pool.submit
+            )
+        self._pool.raise_surfacing()
+
+    def _may_begin_cycle(self) -> bool:
+        return self._pool.all_begun()
+
+    def _work_came(self) -> None:
+        """An idle worker looks for it, which saves the way over the thread that spins."""
+        if not self._pool.looks_itself():
+            super()._work_came()
+
+    def _look_again(self) -> None:
+        """Workers look for themselves while ``spin`` runs."""
+        if not self._pool.dispatches_itself:
+            self._wake()
+
+    def _workers_busy(self) -> bool:
+        return self._pool.all_busy()

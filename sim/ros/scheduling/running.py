@@ -1,0 +1,242 @@
+"""Running what has become ready: entering its group, calling it, ending it; and telling why others wait."""
+
+from __future__ import annotations
+
+import inspect
+import weakref
+from threading import get_ident
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+from sim.clock import Stopped
+from sim.marks import calls_the_program
+from sim.ros.scheduling.entity import Entity, Taken
+from sim.ros.scheduling.handlers import Handler
+from sim.ros.scheduling.task import Task
+from sim.trace.events import Reason
+
+if TYPE_CHECKING:
+    from sim.clock import Signal
+    from sim.ros.scheduling.cycle import Work
+    from sim.ros.scheduling.executor import Executor
+
+Begun: TypeAlias = "tuple[Entity, Taken] | Task[Any]"
+"""A callback that its group has let in and that has what it needs to run."""
+Started: TypeAlias = "tuple[Entity, Taken, int] | Task[Any]"
+"""A callback that runs on this thread by its trace, and what ran here before (its id)."""
+
+
+class Runner:
+    """Runs the callbacks and tasks of an executor, and knows which run. Guarded by the host's lock."""
+
+    def __init__(self, executor: Executor) -> None:
+        # Weakly: who drops an executor without shutting it down is rid of it at once.
+        self._executor = weakref.ref(executor)
+        self.lock = executor.context.host.lock
+        self.clock = executor.context.host.clock
+        self._probe = executor.context.probe
+        self._coroutines: dict[Task[Any], Entity] = {}
+        self._running: list[Entity] = []
+        self._task_threads: list[int] = []
+        self.at_work = 0
+        """How many callbacks and tasks have begun and not ended."""
+        self.refuses = False
+        """Whether nothing may begin any more."""
+        self._idle_signals: list[Signal] = []
+
+    @property
+    def executor(self) -> Executor:
+        """The executor, which is there as long as something runs."""
+        executor = self._executor()
+        assert executor is not None
+        return executor
+
+    def entity_of(self, task: Task[Any]) -> Entity | None:
+        """The entity whose callback a task goes on with; None: it is no callback's."""
+        return task.entity if isinstance(task, Handler) else self._coroutines.get(task)
+
+    # From group entered to group left
+
+    def begin(self, work: Work, now: int) -> Begun | None:
+        """Enter the group and take what is there; None: refused, or nothing there. With the lock held."""
+        if isinstance(work, Task):
+            self.at_work += 1
+            return work
+        taken = self.enter(work, now)
+        return None if taken is None else (work, taken)
+
+    def enter(self, entity: Entity, now: int) -> Taken | None:
+        """Do as ``begin`` for an entity."""
+        entity.handed_out = False
+        if self.refuses or entity.destroyed or not entity.callback_group.beginning_execution(entity):
+            self.executor.wake()
+            return None
+        taken = entity.take(now)
+        if taken is None:
+            entity.callback_group.ending_execution(entity)
+            self.executor.wake()
+            return None
+        self._running.append(entity)
+        self.at_work += 1
+        if entity.wait_shown is not None:
+            self._probe.wait_ended(entity)
+        if entity.pending and entity.callback_group.can_execute(entity):
+            self.executor._wake()
+        return taken
+
+    def start(self, begun: Begun) -> Started:
+        """Tell the trace that it runs on this thread. With the lock held since it was taken.
+
+        Else what another thread takes next, or what its queue loses, could come before it on the trace.
+        """
+        if isinstance(begun, Task):
+            return begun
+        entity, taken = begun
+        return entity, taken, self._probe.callback_started(entity, taken.message, taken.age, taken.left)
+
+    @calls_the_program
+    def run(self, started: Started) -> None:
+        """Run what has started on this thread; what it raises is raised."""
+        if isinstance(started, Task):
+            self._run_task(started)
+        else:
+            self._run_callback(*started)
+
+    def _run_callback(self, entity: Entity, taken: Taken, outer: int) -> None:
+        try:
+            outcome = entity.invoke(taken)
+        except BaseException as error:
+            self.fail(entity, error, outer)
+            raise
+        if outcome is not None and inspect.iscoroutine(outcome):
+            task: Task[Any] = Task(outcome, executor=self.executor)
+            self._coroutines[task] = entity
+            self._step(task, entity, outer)
+        else:
+            self.end(entity, outer)
+
+    def _run_task(self, task: Task[Any]) -> None:
+        """Run a task as far as it gets."""
+        entity = self._coroutines.get(task)
+        if entity is None:
+            self._task_threads.append(get_ident())
+            try:
+                task()
+            finally:
+                with self.lock:
+                    self._task_threads.remove(get_ident())
+                    self._leave()
+            error = task.exception() if task._settled() else None
+            if error is not None:
+                raise error
+        else:
+            with self.lock:
+                self._running.append(entity)
+                outer = self._probe.callback_resumed(entity)
+            self._step(task, entity, outer)
+
+    def _step(self, task: Task[Any], entity: Entity, outer: int) -> None:
+        awaited = task._advance()
+        if not task._settled():
+            with self.lock:
+                self._running.remove(entity)
+                self._probe.callback_suspended(entity, outer)
+            task._arm(awaited)
+            with self.lock:
+                self._leave()
+            return
+        del self._coroutines[task]
+        error = task.exception()
+        if error is not None:
+            self.fail(entity, error, outer)
+            raise error
+        self.end(entity, outer)
+
+    def fail(self, entity: Entity, error: BaseException, outer: int) -> None:
+        """A callback raised, and so has ended."""
+        if not isinstance(error, (Stopped, KeyboardInterrupt)):
+            with self.lock:
+                self._probe.callback_failed(entity, error)
+        self.end(entity, outer)
+
+    def end(self, entity: Entity, outer: int) -> None:
+        """A callback has ended: free its group, and wake whoever waits for that."""
+        with self.lock:
+            self._running.remove(entity)
+            self._probe.callback_ended(entity, outer)
+            entity.callback_group.ending_execution(entity)
+            executor = self._executor()
+            if executor is not None and (executor._waiting or executor._cycle.foreign_awaits):
+                executor._look_again()
+            self._wake_sharers(entity)
+            self._leave()
+
+    def _wake_sharers(self, entity: Entity) -> None:
+        """Wake the other executors that serve members of the entity's group."""
+        for node in entity.callback_group.other_nodes(entity.node):
+            executor = node._agenda.executor
+            if executor is not None and executor._runner is not self:
+                executor.wake()
+
+    def suspend(self, entity: Entity, outer: int) -> None:
+        """A coroutine callback awaits something and leaves this thread."""
+        with self.lock:
+            self._running.remove(entity)
+            self._probe.callback_suspended(entity, outer)
+            self._leave()
+
+    def resume(self, entity: Entity) -> int:
+        """A coroutine callback goes on on this thread; returns what ran here until now (its id)."""
+        with self.lock:
+            self._running.append(entity)
+            self.at_work += 1
+            return self._probe.callback_resumed(entity)
+
+    def _leave(self) -> None:
+        """A thread is done with its work. With the lock held."""
+        self.at_work -= 1
+        if self.at_work == 0 and self._idle_signals:
+            signals, self._idle_signals = self._idle_signals, []
+            for signal in signals:
+                signal.set()
+
+    # What is shown as running though it runs inside a task
+
+    def show(self, entity: Entity) -> None:
+        """An entity's callback runs on this thread, inside a task."""
+        with self.lock:
+            self._running.append(entity)
+
+    def hide(self, entity: Entity) -> None:
+        """It runs no more."""
+        with self.lock:
+            self._running.remove(entity)
+
+    # Questions
+
+    def runs_here(self) -> bool:
+        """Whether the calling thread runs a callback or a task of this executor."""
+        here = self._probe.callback_here()
+        is_callback = here != 0 and any(each.trace_id == here for each in self._running)
+        return is_callback or get_ident() in self._task_threads
+
+    def wait_until_idle(self, nanoseconds: int) -> bool:
+        """Wait until nothing runs, for so long at most (negative: for ever); whether nothing does."""
+        with self.lock:
+            if self.at_work == 0:
+                return True
+            signal = self.clock.signal()
+            self._idle_signals.append(signal)
+        return signal.wait(None if nanoseconds < 0 else self.clock.now() + nanoseconds)
+
+    def explain_wait(self, entity: Entity) -> None:
+        """Record why a ready callback of this executor does not run; nothing if it is about to."""
+        executor = self.executor
+        busy = executor._workers_busy()
+        if not executor._spinning and not entity.handed_out:
+            self._probe.waits(entity, Reason.NOBODY_SPINS, None, workers_busy=False)
+        elif not entity.callback_group.can_execute(entity):
+            holder: Entity | None = getattr(entity.callback_group, "holder", None)
+            self._probe.waits(entity, Reason.GROUP_HELD, holder, workers_busy=busy)
+        elif busy:
+            culprit = self._running[0] if self._running else None
+            self._probe.waits(entity, Reason.NO_FREE_WORKER, culprit, workers_busy=True)

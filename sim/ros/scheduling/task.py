@@ -1,0 +1,244 @@
+"""Futures, and tasks: functions and coroutines that an executor runs."""
+
+from __future__ import annotations
+
+import inspect
+import sys
+import threading
+import warnings
+import weakref
+from collections.abc import Callable, Coroutine, Generator
+from types import CodeType
+from typing import TYPE_CHECKING, Any, Generic, TypeGuard, TypeVar
+
+from sim.ros.scheduling.asyncio_waits import Resumable, driven_by_asyncio, wait_in_asyncio
+
+if TYPE_CHECKING:
+    from sim.ros.scheduling.executors import Executor
+
+T = TypeVar("T")
+_allocate_lock = threading.Lock
+
+
+class Future(Generic[T]):
+    """A result that will be there later. Thread-safe.
+
+    Done-callbacks run as tasks of the executor that the future belongs to, or at once on the thread that
+    gives the result when it belongs to none.
+    """
+
+    def __init__(self, *, executor: Executor | None = None) -> None:
+        self._done = False
+        self._cancelled = False
+        self._result: T | None = None
+        self._exception: BaseException | None = None
+        self._exception_fetched = False
+        self._callbacks: list[Callable[[Future[T]], None]] = []
+        self._waiting_tasks: list[Resumable] = []
+        self._lock = _allocate_lock()
+        self._executor: weakref.ref[Executor] | None = None
+        if executor is not None:
+            self._set_executor(executor)
+
+    def __del__(self) -> None:
+        if self._exception is not None and not self._exception_fetched:
+            sys.stderr.write(f"The following exception was never retrieved: {self._exception}\n")
+
+    def __await__(self) -> Generator[Any, None, T | None]:
+        while not self._settled():
+            if driven_by_asyncio():
+                yield from wait_in_asyncio(self._wake_when_done)
+            else:
+                yield self
+        return self.result()
+
+    def cancel(self) -> None:
+        """Give it up, unless it is done."""
+        with self._lock:
+            if self._done or self._cancelled:
+                return
+            self._cancelled = True
+        self._finish()
+
+    def cancelled(self) -> bool:
+        """Whether it was given up."""
+        return self._cancelled
+
+    def done(self) -> bool:
+        """Whether there is a result or an exception; one that was given up has neither."""
+        return self._done
+
+    def _settled(self) -> bool:
+        """Whether there is nothing more to wait for: it is done, or was given up."""
+        return self._done or self._cancelled
+
+    def result(self) -> T | None:
+        """The result, None while there is none; raises what was given as exception."""
+        if self._exception is not None:
+            self._exception_fetched = True
+            raise self._exception
+        return self._result
+
+    def exception(self) -> BaseException | None:
+        """The exception given, if any."""
+        self._exception_fetched = True
+        return self._exception
+
+    def set_result(self, result: T) -> None:
+        """Give the result."""
+        with self._lock:
+            self._result = result
+            self._done = True
+            self._cancelled = False
+        self._finish()
+
+    def set_exception(self, exception: BaseException) -> None:
+        """Give an exception in place of a result."""
+        with self._lock:
+            self._exception = exception
+            self._exception_fetched = False
+            self._done = True
+            self._cancelled = False
+        self._finish()
+
+    def add_done_callback(self, callback: Callable[[Future[T]], None]) -> None:
+        """Have ``callback(future)`` run when it is done; at once if it is."""
+        with self._lock:
+            if not self._settled():
+                self._callbacks.append(callback)
+                return
+        self._run_callbacks([callback])
+
+    def remove_done_callback(self, callback: Callable[[Future[T]], None]) -> bool:
+        """Forget every registration of ``callback``; whether there was one."""
+        with self._lock:
+            kept = [each for each in self._callbacks if each != callback]
+            found = len(kept) < len(self._callbacks)
+            self._callbacks = kept
+        return found
+
+    def _set_executor(self, executor: Executor) -> None:
+        self._executor = weakref.ref(executor)
+
+    def _wake_when_done(self, task: Resumable) -> None:
+        with self._lock:
+            if not self._settled():
+                self._waiting_tasks.append(task)
+                return
+        task._resume_soon()
+
+    def _finish(self) -> None:
+        if not (self._callbacks or self._waiting_tasks):
+            return  # nobody listens, and from now on nobody can begin to
+        with self._lock:
+            callbacks, self._callbacks = self._callbacks, []
+            tasks, self._waiting_tasks = self._waiting_tasks, []
+        self._run_callbacks(callbacks)
+        for task in tasks:
+            task._resume_soon()
+
+    def _run_callbacks(self, callbacks: list[Callable[[Future[T]], None]]) -> None:
+        executor = None if self._executor is None else self._executor()
+        for callback in callbacks:
+            if executor is not None and not getattr(executor, "_is_shutdown", False):
+                executor.create_task(callback, self)
+            else:
+                self._run_here(callback)
+
+    def _run_here(self, callback: Callable[[Future[T]], None]) -> None:
+        try:
+            callback(self)
+        except Exception as error:  # noqa: BLE001 -- the giver of the result must not suffer for a listener
+            warnings.warn(f"Unhandled exception in done callback: {error}", RuntimeWarning, stacklevel=3)
+
+
+class Task(Future[T]):
+    """A function or coroutine that its executor runs; calling the task runs it as far as it gets."""
+
+    def __init__(
+        self,
+        handler: Callable[..., Any] | Coroutine[Any, Any, Any],
+        args: tuple[Any, ...] | None = None,
+        kwargs: dict[str, Any] | None = None,
+        executor: Executor | None = None,
+    ) -> None:
+        super().__init__(executor=executor)
+        arguments, named = args or (), kwargs or {}
+        if _makes_coroutines(handler):
+            handler = handler(*arguments, **named)
+            arguments, named = (), {}
+        self._handler: Any = handler
+        self._args = arguments
+        self._kwargs = named
+        self._executing = False
+        self._was_suspended = False
+        self._step_lock = _allocate_lock()
+
+    def __call__(self) -> None:
+        """Run the function, or the coroutine up to its next await; nothing if done or running elsewhere."""
+        self._arm(self._advance())
+
+    def _advance(self) -> object | None:
+        """Run as far as it gets; what a coroutine awaits now, None when there is nothing to wait for."""
+        if self._settled() or not self._step_lock.acquire(blocking=False):
+            return None
+        try:
+            self._executing = True
+            return self._step()
+        finally:
+            self._executing = False
+            self._step_lock.release()
+
+    def _arm(self, awaited: object | None) -> None:
+        """Have the task go on once ``awaited`` is done.
+
+        Something foreign is asked again in the next cycle, and then at each wake-up of the executor.
+        """
+        was_suspended, self._was_suspended = self._was_suspended, True
+        if isinstance(awaited, Future):
+            awaited._wake_when_done(self)
+        elif awaited is not None:
+            executor = None if self._executor is None else self._executor()
+            if executor is not None:
+                (executor._resume_at_wake_up if was_suspended else executor._resume)(self)
+
+    def executing(self) -> bool:
+        """Whether it runs right now."""
+        return self._executing
+
+    def cancel(self) -> None:
+        """Give it up; a coroutine is closed, unless it runs right now."""
+        super().cancel()
+        if inspect.iscoroutine(self._handler) and not self._executing:
+            self._handler.close()
+
+    def _step(self) -> object | None:
+        try:
+            if not inspect.iscoroutine(self._handler):
+                self.set_result(self._handler(*self._args, **self._kwargs))
+                return None
+            awaited = self._handler.send(None)
+        except StopIteration as end:
+            self.set_result(end.value)
+        except Exception as error:  # noqa: BLE001 -- whoever asks for the task's result gets it
+            self.set_exception(error)
+        else:
+            return _NOTHING_NAMED if awaited is None else awaited
+        return None
+
+    def _resume_soon(self) -> None:
+        executor = None if self._executor is None else self._executor()
+        if executor is not None:
+            executor._resume(self)
+
+
+def _makes_coroutines(handler: object) -> TypeGuard[Callable[..., Coroutine[Any, Any, Any]]]:
+    """Answer as ``inspect.iscoroutinefunction`` does, for functions and methods a lot quicker."""
+    code = getattr(handler, "__code__", None)
+    if isinstance(code, CodeType):
+        return code.co_flags & inspect.CO_COROUTINE != 0
+    return inspect.iscoroutinefunction(handler)
+
+
+_NOTHING_NAMED = object()
+"""Stands for an await that does not say what it waits for (a bare ``yield``)."""

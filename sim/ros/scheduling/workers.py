@@ -1,0 +1,254 @@
+"""The worker threads of a MultiThreadedExecutor, and the queue of callbacks that wait for one.
+
+Whatever is yielded goes into one queue and is begun in the order of yielding; if its group has let another
+one in by then, it is not taken. For each a free worker is called, the one that has been idle longest first; a
+new one starts only when none is idle. A worker that ends a callback looks for the next one itself, and takes
+over what the called ones are late for, so that a busy executor needs no hand-over between threads.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections import deque
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from sim.clock import Signal
+from sim.ros.scheduling.cycle import Work
+from sim.ros.scheduling.running import Begun, Started
+from sim.ros.scheduling.waiting_ends import never
+
+if TYPE_CHECKING:
+    from sim.ros.scheduling.executors import MultiThreadedExecutor
+
+
+# Kept from before sim.clock.stdlib puts the virtual one in its place.
+_join = threading.Thread.join
+
+
+class Worker:
+    """A thread of the pool; ``called`` while it is on its way to begin something."""
+
+    __slots__ = ("called", "signal", "thread")
+
+    def __init__(self, signal: Signal) -> None:
+        self.signal = signal
+        self.called = False
+        self.thread: threading.Thread | None = None
+
+
+class WorkerPool:
+    """At most ``executor.threads`` workers, started when needed. Its state is guarded by the host's lock."""
+
+    def __init__(self, executor: MultiThreadedExecutor) -> None:
+        self.dispatches_itself = False
+        """Whether workers may look for their next callback themselves."""
+        self.enough: Callable[[], bool] = never
+        """Whether they may look no longer."""
+        self.error_surfaces = False
+        """Whether a callback's exception is due to come out of ``spin``."""
+        self._executor = executor
+        self._runner = executor._runner
+        self._lock = executor._lock
+        self._clock = executor._clock
+        self._name = f"ThreadPoolExecutor-{next(executor._context.process.pool_numbers)}"
+        self._workers: list[Worker] = []
+        self._idle: deque[Worker] = deque()
+        self._queue: deque[Work] = deque()
+        self._coming = 0
+        self._called_at = 0
+        self._look_owed = False
+        self._errors: list[BaseException] = []
+        self._dismissed = False
+        self._living = 0
+        self._end_signals: list[Signal] = []
+
+    @property
+    def _max_workers(self) -> int:
+        """How many workers there can be, as Python's own pools tell it."""
+        return self._executor.threads
+
+    def all_busy(self) -> bool:
+        """Whether no worker is free and none can be started."""
+        if self._idle or self._coming > len(self._queue):
+            return False
+        return len(self._workers) >= self._executor.threads
+
+    def all_begun(self) -> bool:
+        """Whether all that workers were called for has begun; if not, the executor is woken when it has."""
+        self._look_owed = self._claimed()
+        return not self._look_owed
+
+    def _claimed(self) -> bool:
+        return self._coming > 0 and len(self._queue) > 0
+
+    def submit(self, work: Work, now: int) -> None:
+        """Have yielded work wait for a worker, and call one if one is free. With the lock held."""
+        self._queue.append(work)
+        if len(self._queue) > self._coming:
+            self._call_worker(now)
+        self._surface_errors()
+
+    def looks_itself(self) -> bool:
+        """Whether a worker is on its way that will look for what is ready; an idle one is called."""
+        if not self.dispatches_itself:
+            return False
+        if self._coming <= len(self._queue):
+            if not self._idle or self.enough():
+                return False
+            self._call_worker(self._clock.now())
+        return True
+
+    def _call_worker(self, now: int) -> None:
+        if self._idle:
+            worker = self._idle[self._clock.choose(len(self._idle))]
+            self._idle.remove(worker)
+            self._expect(worker, now)
+            worker.signal.set()
+        elif len(self._workers) < self._executor.threads:
+            worker = Worker(self._clock.signal())
+            self._workers.append(worker)
+            self._living += 1
+            self._expect(worker, now)
+            self._clock.start_thread(lambda: self._work(worker), f"{self._name}_{len(self._workers) - 1}")
+
+    def _expect(self, worker: Worker, now: int) -> None:
+        worker.called = True
+        self._coming += 1
+        self._called_at = now
+
+    def _surface_errors(self) -> None:
+        if self._errors:
+            self.error_surfaces = True
+
+    def _work(self, worker: Worker) -> None:
+        worker.thread = threading.current_thread()
+        self._executor._probe.works_for(self._executor.trace_id)
+        try:
+            while (started := self._next(worker)) is not None:
+                self._run(started)
+        finally:
+            self._leave()
+
+    def _next(self, worker: Worker) -> Started | None:
+        """Wait for the worker's next callback and start it; None once the pool is dismissed."""
+        while True:
+            with self._lock:
+                now = self._clock.now()
+                begun = self._begin_claimed(worker, now) or self._begin_queued(now) or self._begin_found(now)
+                if begun is not None:
+                    return self._runner.start(begun)
+                if self._dismissed:
+                    return None
+                others_go_first = len(self._queue) > self._coming
+                if not others_go_first:
+                    self._idle.append(worker)
+            if others_go_first:
+                self._clock.sleep(0)
+            else:
+                worker.signal.wait(None)
+
+    def _begin_claimed(self, worker: Worker, now: int) -> Begun | None:
+        """Begin what this worker was called for, or what others were called for and are late for."""
+        may_take = worker.called or self._others_are_late(now)
+        if worker.called:
+            worker.called = False
+            self._coming -= 1
+        begun = None
+        while begun is None and may_take and self._queue:
+            work = self._queue.popleft()
+            if self._look_owed and not self._claimed():
+                self._executor.wake()
+            begun = self._runner.begin(work, now)
+            may_take = self._others_are_late(now)
+        return begun
+
+    def _others_are_late(self, now: int) -> bool:
+        """Whether time has passed since a worker was called that has not come yet."""
+        return self._coming > 0 and self._called_at < now
+
+    def _begin_queued(self, now: int) -> Begun | None:
+        """Begin what no worker was called for; what they were called for was yielded before it."""
+        begun = None
+        while begun is None and self._queue and self._coming == 0:
+            begun = self._runner.begin(self._queue.popleft(), now)
+        if begun is not None and self._may_look():
+            self._give_out(self._executor._next_work, now)
+        return begun
+
+    def _begin_found(self, now: int) -> Begun | None:
+        """Begin the first of what is ready, and give the rest of its cycle to others."""
+        if len(self._queue) > self._coming or not self._may_look():
+            return None
+        own = self._executor._next_work(now)
+        if own is None:
+            return None
+        self._surface_errors()
+        self._give_out(self._executor._cycle.next, now)
+        return self._runner.begin(own, now)
+
+    def _may_look(self) -> bool:
+        """Whether a worker may look for what is ready; else the thread that spins is told to."""
+        if not self.dispatches_itself or self.enough():
+            return False
+        executor = self._executor
+        if self.error_surfaces or executor._is_shutdown or not executor._context.ok():
+            executor.wake()
+            return False
+        return True
+
+    def _give_out(self, following: Callable[[int], Work | None], now: int) -> None:
+        while not self.error_surfaces:
+            work = following(now)
+            if work is None:
+                return
+            self.submit(work, now)
+        self._executor.wake()
+
+    def _run(self, started: Started) -> None:
+        try:
+            self._runner.run(started)
+        except Exception as error:  # noqa: BLE001 -- kept for the thread that spins
+            with self._lock:
+                self._errors.append(error)
+        except (KeyboardInterrupt, SystemExit):
+            return  # lost, as in rclpy: a pool's thread has nobody to tell
+
+    def raise_surfacing(self) -> None:
+        """Raise the oldest exception of a callback, if one is due to surface."""
+        with self._lock:
+            if not self.error_surfaces:
+                return
+            error = self._errors.pop(0)
+            self.error_surfaces = False
+        raise error
+
+    def dismiss(self) -> None:
+        """Let every worker end once it has nothing to do."""
+        with self._lock:
+            self._dismissed = True
+            for worker in self._workers:
+                worker.signal.set()
+
+    def _leave(self) -> None:
+        """A worker has nothing more to do; whoever waits for the end of the last goes on."""
+        self._clock.end_thread()
+        with self._lock:
+            self._living -= 1
+            if self._living == 0:
+                for signal in self._end_signals:
+                    signal.set()
+
+    def wait_for_end(self) -> None:
+        """Wait until every worker's thread is gone, after ``dismiss``; a worker itself waits for nobody."""
+        if any(worker.thread is threading.current_thread() for worker in self._workers):
+            return
+        ended = self._clock.signal()
+        with self._lock:
+            self._end_signals.append(ended)
+            if self._living == 0:
+                ended.set()
+        if ended.wait(None):
+            for worker in self._workers:
+                if worker.thread is not None:
+                    _join(worker.thread)

@@ -1,0 +1,1 @@
+"""Durations, points in time and the types of clocks."""

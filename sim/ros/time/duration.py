@@ -1,0 +1,85 @@
+"""Lengths of time, as rclpy writes them."""
+
+from __future__ import annotations
+
+from typing import Any
+
+_NANOSECONDS = 1_000_000_000
+_LIMIT = 2**63
+
+
+class Duration:
+    """A length of time in whole nanoseconds; may be negative. Immutable, ordered, hashable.
+
+    Comparing it with anything but a duration is a TypeError.
+    """
+
+    __slots__ = ("_nanoseconds",)
+
+    def __init__(self, *, seconds: int | float = 0, nanoseconds: int = 0) -> None:
+        # Not cut to nothing if positive: a loop that sleeps for what is left would never end on virtual time.
+        total = (int(seconds * _NANOSECONDS) or int(seconds > 0)) + int(nanoseconds)
+        if not -_LIMIT <= total < _LIMIT:
+            raise OverflowError("Total nanoseconds value is too large to store in C duration.")
+        self._nanoseconds = total
+
+    @property
+    def nanoseconds(self) -> int:
+        """The whole length in nanoseconds."""
+        return self._nanoseconds
+
+    def __repr__(self) -> str:
+        return f"Duration(nanoseconds={self._nanoseconds})"
+
+    def __str__(self) -> str:
+        if self == Infinite:
+            return "Infinite"
+        return f"{self._nanoseconds} nanoseconds"
+
+    def __hash__(self) -> int:
+        return hash(self._nanoseconds)
+
+    def __eq__(self, other: object) -> bool:
+        if isinstance(other, Duration):
+            return self._nanoseconds == other._nanoseconds
+        # As in rclpy: with NotImplemented, Duration(nanoseconds=5) == 5 would be False and go unnoticed.
+        raise TypeError(f"Can't compare duration with object of type: {type(other)}")
+
+    def __lt__(self, other: Duration) -> bool:
+        if isinstance(other, Duration):
+            return self._nanoseconds < other._nanoseconds
+        return NotImplemented
+
+    def __le__(self, other: Duration) -> bool:
+        if isinstance(other, Duration):
+            return self._nanoseconds <= other._nanoseconds
+        return NotImplemented
+
+    def __gt__(self, other: Duration) -> bool:
+        if isinstance(other, Duration):
+            return self._nanoseconds > other._nanoseconds
+        return NotImplemented
+
+    def __ge__(self, other: Duration) -> bool:
+        if isinstance(other, Duration):
+            return self._nanoseconds >= other._nanoseconds
+        return NotImplemented
+
+    def to_msg(self) -> Any:
+        """The same as a builtin_interfaces/msg/Duration."""
+        from sim.interfaces import message
+
+        seconds, nanoseconds = divmod(self._nanoseconds, _NANOSECONDS)
+        return message("builtin_interfaces", "Duration")(sec=seconds, nanosec=nanoseconds)
+
+    @classmethod
+    def from_msg(cls, msg: Any) -> Duration:
+        """From a builtin_interfaces/msg/Duration; TypeError for anything else."""
+        from sim.interfaces import message
+
+        if not isinstance(msg, message("builtin_interfaces", "Duration")):
+            raise TypeError("Must pass a builtin_interfaces.msg.Duration object")
+        return cls(seconds=msg.sec, nanoseconds=msg.nanosec)
+
+
+Infinite = Duration(nanoseconds=_LIMIT - 1)
