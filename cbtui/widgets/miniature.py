@@ -84,7 +84,7 @@ class Miniature(Painted):
 
 def miniature(subject: Subject, now: int, size: Size) -> list[Sequence[Run]]:
     """Paint a whole run in a size, without what the lanes say at their right: there is no room for it."""
-    from cbtui.widgets.lanes.painter import layout_for  # here whoever has a subject has imported it
+    from cbtui.widgets.lanes.picture import layout_for  # here whoever has a subject has imported it
     from sim.trace.model import Window
 
     layouts = ((beside, layout_for(max(20, size.width + beside))) for beside in _STATUSES)

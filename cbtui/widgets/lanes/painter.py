@@ -14,6 +14,7 @@ from cbtui.widgets.lanes.calls import Calls, draw_calls
 from cbtui.widgets.lanes.columns import Column, Columns, I, Instants, Ration
 from cbtui.widgets.lanes.keys import USUAL_KEYS
 from cbtui.widgets.lanes.names import entity_name, group_name, more_lanes, sole_name, thread_name
+from cbtui.widgets.lanes.picture import LEAST_WIDTH, Layout, Picture, layout_for
 from cbtui.widgets.lanes.rows import (
     GroupLane,
     Lane,
@@ -38,9 +39,6 @@ NOW = Ink(Role.NOW)
 MARK = Ink(Role.MARK)
 
 
-LEAST_WIDTH = 20
-"""Columns below which lanes are left blank."""
-
 LOOKS_A_FRAME = 500
 """Intervals that are looked at for one frame: a lesson's lanes fill in two or three frames, zoomed out on an
 hour in some twenty, and no key waits for all of it."""
@@ -49,47 +47,6 @@ _TEXTURED_FROM = 20
 """The narrowest column of names that shows the textures of groups."""
 _SWATCH = 2
 """Columns of texture beside a group's letter."""
-
-
-@dataclass(frozen=True, slots=True)
-class Layout:
-    """How a width is shared out: names at the left, lanes, statuses at the right; a frame between."""
-
-    names: int
-    columns: int
-    statuses: int
-
-
-def layout_for(width: int) -> Layout:
-    """Share out a width of ``LEAST_WIDTH`` or more: the narrower, the shorter names and statuses."""
-    for least, names, statuses in ((120, 23, 25), (72, 12, 16), (48, 10, 10), (LEAST_WIDTH, 6, 0)):
-        if width >= least:
-            return Layout(names, width - names - statuses - 2, statuses)
-    raise ValueError(f"lanes need {LEAST_WIDTH} columns, got {width}")
-
-
-@dataclass(frozen=True, slots=True)
-class Picture:
-    """Painted lanes, the axis last. ``lanes`` are those that ``rows`` begins with, one a row.
-
-    One that is not ``complete`` has faint points where there was more to look at than a picture may take.
-    """
-
-    rows: tuple[tuple[Run, ...], ...]
-    lanes: tuple[Lane, ...]
-    layout: Layout
-    scale: Scale
-    complete: bool = True
-
-    @property
-    def text(self) -> str:
-        """The picture without its inks."""
-        return "\n".join("".join(run.text for run in row) for row in self.rows)
-
-    @property
-    def time_per_column(self) -> str:
-        """The scale in words, such as ``200 ms/col``."""
-        return f"{duration(self.scale.per_column)}/col"
 
 
 def wanted_rows(timeline: Timeline, service: str = "") -> int:

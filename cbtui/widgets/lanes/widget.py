@@ -12,7 +12,8 @@ from cbtui.looks.theme import GLYPHS, Charset, Run
 from cbtui.widgets.lanes.details import details_of_selection
 from cbtui.widgets.lanes.details_rows import ROWS, details_rows
 from cbtui.widgets.lanes.keys import USUAL_KEYS, LaneKeys
-from cbtui.widgets.lanes.painter import LOOKS_A_FRAME, Painter, Picture, wanted_rows
+from cbtui.widgets.lanes.painter import LOOKS_A_FRAME, Painter, wanted_rows
+from cbtui.widgets.lanes.picture import Picture
 from cbtui.widgets.lanes.rows import Lane, all_lanes
 from cbtui.widgets.lanes.selection import Selection, bar_at, bar_up_to, beside, start_of
 from cbtui.widgets.painted import Painted
