@@ -1,6 +1,8 @@
 """Lines of JSON: what they have, and that their documentation says so."""
 
 import json
+import subprocess
+import sys
 from math import inf, nan
 from typing import Any
 
@@ -141,3 +143,13 @@ def test_ids_that_were_never_introduced_still_make_a_line() -> None:
         "message_id": 1
     }
     assert lines[1]["node"] == "node 9"
+
+
+def test_what_stands_for_an_event_until_it_is_packed_is_no_kind_of_its_own() -> None:
+    script = (
+        "import sim.ros.middleware.contents as contents\n"
+        "from sim.trace.events import Notice, Severity, decode, encode\n"
+        "notice = Notice(1, Severity.INFO, 'x')\n"
+        "assert decode(encode([notice])) == [notice]"
+    )
+    subprocess.run([sys.executable, "-c", script], check=True)

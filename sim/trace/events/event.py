@@ -21,5 +21,8 @@ class Event(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 @cache
 def kinds() -> tuple[type[Event], ...]:
-    """Every kind of event. For use after ``sim.trace.events`` has been imported, which imports them all."""
-    return tuple(Event.__subclasses__())
+    """Every kind of event. For use after ``sim.trace.events`` has been imported, which imports them all.
+
+    A class elsewhere may stand for one of them until it is packed; it is no kind of its own.
+    """
+    return tuple(each for each in Event.__subclasses__() if each.__module__.startswith(f"{__package__}."))
