@@ -30,10 +30,9 @@ if TYPE_CHECKING:
     from textual.command import Provider
     from textual.driver import Driver
 
-    from cbtui.engines.session import Deliver, Ended
+    from cbtui.engines.session import Deliver, Ended, EngineSession, OpenSession
     from cbtui.learning.outcome import Observe
     from cbtui.runs.compared_runs import Contender, Terms
-    from cbtui.runs.live.live_run import OpenSession, Session
     from cbtui.runs.setup.changes import Changes
     from cbtui.runs.setup.subject import Subject
     from sim.engine.setup import RunSetup
@@ -46,13 +45,13 @@ def _actions_provider() -> "type[Provider]":
     return ActionsProvider
 
 
-def _unheard_session(setup: "RunSetup", deliver: "Deliver", ended: "Ended") -> "Session":
+def _unheard_session(setup: "RunSetup", deliver: "Deliver", ended: "Ended") -> "EngineSession":
     from cbtui.engines.session import Session  # imported when the menu draws a lesson
 
     return Session(setup, deliver, ended)
 
 
-def _engine_session(setup: "RunSetup", deliver: "Deliver", ended: "Ended") -> "Session":
+def _engine_session(setup: "RunSetup", deliver: "Deliver", ended: "Ended") -> "EngineSession":
     from cbtui.engines.listening import ListeningSession  # imported when a lesson opens
 
     return ListeningSession(setup, deliver, ended)

@@ -1,16 +1,16 @@
 """Runs an engine for a moment, as every lesson does."""
 
 import time
-from queue import Empty, Queue
 
 import msgspec
 
 from cbtui.doctor.verdict import Verdict, fault, note, well
+from cbtui.engines.follow import EngineLostError, FollowedRun, RunTimeoutError
 from cbtui.engines.session import Session
 from cbtui.runs.setup.lesson_setup import setup_for
 from lessons.catalogue import find
 from sim.engine.setup import RobotUse, RunSetup
-from sim.trace.events import AnyEvent, RunEnded
+from sim.trace.events import RunEnded
 
 _LESSON = "single-thread"
 _RUN = 100_000_000
@@ -42,21 +42,18 @@ def engine() -> Verdict:
 
 
 def _trouble(setup: RunSetup) -> str | None:
-    news: Queue[list[AnyEvent] | str | None] = Queue()
-    session = Session(setup, news.put, news.put)
-    session.start()
-    try:
-        return _end_of(news)
-    except Empty:
-        return f"nothing came of it within {_PATIENCE:g} s"
-    finally:
-        session.stop()
-
-
-def _end_of(news: "Queue[list[AnyEvent] | str | None]") -> str | None:
     reason: str | None = None
-    while isinstance(batch := news.get(timeout=_PATIENCE), list):
-        for event in batch:
-            if isinstance(event, RunEnded) and event.failed:
-                reason = event.reason
-    return batch if batch is not None else reason
+    with FollowedRun(setup, Session) as run:
+        try:
+            run.start()
+            run.limit(_PATIENCE)
+            for batch in run:
+                run.limit(_PATIENCE)
+                for event in batch:
+                    if isinstance(event, RunEnded) and event.failed:
+                        reason = event.reason
+        except RunTimeoutError:
+            return f"nothing came of it within {_PATIENCE:g} s"
+        except EngineLostError as error:
+            return str(error)
+    return reason

@@ -12,7 +12,7 @@ from multiprocessing import resource_tracker
 from multiprocessing.connection import Connection
 from multiprocessing.context import BaseContext
 from multiprocessing.process import BaseProcess
-from typing import Any, TypeAlias
+from typing import Any, Protocol, TypeAlias
 from uuid import uuid4
 
 import msgspec
@@ -34,6 +34,23 @@ Deliver: TypeAlias = Callable[[list[AnyEvent]], None]
 """Takes every batch of events, in order."""
 Ended: TypeAlias = Callable[[str | None], None]
 """Told once that no more will come: None, or a sentence if the engine was lost."""
+
+
+class EngineSession(Protocol):
+    """One engine process. ``deliver`` and ``ended`` are called on a thread of the session's own."""
+
+    def start(self) -> str | None:
+        """Start the process; a sentence if something about it does not work."""
+
+    def send(self, command: Command) -> None:
+        """Tell the engine something; ignored once it has ended."""
+
+    def stop(self) -> None:
+        """End the process, within a second; may be called again."""
+
+
+OpenSession: TypeAlias = Callable[[RunSetup, Deliver, Ended], EngineSession]
+"""Makes the session of a run, and does not start it."""
 
 AFRESH: BaseContext = multiprocessing.get_context("spawn")
 """What starts an engine that nothing is said about."""

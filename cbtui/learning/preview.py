@@ -1,17 +1,15 @@
 """A lesson's first seconds, run headless and as fast as it goes, for the menu to draw them small."""
 
-from queue import Empty, Queue
 from threading import Event
-from time import monotonic
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING
 
+from cbtui.engines.follow import EngineLostError, FollowedRun, RunTimeoutError
 from lessons.catalogue import comes_along
 from lessons.lesson import Lesson
 
 if TYPE_CHECKING:
-    from cbtui.runs.live.live_run import OpenSession
+    from cbtui.engines.session import OpenSession
     from sim.engine.setup import RunSetup
-    from sim.trace.events import AnyEvent
     from sim.trace.timeline import Timeline
 
 _SECOND = 1_000_000_000
@@ -22,15 +20,9 @@ CALLS = (5 * _SECOND, 7 * _SECOND)
 _PATIENCE = 30.0
 """Real seconds after which a run that has not come to its end is given up."""
 
-_News: TypeAlias = "list[AnyEvent] | str | None"
-
 
 class CannotPreviewError(Exception):
     """A lesson that could not be run; the text is a sentence."""
-
-
-class GivenUpError(Exception):
-    """Nobody wants the run any more."""
 
 
 def why_not(lesson: Lesson) -> str | None:
@@ -48,14 +40,12 @@ class PreviewRun:
     def __init__(self, lesson: Lesson, open_session: "OpenSession") -> None:
         self._lesson = lesson
         self._open_session = open_session
-        self._news: Queue[_News | GivenUpError] = Queue()
-        self._given_up = False
+        self._given_up = Event()
         self._ended = Event()
 
     def give_up(self) -> None:
         """Let ``run`` end its engine and come back; again does nothing."""
-        self._given_up = True
-        self._news.put(GivenUpError())
+        self._given_up.set()
 
     def wait(self, seconds: float) -> None:
         """Wait until the engine has ended, no longer than so many real seconds."""
@@ -81,34 +71,20 @@ class PreviewRun:
         from sim.trace.timeline import Timeline  # numpy and all: on this thread, not on the screen's
 
         timeline = Timeline(until_ending=True)
-        session = self._open_session(preview_setup(self._lesson), self._news.put, self._news.put)
-        if self._given_up:
-            raise GivenUpError
-        try:
-            session.start()
-        except OSError as error:
-            raise CannotPreviewError(f"the engine could not be started: {error.strerror or error}") from None
-        try:
-            self._follow(timeline)
-        finally:
-            session.stop()
-        return timeline
-
-    def _follow(self, timeline: "Timeline") -> None:
-        """Take what the engine sends until it has ended."""
-        limit = monotonic() + _PATIENCE
-        while True:
+        with FollowedRun(preview_setup(self._lesson), self._open_session, self._given_up) as run:
             try:
-                news = self._news.get(timeout=max(0.0, limit - monotonic()))
-            except Empty:
+                run.start()
+                run.limit(_PATIENCE)
+                for batch in run:
+                    timeline.extend(batch)
+            except OSError as error:
+                sentence = f"the engine could not be started: {error.strerror or error}"
+                raise CannotPreviewError(sentence) from None
+            except RunTimeoutError:
                 raise CannotPreviewError(f"it did not come to its end in {_PATIENCE:g} s") from None
-            if isinstance(news, GivenUpError):
-                raise news
-            if news is None:
-                return
-            if isinstance(news, str):
-                raise CannotPreviewError(news)
-            timeline.extend(news)
+            except EngineLostError as error:
+                raise CannotPreviewError(str(error)) from None
+        return timeline
 
 
 def preview_setup(lesson: Lesson) -> "RunSetup":

@@ -3,12 +3,12 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from queue import Empty, Queue
 from threading import Event
 from typing import TypeAlias
 
 import msgspec
 
+from cbtui.engines.follow import EngineLostError, FollowedRun, GivenUpError
 from cbtui.engines.session import Session
 from cbtui.runs.live.live_run import ShownRun
 from cbtui.runs.recorded.repeat import CannotRepeatError, repeated
@@ -16,26 +16,18 @@ from cbtui.runs.setup.changes import Changes
 from cbtui.text.output import complain, say
 from sim.engine.setup import RunSetup, TimedCall, TimedLine
 from sim.recording import RecordingError, read
-from sim.trace.events import AnyEvent
 from sim.trace.figures.comparison import compare
 from sim.trace.figures.comparison_text import comparison_text
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 _SECOND = 1_000_000_000
-_BATCHES = 64
-_PATIENCE = 0.1
-"""Seconds after which it is looked whether a run is still wanted."""
 LENGTH = 60 * _SECOND
 """How long runs are that nothing gives a length: nanoseconds."""
 
 
 class CannotCompareError(Exception):
     """Something that cannot be compared; the text is a sentence."""
-
-
-class GivenUp(Exception):  # noqa: N818 - nothing went wrong
-    """The person no longer wants the runs."""
 
 
 @dataclass(frozen=True)
@@ -152,7 +144,7 @@ def gather(first: Contender, second: Contender, terms: Terms, tell: Tell, given_
 
     Raises:
         CannotCompareError: one cannot be read or run, or nothing is left to compare.
-        GivenUp: ``given_up`` was set meanwhile.
+        GivenUpError: ``given_up`` was set meanwhile.
     """
     known = [
         _recorded(each.name, each.what, tell, given_up) if isinstance(each.what, Path) else None
@@ -197,7 +189,7 @@ def _recorded(name: str, path: Path, tell: Tell, given_up: Event) -> Side:
             timeline.extend(events)
             tell(Progress(name, "reading", timeline.end))
             if given_up.is_set():
-                raise GivenUp
+                raise GivenUpError
     except RecordingError as error:
         raise CannotCompareError(str(error)) from None
     except OSError as error:
@@ -233,33 +225,13 @@ def _run(contender: Contender, terms: Terms, until: Nanoseconds, tell: Tell, giv
     name = contender.name
     damage: list[str] = []
     setup = _prepared(contender, terms, until, damage.append)
-    news: Queue[list[AnyEvent] | str | None] = Queue(_BATCHES)
-    session = Session(setup, news.put, news.put)
     timeline = Timeline(until_ending=True)
-    try:
-        session.start()
-        while isinstance(batch := _next(news, given_up), list):
-            timeline.extend(batch)
-            tell(Progress(name, "running", timeline.end, setup.until))
-    finally:
-        session.stop()
-        _drain(news)
-    if batch is not None:
-        raise CannotCompareError(f"{name} could not be run to its end: {batch}")
-    return Side(name, timeline, contender.service, damage=next(iter(damage), None))
-
-
-def _next(news: "Queue[list[AnyEvent] | str | None]", given_up: Event) -> list[AnyEvent] | str | None:
-    while True:
-        if given_up.is_set():
-            raise GivenUp
+    with FollowedRun(setup, Session, given_up) as run:
         try:
-            return news.get(timeout=_PATIENCE)
-        except Empty:
-            continue
-
-
-def _drain(news: "Queue[list[AnyEvent] | str | None]") -> None:
-    """Let a reader go that waits for room."""
-    while not news.empty():
-        news.get_nowait()
+            run.start()
+            for batch in run:
+                timeline.extend(batch)
+                tell(Progress(name, "running", timeline.end, setup.until))
+        except EngineLostError as error:
+            raise CannotCompareError(f"{name} could not be run to its end: {error}") from None
+    return Side(name, timeline, contender.service, damage=next(iter(damage), None))

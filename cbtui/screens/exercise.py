@@ -10,7 +10,7 @@ from textual import on
 from textual.message import Message
 from textual.widget import Widget
 
-from cbtui.engines.session import Deliver, Ended
+from cbtui.engines.session import Deliver, Ended, OpenSession
 from cbtui.keys.actions import CHECKS, PANES, Scope
 from cbtui.keys.keymap import STANDARD, Keymap, keymap_of
 from cbtui.learning.lesson_page import page_of_exercise
@@ -19,7 +19,7 @@ from cbtui.runs.judged.checking import Observed, over
 from cbtui.runs.judged.run_budget import Allowance
 from cbtui.runs.live.file_watch import CANNOT_WATCH, contents
 from cbtui.runs.live.live_recording import LiveRecording
-from cbtui.runs.live.live_run import LiveRun, OpenSession
+from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.subject import of_exercise
 from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey

@@ -11,9 +11,10 @@ from textual.containers import Container
 from textual.message import Message
 from textual.widgets import Static
 
+from cbtui.engines.follow import GivenUpError
 from cbtui.keys.actions import Scope, bindings_of
 from cbtui.looks.theme import Charset
-from cbtui.runs.compared_runs import CannotCompareError, Contender, Gathered, GivenUp, Progress, Terms, gather
+from cbtui.runs.compared_runs import CannotCompareError, Contender, Gathered, Progress, Terms, gather
 from cbtui.screens.compare import CompareScreen
 from cbtui.screens.sized import SizedScreen
 from cbtui.widgets.key_bar import KeyBar
@@ -92,7 +93,7 @@ class GatheringScreen(SizedScreen[None]):
             found = gather(*self._contenders, self._terms, self._tell, self._given_up)
         except CannotCompareError as error:
             self.post_message(self.Failed(str(error)))
-        except GivenUp:
+        except GivenUpError:
             return
         else:
             self.post_message(self.Ready(found))

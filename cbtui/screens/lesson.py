@@ -5,12 +5,12 @@ from collections.abc import Iterator, Mapping
 import msgspec
 from textual import on
 
-from cbtui.engines.session import Deliver, Ended
+from cbtui.engines.session import Deliver, Ended, OpenSession
 from cbtui.learning.lesson_page import Part as PagePart
 from cbtui.learning.lesson_page import page_of
 from cbtui.looks.theme import Charset
 from cbtui.runs.live.live_recording import LiveRecording
-from cbtui.runs.live.live_run import LiveRun, OpenSession
+from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.subject import Subject
 from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey, TypingKeys, WorldKeys

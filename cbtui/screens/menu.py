@@ -15,10 +15,11 @@ from textual.message import Message
 from textual.timer import Timer
 from textual.widgets import Input, OptionList
 
+from cbtui.engines.follow import GivenUpError
 from cbtui.keys.actions import Scope, bindings_of
 from cbtui.keys.keymap import keymap_of
 from cbtui.learning.lesson_page import in_short
-from cbtui.learning.preview import CALLS, LENGTH, CannotPreviewError, GivenUpError, PreviewRun, why_not
+from cbtui.learning.preview import CALLS, LENGTH, CannotPreviewError, PreviewRun, why_not
 from cbtui.learning.stage import Stage, in_words, stage_of
 from cbtui.looks.theme import Charset
 from cbtui.runs.setup.recent import Opened, Recents
@@ -35,7 +36,7 @@ from lessons.lesson import Lesson
 from lessons.progress import Progress
 
 if TYPE_CHECKING:
-    from cbtui.runs.live.live_run import OpenSession
+    from cbtui.engines.session import OpenSession
 
 _REST = 0.3
 """Seconds that the highlight has to rest on a lesson before it is run for its picture."""

@@ -9,8 +9,9 @@ from textual.geometry import Size
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
+from cbtui.engines.follow import GivenUpError
 from cbtui.engines.session import Deliver, Ended, Session
-from cbtui.learning.preview import CALLS, LENGTH, CannotPreviewError, GivenUpError, PreviewRun
+from cbtui.learning.preview import CALLS, LENGTH, CannotPreviewError, PreviewRun
 from cbtui.looks.theme import Charset
 from cbtui.widgets.lanes import Painter
 from cbtui.widgets.miniature import Miniature, Subject, miniature, sentence_rows

@@ -167,6 +167,8 @@ def test_an_engine_that_cannot_be_started_is_a_fault(monkeypatch: pytest.MonkeyP
         def start(self) -> None:
             raise FileNotFoundError(2, "No usable temporary directory")
 
+        def stop(self) -> None: ...
+
     monkeypatch.setattr(engines, "Session", Broken)
     assert engine().sign is Sign.FAULT
     assert "No usable temporary directory" in engine().what

@@ -7,7 +7,7 @@ from pathlib import Path
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
-from cbtui.runs.live.live_run import OpenSession
+from cbtui.engines.session import OpenSession
 from cbtui.runs.setup.lesson_setup import setup_to_judge
 from cbtui.screens.exercise import ExerciseScreen
 from lessons.catalogue import find

@@ -1,16 +1,14 @@
 """Runs a program without the console: log to stderr, summary and diagnosis to stdout, events to files."""
 
-import time
-from collections.abc import Iterator, Sequence
-from contextlib import ExitStack
+from collections.abc import Sequence
+from contextlib import ExitStack, closing, nullcontext
 from operator import itemgetter
 from pathlib import Path
-from queue import Empty, Queue
 from signal import Signals
-from typing import TypeAlias
 
 import msgspec
 
+from cbtui.engines.follow import EngineLostError, FollowedRun, RunTimeoutError
 from cbtui.engines.listening import ListeningSession
 from cbtui.engines.session import LONGEST_END
 from cbtui.runs.headless.program_log import ProgramLog
@@ -32,12 +30,6 @@ from sim.trace.timeline import Timeline
 from sim.units import nearest_ns
 
 _SECOND = 1_000_000_000
-_LOOK = 0.1
-"""Real seconds between two looks whether an engine that was told to end still has not."""
-_BATCHES = 64
-"""Batches that may wait for this process; a full queue holds the engine up, and nothing is lost."""
-
-News: TypeAlias = "list[AnyEvent] | str | None"
 
 
 def run_headless(
@@ -109,57 +101,56 @@ def run_set_up(
 
 
 class _Headless:
-    """One run: takes the news of its session on this thread, one batch after another."""
+    """One run, followed on this thread."""
 
     def __init__(self, setup: RunSetup, file: EventsFile | None, recorder: Recorder | None) -> None:
         self._setup = setup
-        self._news: Queue[News] = Queue(_BATCHES)
-        self._session = ListeningSession(setup, self._news.put, self._news.put)
+        self._run = FollowedRun(setup, ListeningSession)
         self._timeline = Timeline(until_ending=True)
         self._file = file
         self._recorder = recorder
         self._room = DiskSpaceWatch(self._timeline)
-        self._input = StandardInput(self._session.send) if setup.keyboard is Keyboard.LIVE else None
+        self._input = StandardInput(self._run.session.send) if setup.keyboard is Keyboard.LIVE else None
         self._log = ProgramLog(echo=self._input is None)
-        self._told: Signals | None = None
-        self._patient_until = 0.0
+        self._signal: Signals | None = None
 
     def run(self) -> int:
         """Run to the end, whatever ends it, and print the summary and what the rules found."""
-        try:
-            with heard(self._end_early):
-                complaint = self._session.start()
-                if complaint is not None:
-                    complain(complaint)
-                loss = self._follow()
-        finally:
-            if self._input is not None:
-                self._input.close()
-            self._session.stop()
+        keyboard = nullcontext() if self._input is None else closing(self._input)
+        with self._run, keyboard, heard(self._end_early):
+            complaint = self._run.start()
+            if complaint is not None:
+                complain(complaint)
+            loss = self._follow()
         self._log.finish()
         say(plain_text(summarise(self._timeline)))
         found = findings_text(diagnose(self._timeline), self._timeline)
         say(f"\n{found}" if found else "")
         if self._setup.seed and why_unrepeatable(self._timeline.notices):
             complain(f"this program is not repeatable: seed {self._setup.seed} orders its threads, no more")
-        return self._verdict(loss) if self._told is None else 128 + self._told
+        return self._verdict(loss) if self._signal is None else 128 + self._signal
 
-    def _end_early(self, told: Signals) -> None:
-        """Have the engine end, which it tells of as of everything else."""
-        self._told = told
-        self._patient_until = time.monotonic() + LONGEST_END
-        self._session.send(Stop())
+    def _end_early(self, signal: Signals) -> None:
+        """Have the engine end; its last events are still taken."""
+        self._signal = signal
+        self._run.limit(LONGEST_END)
+        self._run.session.send(Stop())
 
     def _follow(self) -> str | None:
-        """Take news until the last; what was lost, if the engine was."""
-        for events in iter(self._batches()):
-            with whole():
-                self._keep(events)
-            self._log.print(events)
-            if self._input is not None:
-                self._input.follow(events)
-            self._tell_of_room()
-        return self._loss
+        """Take every batch of events; returns how the engine was lost, if it was."""
+        try:
+            for events in self._run:
+                with whole():
+                    self._keep(events)
+                self._log.print(events)
+                if self._input is not None:
+                    self._input.follow(events)
+                self._tell_of_room()
+        except EngineLostError as error:
+            return str(error)
+        except RunTimeoutError:
+            pass  # after a signal, when the engine does not end
+        return None
 
     def _tell_of_room(self) -> None:
         if self._recorder is None:
@@ -175,19 +166,6 @@ class _Headless:
         self._timeline.extend(events)
         if self._file is not None:
             self._file.take(events)
-
-    def _batches(self) -> Iterator[list[AnyEvent]]:
-        while isinstance(news := self._next(), list):
-            yield news
-        self._loss = news
-
-    def _next(self) -> News:
-        while self._told is None or time.monotonic() < self._patient_until:
-            try:
-                return self._news.get(timeout=_LOOK)
-            except Empty:
-                continue
-        return None
 
     def _verdict(self, loss: str | None) -> int:
         if loss is not None:

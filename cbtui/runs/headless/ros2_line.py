@@ -2,11 +2,12 @@
 
 import shlex
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing
 from pathlib import Path
-from queue import Queue
 from typing import TypeVar
 
 from cbtui.engines.control_socket import Done, NoEngine, RemoteLine, Said, connect
+from cbtui.engines.follow import EngineLostError, FollowedRun
 from cbtui.engines.listening import ListeningSession
 from cbtui.runs.headless.program_log import ProgramLog, write_line
 from cbtui.runs.headless.standard_input import StandardInput
@@ -61,34 +62,28 @@ class _AloneLine:
     """A line in an engine of its own, whose programs print here too."""
 
     def __init__(self, text: str) -> None:
-        self._news: Queue[list[AnyEvent] | str | None] = Queue(64)
-        setup = setup_for_line(text, Path.cwd())
-        self._session = ListeningSession(setup, self._news.put, self._news.put)
-        self._input = StandardInput(self._session.send)
+        self._run = FollowedRun(setup_for_line(text, Path.cwd()), ListeningSession)
+        self._input = StandardInput(self._run.session.send)
         self._log = ProgramLog()
         self._status = _CUT_OFF
 
     def run(self) -> int:
         """Carry it out; the first Ctrl-C goes to the line, the second ends the engine."""
-        complaint = self._session.start()
-        if complaint is not None:
-            complain(complaint)
-        try:
-            for news in _interruptible(self._news.get, self._interrupt):
-                if not isinstance(news, list):
-                    break
-                self._take(news)
-            if news is not None:
-                complain(str(news))
-        except KeyboardInterrupt:
-            self._session.send(Stop())
-        finally:
-            self._input.close()
-            self._session.stop()
+        with self._run, closing(self._input):
+            complaint = self._run.start()
+            if complaint is not None:
+                complain(complaint)
+            try:
+                for events in _interruptible(self._run.next_batch, self._interrupt):
+                    self._take(events)
+            except EngineLostError as error:
+                complain(str(error))
+            except KeyboardInterrupt:
+                self._run.session.send(Stop())
         return self._status
 
     def _interrupt(self) -> None:
-        self._session.send(InterruptLine(_LINE))
+        self._run.session.send(InterruptLine(_LINE))
 
     def _take(self, events: list[AnyEvent]) -> None:
         self._input.follow(events)
@@ -106,8 +101,8 @@ class _AloneLine:
                     self._log.print([event])
 
 
-def _interruptible(take: Callable[[], ItemT], interrupt: Callable[[], None]) -> Iterator[ItemT]:
-    """What ``take`` gives, again and again; the first Ctrl-C while it waits calls ``interrupt`` instead."""
+def _interruptible(take: Callable[[], ItemT | None], interrupt: Callable[[], None]) -> Iterator[ItemT]:
+    """What ``take`` gives until that is None; the first Ctrl-C while it waits calls ``interrupt`` instead."""
     interrupted = False
     while True:
         try:
@@ -118,4 +113,6 @@ def _interruptible(take: Callable[[], ItemT], interrupt: Callable[[], None]) -> 
             interrupted = True
             interrupt()
             continue
+        if item is None:
+            return
         yield item

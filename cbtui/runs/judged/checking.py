@@ -3,17 +3,15 @@
 Whatever the file does, it ends: a run has a limit of real time and one of what it may write.
 """
 
-import time
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from queue import Empty, Full, Queue
 from threading import Event
-from typing import TypeAlias
 
 import msgspec
 
-from cbtui.engines.session import Session
+from cbtui.engines.follow import EngineLostError, FollowedRun, GivenUpError, RunTimeoutError
+from cbtui.engines.session import OpenSession, Session
 from cbtui.runs.setup.lesson_setup import setup_to_judge
 from lessons.judge import Judge, Judged
 from lessons.lesson import Lesson
@@ -27,10 +25,6 @@ LIMIT = 60.0
 MOST_TEXT = 32_000_000
 """Characters that a run may write to its log and its output."""
 _SECOND: Nanoseconds = 1_000_000_000
-_BATCHES = 64
-_LOOK = 0.1
-
-_News: TypeAlias = "list[AnyEvent] | str | None"
 
 
 @dataclass(frozen=True)
@@ -80,51 +74,31 @@ def observe(
     name: str,
     limit: float = LIMIT,
     given_up: Event | None = None,
-    open_session: Callable[..., Session] = Session,
+    open_session: OpenSession = Session,
 ) -> Observed:
     """Run what is set up to its end, on the caller's thread; ``name`` is what it is called in sentences.
 
     Setting ``given_up``, from any thread, breaks the run off. ``open_session`` makes the session, as
     ``Session`` does.
     """
-    news: Queue[_News] = Queue(_BATCHES)
-    over = Event()
-
-    def put(item: _News) -> None:
-        while not over.is_set():
-            try:
-                news.put(item, timeout=_LOOK)
-            except Full:
-                continue
-            break
-
-    session = open_session(setup, put, put)
-    try:
-        session.start()
-        return _followed(news, name, limit, given_up or Event())
-    finally:
-        over.set()
-        session.stop()
-
-
-def _followed(news: "Queue[_News]", name: str, limit: float, given_up: Event) -> Observed:
     timeline = Timeline(until_ending=True)
-    give_up = time.monotonic() + limit
     text = 0
-    while (left := give_up - time.monotonic()) > 0:
-        if given_up.is_set():
-            return Observed(timeline, f"{name} was broken off at {_time(timeline)}", broken_off=True)
+    with FollowedRun(setup, open_session, given_up) as run:
         try:
-            batch = news.get(timeout=min(left, _LOOK))
-        except Empty:
-            continue
-        if batch is None or isinstance(batch, str):
-            return over(timeline, name, batch)
-        timeline.extend(batch)
-        text += text_in(batch)
-        if text > MOST_TEXT:
-            return Observed(timeline, wrote_too_much(timeline, name), broken_off=True)
-    return Observed(timeline, took_too_long(timeline, name, limit), broken_off=True)
+            run.start()
+            run.limit(limit)
+            for batch in run:
+                timeline.extend(batch)
+                text += text_in(batch)
+                if text > MOST_TEXT:
+                    return Observed(timeline, wrote_too_much(timeline, name), broken_off=True)
+        except GivenUpError:
+            return Observed(timeline, f"{name} was broken off at {_time(timeline)}", broken_off=True)
+        except RunTimeoutError:
+            return Observed(timeline, took_too_long(timeline, name, limit), broken_off=True)
+        except EngineLostError as error:
+            return over(timeline, name, str(error))
+    return over(timeline, name, None)
 
 
 def over(timeline: Timeline, name: str, loss: str | None) -> Observed:

@@ -1,18 +1,17 @@
 """A run as screens show it, and the run of an engine: its timeline, its session, and what was asked of it."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from enum import Enum, auto
 from itertools import count
-from typing import Protocol, TypeAlias
+from typing import Protocol
 
 from cbtui.engines.hang_detector import SILENT
-from cbtui.engines.session import Deliver, Ended
+from cbtui.engines.session import Deliver, Ended, OpenSession
 from cbtui.runs.live.disk_space import DiskSpaceWatch
 from cbtui.runs.live.live_export import Material
 from cbtui.runs.live.live_recording import Finish, LiveRecording
 from sim.engine.commands import (
     CallService,
-    Command,
     CompleteLine,
     InterruptLine,
     KeepContents,
@@ -39,26 +38,6 @@ _LETS_GO = ("resume", "run until ")
 
 _CHANGES_STATE = {Notice, TimeHalted, CommandGiven}
 """Events that say whether time goes on; most batches have none."""
-
-
-class EventSource(Protocol):
-    """What the events of a run come from; they are delivered on a thread of its own."""
-
-    def start(self) -> str | None:
-        """Start to deliver; a sentence if something about it does not work."""
-
-    def stop(self) -> None:
-        """Deliver no more, within a second; may be called again."""
-
-
-class Session(EventSource, Protocol):
-    """One engine process."""
-
-    def send(self, command: Command) -> None:
-        """Tell the engine something; ignored once it has ended."""
-
-
-OpenSession: TypeAlias = Callable[[RunSetup, Deliver, Ended], Session]
 
 
 class State(Enum):

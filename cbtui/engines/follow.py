@@ -1,0 +1,106 @@
+"""Follows one run to its end, on the caller's thread, whatever ends it."""
+
+import math
+from collections.abc import Iterator
+from contextlib import suppress
+from queue import Empty, Full, Queue
+from threading import Event
+from time import monotonic
+from types import TracebackType
+from typing import TYPE_CHECKING, Self, TypeAlias
+
+if TYPE_CHECKING:
+    from cbtui.engines.session import OpenSession
+    from sim.engine.setup import RunSetup
+    from sim.trace.events import AnyEvent
+
+    _News: TypeAlias = list[AnyEvent] | str | None
+
+_BATCHES = 64
+"""Batches that may wait to be taken; a full queue holds the engine up, and nothing is lost."""
+_POLL = 0.1
+"""Real seconds between two looks whether the run is still wanted."""
+
+
+class EngineLostError(Exception):
+    """The engine ended before its run did; the text says how."""
+
+
+class RunTimeoutError(Exception):
+    """The run had not ended when its time was up."""
+
+
+class GivenUpError(Exception):
+    """Nobody wants the run any more."""
+
+
+class FollowedRun:
+    """A run and its engine: a context manager that ends the engine, and an iterable of batches of events.
+
+    It is used on one thread; ``given_up`` may be set on any. It waits for ever unless ``limit`` is called.
+    """
+
+    def __init__(self, setup: "RunSetup", open_session: "OpenSession", given_up: Event | None = None) -> None:
+        self._queue: Queue[_News] = Queue(_BATCHES)
+        self._left = Event()
+        self._given_up = given_up or Event()
+        self._deadline = math.inf
+        self.session = open_session(setup, self._put, self._put)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, _kind: type[BaseException] | None, _error: BaseException | None, _trace: TracebackType | None
+    ) -> None:
+        self._left.set()
+        self.session.stop()
+
+    def start(self) -> str | None:
+        """Start the engine; returns a sentence if not all of it works.
+
+        Raises:
+            GivenUpError: the run was given up before it began.
+            OSError: the engine could not be started.
+        """
+        self._check_wanted()
+        return self.session.start()
+
+    def limit(self, seconds: float) -> None:
+        """Give the run so many real seconds from now on, in place of an earlier limit."""
+        self._deadline = monotonic() + seconds
+
+    def __iter__(self) -> Iterator[list["AnyEvent"]]:
+        """Iterate over ``next_batch``."""
+        return iter(self.next_batch, None)
+
+    def next_batch(self) -> list["AnyEvent"] | None:
+        """Wait for the next events; None when the run has ended as it should.
+
+        Raises:
+            EngineLostError: the engine ended before the run did.
+            RunTimeoutError: the time is up.
+            GivenUpError: ``given_up`` was set.
+        """
+        news = self._next()
+        if isinstance(news, str):
+            raise EngineLostError(news)
+        return news
+
+    def _next(self) -> "_News":
+        while (left := self._deadline - monotonic()) > 0:
+            self._check_wanted()
+            with suppress(Empty):
+                return self._queue.get(timeout=min(left, _POLL))
+        raise RunTimeoutError
+
+    def _check_wanted(self) -> None:
+        if self._given_up.is_set():
+            raise GivenUpError
+
+    def _put(self, news: "_News") -> None:
+        """Hand over to the follower; on the session's reader thread."""
+        while not self._left.is_set():
+            with suppress(Full):
+                self._queue.put(news, timeout=_POLL)
+                return

@@ -1,0 +1,52 @@
+"""Painted lanes as a value, and how their width is shared out."""
+
+from dataclasses import dataclass
+
+from cbtui.looks.theme import Run
+from cbtui.text.durations import duration
+from cbtui.widgets.lanes.rows import Lane
+from cbtui.widgets.lanes.scale import Scale
+
+LEAST_WIDTH = 20
+"""Columns below which lanes are left blank."""
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """How a width is shared out: names at the left, lanes, statuses at the right; a frame between."""
+
+    names: int
+    columns: int
+    statuses: int
+
+
+def layout_for(width: int) -> Layout:
+    """Share out a width of ``LEAST_WIDTH`` or more: the narrower, the shorter names and statuses."""
+    for least, names, statuses in ((120, 23, 25), (72, 12, 16), (48, 10, 10), (LEAST_WIDTH, 6, 0)):
+        if width >= least:
+            return Layout(names, width - names - statuses - 2, statuses)
+    raise ValueError(f"lanes need {LEAST_WIDTH} columns, got {width}")
+
+
+@dataclass(frozen=True, slots=True)
+class Picture:
+    """Painted lanes, the axis last. ``lanes`` are those that ``rows`` begins with, one a row.
+
+    One that is not ``complete`` has faint points where there was more to look at than a picture may take.
+    """
+
+    rows: tuple[tuple[Run, ...], ...]
+    lanes: tuple[Lane, ...]
+    layout: Layout
+    scale: Scale
+    complete: bool = True
+
+    @property
+    def text(self) -> str:
+        """The picture without its inks."""
+        return "\n".join("".join(run.text for run in row) for row in self.rows)
+
+    @property
+    def time_per_column(self) -> str:
+        """The scale in words, such as ``200 ms/col``."""
+        return f"{duration(self.scale.per_column)}/col"
