@@ -3,6 +3,9 @@
 import math
 from threading import TIMEOUT_MAX
 
+SECOND = 1_000_000_000
+"""Nanoseconds of a second."""
+
 
 def wait_ns(seconds: float) -> int:
     """Nanoseconds of a wait, rounded up as by CPython: a positive one lets time pass, however short it is.

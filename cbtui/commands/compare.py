@@ -96,18 +96,18 @@ def _is_recording(name: str) -> bool:
 
 
 def _contender(name: str, threads: int | None, arguments: list[str]) -> "Contender":
-    import msgspec
-
     from cbtui.runs.compared_runs import Contender
-    from cbtui.runs.setup.lesson_setup import setup_for, setup_for_files
+    from cbtui.runs.setup.changes import Changes
+    from cbtui.runs.setup.lesson_setup import RunRequest
 
     if _is_recording(name):
         return Contender(name, _readable(Path(name)))
     called = name if threads is None else f"{name}, {threads} thread{'s'[: threads - 1]}"
     if is_file_name(name):
-        setup = setup_for_files([file_of(name)], arguments, threads=threads)
-        return Contender(called, msgspec.structs.replace(setup, clock="virtual"))
-    return Contender(called, setup_for(lesson_of(name), threads=threads))
+        file = file_of(name)
+        request = RunRequest(files=[file], arguments=arguments, changes=Changes(threads), clock="virtual")
+        return Contender(called, request)
+    return Contender(called, RunRequest(lesson=lesson_of(name), changes=Changes(threads)))
 
 
 def _readable(path: Path) -> Path:
@@ -123,16 +123,13 @@ def _readable(path: Path) -> Path:
 
 def _terms(options: argparse.Namespace) -> "Terms":
     from cbtui.runs.compared_runs import Terms
-    from sim.units import nearest_ns
 
-    end = None if options.end is None else nearest_ns(options.end)
-    start = nearest_ns(options.start)
-    if end is not None and end <= start:
+    if options.end is not None and options.end <= options.start:
         refuse(f"nothing is left to compare from {options.start:g} s to {options.end:g} s")
     return Terms(
-        start=start,
-        end=end,
-        calls=[nearest_ns(at) for at in options.calls],
-        lines=[(nearest_ns(at), text) for at, text in options.lines],
+        start=options.start,
+        end=options.end,
+        calls=options.calls,
+        lines=options.lines,
         inputs=None if options.inputs is None else _readable(Path(options.inputs)),
     )

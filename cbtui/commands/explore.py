@@ -4,7 +4,6 @@ import argparse
 import shlex
 import sys
 from contextlib import closing
-from operator import itemgetter
 from typing import TYPE_CHECKING
 
 from cbtui.commands.check import add_limit, exercise_of
@@ -102,31 +101,30 @@ def _of_file(options: argparse.Namespace) -> "tuple[Exploration, list[str]]":
         words = ["cbtui", "check", lesson.id, options.target]
         return _judged(lesson, options, options.target), [shlex.join(words)]
 
-    import msgspec
-
     from cbtui.runs.judged.exploring import Exploration
-    from cbtui.runs.setup.lesson_setup import setup_for_files
-    from sim.engine.setup import TimedCall, TimedLine
-    from sim.units import nearest_ns
+    from cbtui.runs.setup.lesson_setup import RunRequest
 
     seconds = options.seconds or DEFAULT_SECONDS
     changed = changes.changes_of(options)
-    lines = sorted(options.lines, key=itemgetter(0))
-    setup = msgspec.structs.replace(
-        changed.applied(setup_for_files([path], options.arguments, speed=None)),
+    request = RunRequest(
+        files=[path],
+        arguments=options.arguments,
+        changes=changed,
         clock="virtual",
-        until=nearest_ns(seconds),
-        calls=tuple(TimedCall(nearest_ns(at), data=True) for at in sorted(options.calls)),
-        lines=tuple(TimedLine(nearest_ns(at), text) for at, text in lines),
+        seconds=seconds,
+        calls=options.calls,
+        lines=options.lines,
     )
-    given = inputs.words(options.calls, lines)
+    given = inputs.words(options.calls, options.lines)
     different = changes.words(changed)
     behind = ["--", *options.arguments] if options.arguments else []
     replays = [
         ["cbtui", "run", options.target, "--for", f"{seconds:.12g}", *given, *different, *behind],
         ["cbtui", "open", options.target, *different, *behind],
     ]
-    return Exploration(setup, path.name, None, options.limit), [shlex.join(each) for each in replays]
+    return Exploration(request.setup(), path.name, None, options.limit), [
+        shlex.join(each) for each in replays
+    ]
 
 
 def _of_lesson(options: argparse.Namespace) -> "tuple[Exploration, list[str]]":

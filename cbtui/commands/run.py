@@ -3,18 +3,15 @@
 import argparse
 import math
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from cbtui.commands.options import changes, inputs, values
 from cbtui.commands.options.seeds import add_seed, check_seed
-from cbtui.commands.options.targets import (
-    file_of,
-    is_file_name,
-    lesson_of,
-    refuse,
-    same_file,
-    setup_of_targets,
-)
+from cbtui.commands.options.targets import Program, is_file_name, program_of, refuse, same_file
 from cbtui.text.output import complain
+
+if TYPE_CHECKING:
+    from cbtui.runs.setup.lesson_setup import RunRequest
 
 DEFAULT_SECONDS = 60.0
 
@@ -78,34 +75,15 @@ def run(options: argparse.Namespace) -> int:
     if not options.targets:
         refuse("run needs a LESSON or a FILE.py; cbtui list lists the lessons")
     options.seconds = options.seconds or DEFAULT_SECONDS
-    is_file = is_file_name(options.targets[0])
-    _check_run(options, is_file=is_file)
-    paths = [file_of(name) for name in options.targets] if is_file else []
-    _check_outputs(options, paths)
-    lesson = None if is_file else lesson_of(options.targets[0])
+    _check_run(options, is_file=is_file_name(options.targets[0]))
+    program = program_of(options.targets)
+    _check_outputs(options, program.files)
+    lesson = program.lesson
     check_seed(options.seed, options.clock or (None if lesson is None else lesson.setup.clock))
-
-    import msgspec
-
     from cbtui.runs.headless.headless import run_headless
-    from cbtui.runs.setup.lesson_setup import setup_for, setup_for_files
-    from sim.engine.setup import RobotUse
 
-    speed = None if options.speed == math.inf else options.speed
-    if lesson is not None:
-        program = setup_for(lesson, threads=options.threads, speed=speed)
-    else:
-        program = setup_for_files(paths, options.arguments, threads=options.threads, speed=speed)
-    robot = program.robot if options.robot else RobotUse.NEVER
-    clock = options.clock or (program.clock if options.seed is None else "virtual")
-    setup = msgspec.structs.replace(program, clock=clock, robot=robot)
     return run_headless(
-        changes.seeded_changes_of(options).applied(setup),
-        seconds=options.seconds,
-        calls=options.calls,
-        call_data=options.call_data == "true",
-        lines=options.lines,
-        typed=options.typed,
+        _request(options, program).setup(),
         events_path=options.events,
         recording_path=options.record,
         replace_recording=options.force,
@@ -121,28 +99,42 @@ def _repeat(options: argparse.Namespace) -> int:
     if options.force and options.record is None:
         refuse("--force lets --record replace a file; there is nothing to record to")
     _check_outputs(options, [Path(name) for name in (options.inputs, *options.targets)])
-    import msgspec
-
-    from cbtui.runs.headless.headless import run_set_up
+    from cbtui.runs.headless.headless import run_headless
     from cbtui.runs.recorded.repeat import CannotRepeatError, repeated
-    from sim.engine.setup import RobotUse
 
-    speed = None if options.speed == math.inf else options.speed
-    program = setup_of_targets(options, speed) if options.targets else None
+    request = _request(options, program_of(options.targets))
     try:
-        setup = repeated(
-            Path(options.inputs), program, seconds=options.seconds, threads=options.threads, tell=complain
-        )
+        setup = repeated(Path(options.inputs), request, tell=complain)
     except CannotRepeatError as error:
         refuse(str(error))
-    if not options.robot:
-        setup = msgspec.structs.replace(setup, robot=RobotUse.NEVER)
-    setup = changes.seeded_changes_of(options).applied(setup)
-    return run_set_up(
-        msgspec.structs.replace(setup, speed=speed, contents=setup.contents or options.record is not None),
+    return run_headless(
+        setup,
         events_path=options.events,
         recording_path=options.record,
         replace_recording=options.force,
+    )
+
+
+def _request(options: argparse.Namespace, program: Program) -> "RunRequest":
+    """What the options ask for."""
+    from cbtui.runs.setup.lesson_setup import RunRequest
+    from sim.engine.setup import Keyboard
+
+    return RunRequest(
+        lesson=program.lesson,
+        files=program.files,
+        arguments=options.arguments,
+        changes=changes.seeded_changes_of(options),
+        clock=options.clock or (None if options.seed is None else "virtual"),
+        speed=None if options.speed == math.inf else options.speed,
+        robot=options.robot,
+        seconds=options.seconds,
+        calls=options.calls,
+        call_data=options.call_data == "true",
+        lines=options.lines,
+        typed=options.typed,
+        keyboard=Keyboard.NOBODY if options.typed else Keyboard.LIVE,
+        contents=options.record is not None,
     )
 
 
@@ -159,8 +151,6 @@ def _check_outputs(options: argparse.Namespace, taken: list[Path]) -> None:
 def _check_run(options: argparse.Namespace, *, is_file: bool) -> None:
     """Refuse what does not fit together."""
     inputs.check(options, options.seconds)
-    if not is_file and len(options.targets) > 1:
-        refuse("one lesson runs at a time; several targets must all be files")
     if options.force and options.record is None:
         refuse("--force lets --record replace a file; there is nothing to record to")
     if options.arguments and not is_file:

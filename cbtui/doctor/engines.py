@@ -2,19 +2,17 @@
 
 import time
 
-import msgspec
-
 from cbtui.doctor.verdict import Verdict, fault, note, well
 from cbtui.engines.follow import EngineLostError, FollowedRun, RunTimeoutError
 from cbtui.engines.session import Session
-from cbtui.runs.setup.lesson_setup import setup_for
+from cbtui.runs.setup.lesson_setup import RunRequest
 from lessons.catalogue import find
-from sim.engine.setup import RobotUse, RunSetup
+from sim.engine.setup import RunSetup
 from sim.trace.events import RunEnded
 
 _LESSON = "single-thread"
-_RUN = 100_000_000
-"""Nanoseconds that the run lasts in its own time."""
+_RUN = 0.1
+"""Seconds that the run lasts in its own time."""
 _PATIENCE = 20.0
 """Seconds after which the engine is given up."""
 _SLOW = 3.0
@@ -25,12 +23,12 @@ _REMEDY = "run cbtui run single-thread --for 1 to see more, and install cbtui an
 def engine() -> Verdict:
     """Run a lesson for a tenth of a second of its own time, without the robot, in an engine of its own."""
     try:
-        setup = setup_for(find(_LESSON), speed=None)
+        setup = RunRequest(lesson=find(_LESSON), robot=False, seconds=_RUN).setup()
     except ValueError:
         return note("engine", "was not tried", "mend the lessons first")
     began = time.monotonic()
     try:
-        trouble = _trouble(msgspec.structs.replace(setup, robot=RobotUse.NEVER, until=_RUN))
+        trouble = _trouble(setup)
     except OSError as error:
         trouble = error.strerror or str(error)
     took = time.monotonic() - began
@@ -38,7 +36,7 @@ def engine() -> Verdict:
         return fault("engine", f"does not run ({trouble})", _REMEDY)
     if took > _SLOW:
         return note("engine", f"runs, after {took:.1f} s", "leave the machine more to itself")
-    return well("engine", f"started, ran for {_RUN / 1e9:g} s of virtual time and ended in {took:.2f} s")
+    return well("engine", f"started, ran for {_RUN:g} s of virtual time and ended in {took:.2f} s")
 
 
 def _trouble(setup: RunSetup) -> str | None:

@@ -6,16 +6,16 @@ from typing import TYPE_CHECKING
 from cbtui.engines.follow import EngineLostError, FollowedRun, RunTimeoutError
 from lessons.catalogue import comes_along
 from lessons.lesson import Lesson
+from sim.units import SECOND
 
 if TYPE_CHECKING:
     from cbtui.engines.session import OpenSession
     from sim.engine.setup import RunSetup
     from sim.trace.timeline import Timeline
 
-_SECOND = 1_000_000_000
-LENGTH = 20 * _SECOND
+LENGTH = 20 * SECOND
 """How long such a run lasts in its own time: nanoseconds."""
-CALLS = (5 * _SECOND, 7 * _SECOND)
+CALLS = (5 * SECOND, 7 * SECOND)
 """When the lesson's service is called in it, as ``s`` would: a lesson on a service shows nothing without."""
 _PATIENCE = 30.0
 """Real seconds after which a run that has not come to its end is given up."""
@@ -30,7 +30,7 @@ def why_not(lesson: Lesson) -> str | None:
     if not comes_along(lesson):
         return "it comes from somebody else, and is only run once you open it"
     if lesson.setup.clock == "real":
-        return f"on the real clock that would take {LENGTH / _SECOND:g} s of computing"
+        return f"on the real clock that would take {LENGTH / SECOND:g} s of computing"
     return None
 
 
@@ -89,11 +89,6 @@ class PreviewRun:
 
 def preview_setup(lesson: Lesson) -> "RunSetup":
     """Return the set-up of a lesson's short run: its own, on virtual time."""
-    import msgspec
+    from cbtui.runs.setup.lesson_setup import RunRequest
 
-    from cbtui.runs.setup.lesson_setup import setup_for
-    from sim.engine.setup import TimedCall
-
-    return msgspec.structs.replace(
-        setup_for(lesson, speed=None), until=LENGTH, calls=tuple(TimedCall(at, data=True) for at in CALLS)
-    )
+    return RunRequest(lesson=lesson, seconds=LENGTH / SECOND, calls=[at / SECOND for at in CALLS]).setup()

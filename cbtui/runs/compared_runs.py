@@ -6,23 +6,22 @@ from pathlib import Path
 from threading import Event
 from typing import TypeAlias
 
-import msgspec
-
 from cbtui.engines.follow import EngineLostError, FollowedRun, GivenUpError
 from cbtui.engines.session import Session
 from cbtui.runs.live.live_run import ShownRun
 from cbtui.runs.recorded.repeat import CannotRepeatError, repeated
 from cbtui.runs.setup.changes import Changes
+from cbtui.runs.setup.lesson_setup import RunRequest
 from cbtui.text.output import complain, say
-from sim.engine.setup import RunSetup, TimedCall, TimedLine
+from sim.engine.setup import RunSetup
 from sim.recording import RecordingError, read
 from sim.trace.figures.comparison import compare
 from sim.trace.figures.comparison_text import comparison_text
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
+from sim.units import SECOND, nearest_ns
 
-_SECOND = 1_000_000_000
-LENGTH = 60 * _SECOND
+LENGTH = 60 * SECOND
 """How long runs are that nothing gives a length: nanoseconds."""
 
 
@@ -35,13 +34,13 @@ class Contender:
     """One of two runs: a recording's path, or what is to be run."""
 
     name: str
-    what: Path | RunSetup
+    what: Path | RunRequest
 
     @property
     def service(self) -> str:
         """The service that has a lane before its first call; "" for none."""
-        chosen = self.what.service if isinstance(self.what, RunSetup) else None
-        return "" if chosen is None else chosen.name
+        lesson = self.what.lesson if isinstance(self.what, RunRequest) else None
+        return "" if lesson is None else lesson.service.name
 
 
 @dataclass(frozen=True)
@@ -50,13 +49,13 @@ class Terms:
 
     ``start`` and ``end`` bound the window, which ends where the shorter run does at the latest; what is run
     lasts until its end. ``calls`` are when the SetBool service is called, ``lines`` ``ros2`` lines with
-    their moments; ``inputs`` is a recording whose inputs are given instead of them. Times are nanoseconds.
+    their moments; ``inputs`` is a recording whose inputs are given instead of them. Times are seconds.
     """
 
-    start: Nanoseconds = 0
-    end: Nanoseconds | None = None
-    calls: Sequence[Nanoseconds] = ()
-    lines: Sequence[tuple[Nanoseconds, str]] = ()
+    start: float = 0
+    end: float | None = None
+    calls: Sequence[float] = ()
+    lines: Sequence[tuple[float, str]] = ()
     inputs: Path | None = None
 
 
@@ -156,28 +155,27 @@ def gather(first: Contender, second: Contender, terms: Terms, tell: Tell, given_
         side or _run(each, terms, until, tell, given_up)
         for each, side in zip((first, second), known, strict=True)
     )
-    return Gathered(one, other, Window(terms.start, until))
+    return Gathered(one, other, Window(nearest_ns(terms.start), until))
 
 
 def _until(lengths: list[Nanoseconds], terms: Terms, tell: Tell, given_up: Event) -> Nanoseconds:
     """Where the comparison ends: as asked, where the shorter recording does, or where the inputs do."""
     if terms.end is not None:
-        return min([terms.end, *lengths])
+        return min([nearest_ns(terms.end), *lengths])
     if not lengths and terms.inputs is not None:
         return _recorded(str(terms.inputs), terms.inputs, tell, given_up).timeline.end
     return min(lengths, default=LENGTH)
 
 
 def _check(terms: Terms, until: Nanoseconds) -> None:
-    if until <= terms.start:
-        start, end = terms.start / _SECOND, until / _SECOND
-        raise CannotCompareError(f"nothing is left to compare from {start:g} s to {end:g} s")
+    end = until / SECOND
+    if end <= terms.start:
+        raise CannotCompareError(f"nothing is left to compare from {terms.start:g} s to {end:g} s")
     moments = [("call", at) for at in terms.calls] + [("line", at) for at, _ in terms.lines]
     for what, at in moments:
-        if at >= until:
+        if at >= end:
             raise CannotCompareError(
-                f"a {what} at {at / _SECOND:g} s comes after the {until / _SECOND:g} s that are compared; "
-                "give --to a later end"
+                f"a {what} at {at:g} s comes after the {end:g} s that are compared; give --to a later end"
             )
 
 
@@ -205,20 +203,14 @@ def _prepared(
 
     ``missing`` gets a sentence if some of these cannot be read.
     """
-    assert isinstance(contender.what, RunSetup)
-    clock = contender.what.clock if terms.inputs is None else "virtual"
-    program = msgspec.structs.replace(contender.what, clock=clock, speed=None)
-    if terms.inputs is not None:
-        try:
-            return repeated(terms.inputs, program, seconds=until / _SECOND, threads=None, tell=missing)
-        except CannotRepeatError as error:
-            raise CannotCompareError(str(error)) from None
-    return msgspec.structs.replace(
-        program,
-        until=until,
-        calls=tuple(TimedCall(at, data=True) for at in sorted(terms.calls)),
-        lines=tuple(TimedLine(at, text) for at, text in sorted(terms.lines, key=lambda line: line[0])),
-    )
+    assert isinstance(contender.what, RunRequest)
+    request = replace(contender.what, seconds=until / SECOND, calls=terms.calls, lines=terms.lines)
+    if terms.inputs is None:
+        return request.setup()
+    try:
+        return repeated(terms.inputs, request, tell=missing)
+    except CannotRepeatError as error:
+        raise CannotCompareError(str(error)) from None
 
 
 def _run(contender: Contender, terms: Terms, until: Nanoseconds, tell: Tell, given_up: Event) -> Side:

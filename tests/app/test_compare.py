@@ -13,7 +13,8 @@ from cbtui.keys.actions import ACTIONS, Scope
 from cbtui.keys.keymap import keys_of
 from cbtui.looks.theme import Charset
 from cbtui.runs.compared_runs import Contender, Progress, Side, Terms
-from cbtui.runs.setup.lesson_setup import setup_for
+from cbtui.runs.setup.changes import Changes
+from cbtui.runs.setup.lesson_setup import RunRequest
 from cbtui.screens import compare
 from cbtui.screens.compare import CompareScreen
 from cbtui.screens.gathering import GatheringScreen, sentence_on
@@ -328,7 +329,7 @@ async def test_a_lesson_offers_a_comparison_once_there_is_a_run_before() -> None
 
 
 def contender(lesson: str, threads: int | None = None) -> Contender:
-    return Contender(lesson, setup_for(find(lesson), threads=threads))
+    return Contender(lesson, RunRequest(lesson=find(lesson), changes=Changes(threads)))
 
 
 @asynccontextmanager
@@ -343,7 +344,7 @@ async def gathering(
 
 
 async def test_two_lessons_are_run_and_then_compared() -> None:
-    terms = Terms(end=ns(3.0), calls=(ns(1.2),))
+    terms = Terms(end=3.0, calls=(1.2,))
     first, second = contender("exclusive-2-threads"), contender("reentrant-1-thread", threads=2)
     async with gathering(first, second, terms) as (app, pilot):
         assert isinstance(app.screen, GatheringScreen | CompareScreen)
@@ -371,7 +372,7 @@ async def test_what_cannot_be_compared_is_said_and_ends_the_console_with_2(tmp_p
 
 
 async def test_a_run_that_takes_long_can_be_given_up() -> None:
-    terms = Terms(end=ns(36_000))
+    terms = Terms(end=36_000)
     async with gathering(contender("single-thread"), contender("split-groups"), terms) as (app, pilot):
         await pilot.press("q")
         assert isinstance(app.screen, MenuScreen)

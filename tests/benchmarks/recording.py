@@ -13,7 +13,7 @@ from typing import Any
 import msgspec
 
 from cbtui.engines.session import Session
-from cbtui.runs.setup.lesson_setup import setup_for, setup_for_files
+from cbtui.runs.setup.lesson_setup import RunRequest, setup_for
 from lessons.catalogue import find
 from sim.engine.setup import RobotUse, RunSetup
 from sim.interfaces import to_cdr
@@ -107,7 +107,7 @@ def slowing_publisher(calls: int) -> float:
     with TemporaryDirectory() as folder:
         path = Path(folder) / "node.py"
         path.write_text(_PUBLISHES)
-        setup = setup_for_files([path], (), threads=None, speed=None)
+        setup = RunRequest(files=[path]).setup()
         return _share(msgspec.structs.replace(setup, clock="virtual", robot=RobotUse.NEVER), calls)
 
 

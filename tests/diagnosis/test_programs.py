@@ -4,7 +4,7 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.runs.headless.headless import run_set_up
+from cbtui.runs.headless.headless import run_headless
 from sim.diagnosis import diagnose
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
 from tests.support.engine_runs import SECOND, Run, program_setup, run_program, run_to_end
@@ -124,9 +124,7 @@ def test_a_run_without_the_console_lists_its_findings_after_the_summary(
 ) -> None:
     path = tmp_path / "node.py"
     path.write_text(source)
-    status = run_set_up(
-        program_setup(path, 3.0), events_path=None, recording_path=None, replace_recording=False
-    )
+    status = run_headless(program_setup(path, 3.0))
     assert status == 0
     summary, _, listing = capsys.readouterr().out.partition("\nDiagnosis\n")
     assert summary.startswith("node.py, 3.0 s of virtual time")

@@ -12,7 +12,7 @@ import msgspec
 import pytest
 
 from cbtui.engines.session import Session
-from cbtui.runs.setup.lesson_setup import setup_for_files
+from cbtui.runs.setup.lesson_setup import RunRequest
 from sim.engine.commands import Stop
 from sim.engine.programs.ending import GRACE
 from sim.trace.events import AnyEvent, Notice, Printed, RunEnded
@@ -234,7 +234,7 @@ def test_a_program_behind_a_link_keeps_the_name_that_was_typed(tmp_path: Path, t
     (tmp_path / "link.py").symlink_to(real / "real.py")
     (tmp_path / "folder").symlink_to(real)
     path = tmp_path / typed
-    setup = setup_for_files([path])
+    setup = RunRequest(files=[path], speed=1.0).setup()
     assert setup.title == path.name
     run = run_to_end(setup)
     assert printed(run) == [f"{path} {path} {real}"]

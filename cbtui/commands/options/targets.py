@@ -1,17 +1,16 @@
 """What a command is to run: a lesson, or files; what is neither ends the program with one line and 2."""
 
-import argparse
 import os
 import sys
+from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, NamedTuple, NoReturn
 
 from cbtui.terminal.capabilities import is_browser, is_dumb
 from cbtui.text.output import complain, is_text
 
 if TYPE_CHECKING:
     from lessons.lesson import Lesson
-    from sim.engine.setup import RunSetup
 
 
 def lesson_of(name: str) -> "Lesson":
@@ -42,16 +41,20 @@ def need_terminal(instead: str) -> None:
         refuse(f"this terminal (TERM={os.environ['TERM']}) cannot place its cursor; use {instead}")
 
 
-def setup_of_targets(options: argparse.Namespace, speed: float | None) -> "RunSetup":
-    """The set-up of the targets."""
-    from cbtui.runs.setup.lesson_setup import setup_for, setup_for_files
+class Program(NamedTuple):
+    """What the targets of a command name: a lesson, or files."""
 
-    if not is_file_name(options.targets[0]):
-        if len(options.targets) > 1:
-            refuse("one lesson runs at a time; several targets must all be files")
-        return setup_for(lesson_of(options.targets[0]), threads=options.threads, speed=speed)
-    paths = [file_of(name) for name in options.targets]
-    return setup_for_files(paths, options.arguments, threads=options.threads, speed=speed)
+    lesson: "Lesson | None"
+    files: list[Path]
+
+
+def program_of(targets: Sequence[str]) -> Program:
+    """The lesson, or the files, of some targets; none of either where there are no targets."""
+    if not targets or is_file_name(targets[0]):
+        return Program(None, [file_of(name) for name in targets])
+    if len(targets) > 1:
+        refuse("one lesson runs at a time; several targets must all be files")
+    return Program(lesson_of(targets[0]), [])
 
 
 def is_file_name(target: str) -> bool:

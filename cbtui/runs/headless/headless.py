@@ -1,12 +1,8 @@
 """Runs a program without the console: log to stderr, summary and diagnosis to stdout, events to files."""
 
-from collections.abc import Sequence
 from contextlib import ExitStack, closing, nullcontext
-from operator import itemgetter
 from pathlib import Path
 from signal import Signals
-
-import msgspec
 
 from cbtui.engines.follow import EngineLostError, FollowedRun, RunTimeoutError
 from cbtui.engines.listening import ListeningSession
@@ -21,57 +17,28 @@ from cbtui.terminal.interrupts import heard, whole
 from cbtui.text.output import CannotSayError, complain, say
 from sim.diagnosis import diagnose, findings_text
 from sim.engine.commands import Stop
-from sim.engine.setup import Keyboard, RunSetup, TimedCall, TimedLine, TimedText
+from sim.engine.setup import Keyboard, RunSetup
 from sim.recording import Recorder
 from sim.trace.events import AnyEvent
 from sim.trace.figures.summary import summarise
 from sim.trace.figures.summary_text import plain_text
 from sim.trace.timeline import Timeline
-from sim.units import nearest_ns
-
-_SECOND = 1_000_000_000
+from sim.units import SECOND
 
 
 def run_headless(
-    program: RunSetup,
+    setup: RunSetup,
     *,
-    seconds: float,
-    calls: Sequence[float],
-    call_data: bool,
-    lines: Sequence[tuple[float, str]],
-    typed: Sequence[tuple[float, str]] = (),
-    events_path: str | None,
+    events_path: str | None = None,
     recording_path: str | None = None,
     replace_recording: bool = False,
 ) -> int:
-    """Run a program to its end; returns the exit code: 0 well, 1 it failed, 2 a file cannot be written.
+    """Run what is set up to its end; returns the exit code: 0 well, 1 it failed, 2 a file cannot be written.
 
-    Ctrl-C, ``kill`` and a terminal that is closed end the run early, and what it came to is told and recorded
-    all the same; the exit code then is 128 and the signal's number.
-
-    ``seconds`` is how long the run lasts in its own time, ``calls`` when its SetBool service is called,
-    ``lines`` which ``ros2`` lines are carried out when, ``typed`` what is typed when at the programs'
-    terminal; without any of that, the terminal is this process's standard input. A recording replaces
-    another one only with ``replace_recording``.
+    Ctrl-C, ``kill`` and a terminal that is closed end the run early; its summary is still printed and its
+    recording finished, and the exit code is 128 and the signal's number. A live keyboard is this process's
+    standard input. A recording replaces another one only with ``replace_recording``.
     """
-    setup = msgspec.structs.replace(
-        program,
-        until=nearest_ns(seconds),
-        calls=tuple(TimedCall(nearest_ns(at), call_data) for at in sorted(calls)),
-        lines=tuple(TimedLine(nearest_ns(at), text) for at, text in sorted(lines, key=itemgetter(0))),
-        typed=tuple(TimedText(nearest_ns(at), text) for at, text in sorted(typed, key=itemgetter(0))),
-        keyboard=Keyboard.NOBODY if typed else Keyboard.LIVE,
-        contents=recording_path is not None,
-    )
-    return run_set_up(
-        setup, events_path=events_path, recording_path=recording_path, replace_recording=replace_recording
-    )
-
-
-def run_set_up(
-    setup: RunSetup, *, events_path: str | None, recording_path: str | None, replace_recording: bool
-) -> int:
-    """Run what is set up whole, as ``run_headless`` does."""
     with ExitStack() as files:
         try:
             file = None if events_path is None else EventsFile(Path(events_path))
@@ -169,7 +136,7 @@ class _Headless:
 
     def _verdict(self, loss: str | None) -> int:
         if loss is not None:
-            complain(f"{loss} at {self._timeline.end / _SECOND:.3f} s; run it again")
+            complain(f"{loss} at {self._timeline.end / SECOND:.3f} s; run it again")
             return 1
         ended = self._timeline.ended
         if ended is not None and ended.failed:

@@ -4,15 +4,14 @@ Whatever the file does, it ends: a run has a limit of real time and one of what 
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from threading import Event
 
-import msgspec
-
 from cbtui.engines.follow import EngineLostError, FollowedRun, GivenUpError, RunTimeoutError
 from cbtui.engines.session import OpenSession, Session
-from cbtui.runs.setup.lesson_setup import setup_to_judge
+from cbtui.runs.setup.changes import Changes
+from cbtui.runs.setup.lesson_setup import request_to_judge
 from lessons.judge import Judge, Judged
 from lessons.lesson import Lesson
 from sim.engine.setup import RunSetup
@@ -63,7 +62,7 @@ def check(lesson: Lesson, judge: Judge, file: Path, limit: float = LIMIT, seed: 
 
     ``seed`` chooses the order of its threads, None the usual one.
     """
-    setup = msgspec.structs.replace(setup_to_judge(lesson, file), seed=seed)
+    setup = replace(request_to_judge(lesson, file), changes=Changes(seed=seed)).setup()
     run = observe(setup, file.name, limit)
     judged = () if run.trouble is not None else tuple(judge.verdicts(run.timeline))
     return Checked(judged, len(judge.checks), run)

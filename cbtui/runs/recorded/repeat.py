@@ -9,14 +9,13 @@ import msgspec
 
 from cbtui.runs.recorded.reading_progress import ReadingProgress
 from cbtui.runs.recorded.recording_file import setup_of
+from cbtui.runs.setup.lesson_setup import RunRequest
 from sim.engine.inputs import UnknownInputError, inputs_of, stops
-from sim.engine.setup import Keyboard, RunSetup
+from sim.engine.setup import Keyboard, RobotUse, RunSetup
 from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
 from sim.recording import Recording, RecordingError, read
 from sim.trace.events import AnyEvent, Notice, RunEnded
 from sim.units import nearest_ns
-
-_SECOND = 1_000_000_000
 
 
 def why_unrepeatable(events: Iterable[AnyEvent]) -> str | None:
@@ -30,17 +29,14 @@ class CannotRepeatError(Exception):
 
 def repeated(
     path: Path,
-    program: RunSetup | None,
+    request: RunRequest,
     *,
-    seconds: float | None,
-    threads: int | None,
     tell: Callable[[str], None],
 ) -> RunSetup:
-    """The set-up of a run that gets the inputs of a recorded one.
+    """The set-up of a run that gets the inputs of a recorded one instead of its own.
 
-    ``program`` runs instead of the recorded one (None: that one again). ``seconds`` None: as long as the
-    recording; ``threads`` None: as many as it had. ``tell`` gets a sentence if inputs may be missing, or
-    if the repetition will not be exact.
+    The recorded program runs again if the request names none. Its ``seconds`` None: as long as the recording.
+    ``tell`` gets a sentence if inputs may be missing, or if the repetition will not be exact.
 
     Raises:
         CannotRepeatError: the recording cannot be read, was made on the real clock, lacks its set-up, or its
@@ -61,18 +57,18 @@ def repeated(
         raise CannotRepeatError(f"{path} does not tell how its run was set up, so it cannot be repeated")
     if recorded.clock != "virtual":
         raise CannotRepeatError(f"{path} is of a real-clock run; only virtual runs can be repeated exactly")
-    if program is None:
+    if not request.names_program:
         _check_programs(recorded, recording)
         if known.unrepeatable:
             why = known.unrepeatable
             tell(f"{path} is of a program that is not repeatable ({why}); it is run again all the same")
-    if seconds is None:
+    if request.seconds is None:
         until = recorded.until if recorded.until is not None or known.ended else known.last
     else:
-        until = nearest_ns(seconds)
+        until = nearest_ns(request.seconds)
         inputs = tuple(each for each in inputs if not stops(each))
-    setup = msgspec.structs.replace(
-        program or recorded,
+    return msgspec.structs.replace(
+        request.setup() if request.names_program else _again(recorded, request),
         clock="virtual",
         until=until,
         calls=recorded.calls,
@@ -80,9 +76,14 @@ def repeated(
         typed=recorded.typed,
         keyboard=Keyboard.NOBODY if recorded.keyboard is Keyboard.NOBODY else Keyboard.REPEATED,
         inputs=inputs,
-        contents=recorded.contents,
+        contents=recorded.contents or request.contents,
     )
-    return setup if threads is None else msgspec.structs.replace(setup, threads=threads)
+
+
+def _again(recorded: RunSetup, request: RunRequest) -> RunSetup:
+    """The recorded program, run as is asked for."""
+    robot = recorded.robot if request.robot else RobotUse.NEVER
+    return msgspec.structs.replace(request.changes.applied(recorded), speed=request.speed, robot=robot)
 
 
 @dataclass

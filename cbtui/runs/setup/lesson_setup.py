@@ -1,59 +1,103 @@
-"""From a lesson, or a learner's own file, to the set-up of a run of it."""
+"""From what somebody asks to run to the set-up of the run: a lesson, or files of a learner's own."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, field
+from operator import itemgetter
 from pathlib import Path
 
-import msgspec
-
+from cbtui.runs.setup.changes import Changes
 from lessons.catalogue import ROOT
 from lessons.lesson import Lesson
-from sim.engine.setup import Keyboard, ProgramSetup, RobotUse, RunSetup, ServiceChoice, TimedCall, TimedLine
+from sim.engine.setup import (
+    Keyboard,
+    ProgramSetup,
+    RobotUse,
+    RunSetup,
+    ServiceChoice,
+    TimedCall,
+    TimedLine,
+    TimedText,
+)
 from sim.units import nearest_ns
 
 _LESSON_PACKAGES = tuple(str(path) for path in sorted(ROOT.glob("unit*")))
 """Folders in which the packages of the lessons lie."""
 
 
+@dataclass(frozen=True, kw_only=True)
+class RunRequest:
+    """What somebody asks to run, and how; ``setup()`` makes the engine's set-up of it.
+
+    A ``lesson`` runs its own node, or one of ``files`` in its place; without a lesson the ``files`` run, each
+    with the ``arguments``. Times are seconds of the run's own time. ``clock`` None is the lesson's, for files
+    the real one. ``speed`` is seconds of the run per real second, None for as fast as it can: on the real
+    clock that is 1. On a lesson's real clock the robot is only made when it is used, as its physics would
+    compute beside the node.
+    """
+
+    lesson: Lesson | None = None
+    files: Sequence[Path] = ()
+    arguments: Sequence[str] = ()
+    changes: Changes = field(default_factory=Changes)
+    clock: str | None = None
+    speed: float | None = None
+    robot: bool = True
+    seconds: float | None = None
+    """How long the run lasts; None for no end."""
+    calls: Iterable[float] = ()
+    """When its SetBool service is called, with ``call_data``."""
+    call_data: bool = True
+    lines: Iterable[tuple[float, str]] = ()
+    """``ros2`` lines, each with the time at which it is carried out."""
+    typed: Iterable[tuple[float, str]] = ()
+    """What is typed at the programs' terminal, and when."""
+    keyboard: Keyboard = Keyboard.NOBODY
+    contents: bool = False
+
+    @property
+    def names_program(self) -> bool:
+        """Whether there is a lesson, or a file, to run."""
+        return self.lesson is not None or bool(self.files)
+
+    def setup(self) -> RunSetup:
+        """Return the set-up of the run, with the changes made."""
+        lesson = self.lesson
+        setup = RunSetup(
+            title=" ".join(path.name for path in self.files) if lesson is None else lesson.id,
+            programs=tuple(self._programs()),
+            service=None if lesson is None else ServiceChoice(lesson.service.name, lesson.service.type),
+            clock=self.clock or ("real" if lesson is None else lesson.setup.clock),
+            speed=self.speed,
+            until=None if self.seconds is None else nearest_ns(self.seconds),
+            calls=tuple(TimedCall(nearest_ns(at), self.call_data) for at in sorted(self.calls)),
+            lines=tuple(TimedLine(nearest_ns(at), text) for at, text in _in_order(self.lines)),
+            typed=tuple(TimedText(nearest_ns(at), text) for at, text in _in_order(self.typed)),
+            keyboard=self.keyboard,
+            packages=_LESSON_PACKAGES,
+            robot=self._robot_use(),
+            contents=self.contents,
+        )
+        return self.changes.applied(setup)
+
+    def _programs(self) -> Iterator[ProgramSetup]:
+        lesson = self.lesson
+        if lesson is not None and not self.files:
+            arguments = lesson.arguments_with(self.changes.threads)
+            yield ProgramSetup(str(lesson.node_path), tuple(arguments))
+        for path in self.files:
+            given = self.arguments if lesson is None else lesson.setup.arguments
+            yield ProgramSetup(str(path.absolute()), tuple(given))
+
+    def _robot_use(self) -> RobotUse:
+        if not self.robot:
+            return RobotUse.NEVER
+        virtual = self.lesson is not None and self.lesson.setup.clock == "virtual"
+        return RobotUse.ALWAYS if virtual else RobotUse.WHEN_USED
+
+
 def setup_for(lesson: Lesson, *, threads: int | None = None, speed: float | None = 1.0) -> RunSetup:
-    """Return what an engine needs to run a lesson, on the clock that it names.
-
-    ``threads`` None leaves the lesson's own number; ``speed`` is seconds of the run per real second, None for
-    as fast as it can: on the real clock that is 1. There the robot is only made for a lesson that uses it, as
-    its physics would compute beside the node.
-    """
-    clock = lesson.setup.clock
-    return RunSetup(
-        title=lesson.id,
-        programs=(ProgramSetup(str(lesson.node_path), tuple(lesson.arguments_with(threads))),),
-        service=ServiceChoice(lesson.service.name, lesson.service.type),
-        clock=clock,
-        packages=_LESSON_PACKAGES,
-        robot=RobotUse.ALWAYS if clock == "virtual" else RobotUse.WHEN_USED,
-        speed=speed,
-        threads=threads,
-    )
-
-
-def setup_for_files(
-    paths: Sequence[Path],
-    arguments: Sequence[str] = (),
-    *,
-    threads: int | None = None,
-    speed: float | None = 1.0,
-) -> RunSetup:
-    """Return what an engine needs to run program files, on wall time as they would run elsewhere.
-
-    Every file gets the same ``arguments``.
-    """
-    return RunSetup(
-        title=" ".join(path.name for path in paths),
-        programs=tuple(ProgramSetup(str(path.absolute()), tuple(arguments)) for path in paths),
-        clock="real",
-        packages=_LESSON_PACKAGES,
-        robot=RobotUse.WHEN_USED,
-        speed=speed,
-        threads=threads,
-    )
+    """Return the set-up of a lesson's run; ``threads`` None leaves the lesson's own number."""
+    return RunRequest(lesson=lesson, changes=Changes(threads), speed=speed).setup()
 
 
 def setup_for_line(text: str, folder: Path) -> RunSetup:
@@ -72,16 +116,23 @@ def setup_for_line(text: str, folder: Path) -> RunSetup:
     )
 
 
-def setup_to_judge(lesson: Lesson, file: Path | None = None) -> RunSetup:
+def request_to_judge(lesson: Lesson, file: Path | None = None) -> RunRequest:
     """Return the run that the lesson's predictions and checks are about, of its node or of another file."""
     terms = lesson.run
-    setup = setup_for(lesson, threads=terms.threads if file is None else None, speed=None)
-    if file is not None:
-        program = ProgramSetup(str(file.absolute()), tuple(lesson.setup.arguments))
-        setup = msgspec.structs.replace(setup, programs=(program,))
-    return msgspec.structs.replace(
-        setup,
-        until=nearest_ns(terms.seconds),
-        calls=tuple(TimedCall(nearest_ns(at), data=True) for at in sorted(terms.calls)),
-        lines=tuple(TimedLine(nearest_ns(at), text) for at, text in sorted(terms.lines)),
+    return RunRequest(
+        lesson=lesson,
+        files=() if file is None else (file,),
+        changes=Changes(terms.threads if file is None else None),
+        seconds=terms.seconds,
+        calls=terms.calls,
+        lines=sorted(terms.lines),
     )
+
+
+def setup_to_judge(lesson: Lesson, file: Path | None = None) -> RunSetup:
+    """Return the set-up of ``request_to_judge``."""
+    return request_to_judge(lesson, file).setup()
+
+
+def _in_order(timed: Iterable[tuple[float, str]]) -> list[tuple[float, str]]:
+    return sorted(timed, key=itemgetter(0))

@@ -5,9 +5,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TypeAlias
 
-import msgspec
-
-from cbtui.runs.setup.lesson_setup import setup_for, setup_for_files, setup_to_judge
+from cbtui.runs.setup.changes import Changes
+from cbtui.runs.setup.lesson_setup import RunRequest, request_to_judge, setup_for
 from lessons.lesson import Lesson
 from sim.engine.setup import RunSetup
 
@@ -69,7 +68,7 @@ def of_exercise(lesson: Lesson, lessons: Sequence[Lesson], file: Path) -> Subjec
     subject = of_lesson(lesson, lessons)
 
     def set_up(threads: int | None, speed: float | None) -> RunSetup:
-        return msgspec.structs.replace(setup_to_judge(lesson, file), threads=threads, speed=speed)
+        return replace(request_to_judge(lesson, file), changes=Changes(threads), speed=speed).setup()
 
     return replace(
         subject,
@@ -84,9 +83,9 @@ def of_file(path: Path, arguments: Sequence[str], clock: str) -> Subject:
     """Return a program file as a subject."""
 
     def set_up(threads: int | None, speed: float | None) -> RunSetup:
-        return msgspec.structs.replace(
-            setup_for_files([path], arguments, threads=threads, speed=speed), clock=clock
-        )
+        return RunRequest(
+            files=[path], arguments=arguments, changes=Changes(threads), clock=clock, speed=speed
+        ).setup()
 
     return Subject(
         heading=path.name,
