@@ -118,7 +118,7 @@ def test_a_crash_in_the_middle_of_writing_leaves_the_file_as_it_was(
     recents = noted(path, PROGRAM)
     assert "No space left on device" in recents.troubles()[0]
     assert Recents(path).entries == (LESSON,)
-    assert [each.name for each in path.parent.iterdir()] == [path.name]
+    assert {each.name for each in path.parent.iterdir()} == {path.name, f"{path.name}.lock"}
 
 
 def test_without_a_home_nothing_is_written_to_the_current_folder(

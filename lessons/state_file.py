@@ -1,0 +1,154 @@
+"""The store for small state that outlasts a console: a file of JSON lines, shared with other consoles."""
+
+import fcntl
+import json
+import time
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import count
+from pathlib import Path
+from typing import Generic, NamedTuple, TypeVar
+
+import msgspec
+
+from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
+from sim.whole_file import write_whole
+
+EntryT = TypeVar("EntryT", bound=msgspec.Struct)
+
+_PATIENCE = 1.0
+"""Seconds that another console may hold the lock; after that this one goes on without it."""
+_POLL = 0.02
+
+
+@dataclass(frozen=True)
+class Words:
+    """What sentences on a file call an entry, the loss of all of it, and what goes on after a partial one."""
+
+    entry: str
+    loss: str
+    rest: str
+
+
+class Content(NamedTuple, Generic[EntryT]):
+    """The readable entries of a file; ``broken`` if there was something else in it, and it was set aside."""
+
+    entries: list[EntryT]
+    broken: bool
+
+
+class StateFile(Generic[EntryT]):
+    """Entries of one kind, a JSON line each.
+
+    A file is replaced as a whole, and so is never half written. Nothing but ``faulty_line`` raises: a file
+    that cannot be read or written loses nothing in memory, and ``troubles`` gives a sentence on it, each kind
+    of trouble once. A file with something unreadable in it is kept under another name. Not thread-safe.
+    """
+
+    def __init__(self, path: Path, kind: type[EntryT], words: Words) -> None:
+        self.path = path
+        self._kind = kind
+        self._words = words
+        self._troubles: list[str] = []
+        self._told: set[str] = set()
+        self._usable = True
+
+    def read(self) -> Content[EntryT] | None:
+        """Return what is in the file; None where there is none, or none that can be read."""
+        try:
+            lines = read_bytes(self._known_path(), MOST_OF_A_PROGRAM).splitlines()
+        except FileNotFoundError:
+            return None
+        except OSError as error:
+            self._usable = False
+            self._tell("read", f"{self.path} cannot be read: {error.strerror}; {self._words.loss}")
+            return None
+        entries = [self._entry_in(line) for line in lines]
+        if None in entries:
+            self._set_aside(entries.index(None) + 1)
+        return Content([entry for entry in entries if entry is not None], None in entries)
+
+    def write(self, entries: Iterable[EntryT]) -> None:
+        """Replace the file."""
+        if not self._usable:
+            return
+        lines = (json.dumps(msgspec.to_builtins(entry), separators=(",", ":")) for entry in entries)
+        text = "".join(f"{line}\n" for line in lines)
+        try:
+            self._known_path().parent.mkdir(parents=True, exist_ok=True)
+            write_whole(self.path, text.encode("ascii"), mode=0o600)
+        except OSError as error:
+            self._tell("written", f"{self._words.loss}: {self.path}: {error.strerror}")
+
+    @contextmanager
+    def lock(self) -> Iterator[None]:
+        """Keep other consoles from reading and writing meanwhile; does nothing where there can be no lock."""
+        try:
+            self._known_path().parent.mkdir(parents=True, exist_ok=True)
+            file = self.path.with_name(f"{self.path.name}.lock").open("wb")
+        except OSError:
+            yield  # ``write`` tells why that is not possible
+            return
+        with file:
+            _wait_for(file.fileno())
+            yield
+
+    def troubles(self) -> list[str]:
+        """Return what went wrong and was not told yet."""
+        troubles, self._troubles = self._troubles, []
+        return troubles
+
+    def faulty_line(self) -> int | None:
+        """Return the number of the first line that is no entry, None if all are; changes nothing.
+
+        Raises:
+            OSError: the file cannot be read.
+        """
+        lines = enumerate(read_bytes(self.path, MOST_OF_A_PROGRAM).splitlines(), start=1)
+        return next((number for number, line in lines if self._entry_in(line) is None), None)
+
+    def _entry_in(self, line: bytes) -> EntryT | None:
+        try:
+            return msgspec.convert(json.loads(line), self._kind)
+        except (ValueError, RecursionError):  # msgspec's own errors are ValueErrors too
+            return None
+
+    def _known_path(self) -> Path:
+        """Return the path; without a home there is none."""
+        if not self.path.is_absolute():
+            raise OSError(0, "there is no home folder")
+        return self.path
+
+    def _set_aside(self, line: int) -> None:
+        """Let a file that somebody else wrote into be looked at later."""
+        names = (self.path.with_name(f"{self.path.name}.broken-{number}") for number in count(1))
+        aside = next(path for path in names if not path.exists())
+        what = f"{self.path}:{line} is no {self._words.entry}"
+        try:
+            self.path.rename(aside)
+        except OSError:
+            self._usable = False
+            self._tell("broken", f"{what}; {self._words.loss}")
+        else:
+            rest = f"{self._words.rest} with what could be read"
+            self._tell("broken", f"{what}; the file was kept as {aside.name}, and {rest}")
+
+    def _tell(self, trouble: str, sentence: str) -> None:
+        if trouble not in self._told:
+            self._told.add(trouble)
+            self._troubles.append(sentence)
+
+
+def _wait_for(lock: int) -> None:
+    """Take a lock when it is free; it goes with the file's descriptor, also when the console crashes."""
+    deadline = time.monotonic() + _PATIENCE
+    while time.monotonic() < deadline:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            time.sleep(_POLL)
+        except OSError:
+            return  # a folder of another machine that knows no locks
+        else:
+            return
