@@ -20,11 +20,11 @@ from cbtui.screens.parts.frames import FRAMES_A_SECOND
 from cbtui.screens.parts.navigation import TimeNavigation
 from cbtui.screens.parts.part import Parts
 from cbtui.screens.sized import SizedScreen
-from cbtui.text.durations import duration
 from cbtui.widgets.comparison import ComparisonHeadings, ComparisonTable, Words
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.keys import lane_keys
+from sim.durations import duration, timestamp
 from sim.trace.descriptions import executor_label
 from sim.trace.figures.comparison import compare_incrementally
 from sim.trace.figures.comparison_rows import RUNS, Section, extent, sections, stretch
@@ -139,7 +139,7 @@ class CompareScreen(SizedScreen[None]):
         at, shown = self.navigation.now, self.navigation.window
         self.query_one("#status", Words).words = (
             Run(" Two runs", _STRONG),
-            Run(f"   t {at / 1e9:.3f} s", _STRONG),
+            Run(f"   t {timestamp(at)}", _STRONG),
             Run(f"   {duration(shown.length)} on screen", _FAINT),
         )
         for number, side in enumerate(self._sides):
@@ -292,7 +292,7 @@ class CompareScreen(SizedScreen[None]):
 def _about(number: int, side: Side, at: Nanoseconds) -> tuple[Run, ...]:
     """What the line above a run's lanes tells."""
     timeline = side.timeline
-    state = "goes on" if side.alive() else f"ends at {timeline.end / 1e9:.3f} s"
+    state = "goes on" if side.alive() else f"ends at {timestamp(timeline.end)}"
     told = [text for text in (executor_label(timeline), f"dropped {timeline.dropped(at)}", state) if text]
     return (
         Run(f" {RUNS[number]}  {side.name}", _STRONG),
@@ -304,7 +304,7 @@ def _shorter(first: Side, second: Side) -> str:
     shorter = second.timeline.end < first.timeline.end
     side = second if shorter else first
     until = "has come to" if side.alive() else "ends at"
-    return f"{RUNS[shorter]} {until} {side.timeline.end / 1e9:.3f} s"
+    return f"{RUNS[shorter]} {until} {timestamp(side.timeline.end)}"
 
 
 def _at_the_end_of(bounds: Window, end: Nanoseconds) -> Playhead:

@@ -19,6 +19,7 @@ from cbtui.screens.sized import SizedModal
 from cbtui.text.cells import visible
 from cbtui.widgets.key_bar import KeyBar
 from sim.diagnosis import sentence, whereabouts
+from sim.durations import timestamp
 
 _ALL_IS_WELL = "✓ Nothing has gone wrong so far: the rules have found no problem, and nothing to remark on."
 _TIME = 10
@@ -105,7 +106,7 @@ def title_of(told: Sequence[Told]) -> str:
 def row_of(told: Told, charset: Charset) -> Content:
     """Return a finding's line: ``!`` for a problem, ``·`` for a remark; when; what."""
     sign, style = ("!", "bold $text-warning") if told.is_problem else ("·", "$text-muted")
-    time = "" if told.at is None else f"{told.at / 1e9:.3f} s"
+    time = "" if told.at is None else f"{timestamp(told.at)}"
     return Content.assemble(
         (f"{sign} ", style),
         (f"{time:>{_TIME}}  ", "$text-muted"),

@@ -13,6 +13,7 @@ from cbtui.keys.actions import Scope, bindings_of
 from cbtui.looks.theme import Charset
 from cbtui.screens.sized import SizedModal
 from cbtui.widgets.key_bar import KeyBar
+from sim.durations import timestamp
 from sim.trace.model import Nanoseconds
 from sim.units import nearest_ns
 
@@ -61,7 +62,7 @@ class MomentScreen(SizedModal[Nanoseconds]):
             self.dismiss(nearest_ns(seconds))
 
     def _question(self) -> str:
-        come = f"The run has come to {self._end / 1e9:.3f} s."
+        come = f"The run has come to {timestamp(self._end)}."
         if self._goes_on:
             return f"Which second of the run?\n{come}\nIt runs on to a later one, and stands there."
         return f"Which second of the run?\n{come}"

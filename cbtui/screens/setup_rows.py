@@ -15,9 +15,7 @@ from cbtui.runs.setup.quantities import PERIOD, SENSOR_RATE, Quantity
 from cbtui.screens.group import UNCHANGED, GroupScreen
 from cbtui.screens.number import NumberScreen
 from cbtui.screens.threads import ThreadsScreen
-from sim.units import nearest_ns
-
-_SECOND = 1_000_000_000
+from sim.units import SECOND, nearest_ns
 
 
 class Row(Protocol):
@@ -150,7 +148,7 @@ def _period_row(callback: Callback) -> NumberRow:
 
     def chosen(changes: Changes) -> float | None:
         period = changes.period_of(place)
-        return None if period is None else period / _SECOND
+        return None if period is None else period / SECOND
 
     def changed(changes: Changes, seconds: float | None) -> Changes:
         return changes.with_period(place, None if seconds is None else nearest_ns(seconds))
@@ -159,7 +157,7 @@ def _period_row(callback: Callback) -> NumberRow:
         callback.name,
         "period",
         PERIOD,
-        callback.period / _SECOND,
+        callback.period / SECOND,
         chosen,
         changed,
         lambda seconds: code_of_period(callback.name, nearest_ns(seconds)),

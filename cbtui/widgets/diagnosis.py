@@ -10,17 +10,18 @@ from cbtui.looks.theme import Charset
 from cbtui.runs.live.findings import Told
 from cbtui.runs.live.live_run import ShownRun, State
 from cbtui.runs.live.playhead import Playhead
-from cbtui.text.durations import duration
+from sim.durations import duration
 from sim.trace.descriptions import name_of
 from sim.trace.events import KeyboardAsked, Notice, Reason, Severity
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Call, Moment, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
+from sim.units import SECOND
 
 WORTH_TELLING: Nanoseconds = 10_000_000
 """Shorter waits are the ordinary hand-over from one callback to the next."""
 
-_SERIOUS: Nanoseconds = 1_000_000_000
+_SERIOUS: Nanoseconds = SECOND
 _NOTICE_STAYS: Nanoseconds = 5_000_000_000
 _REPLY_STAYS: Nanoseconds = 5_000_000_000
 _FOR_EVER = " for ever: "

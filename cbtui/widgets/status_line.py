@@ -11,8 +11,8 @@ from cbtui.runs.live.live_recording import LiveRecording
 from cbtui.runs.live.live_run import ShownRun, State
 from cbtui.runs.live.playhead import Playhead
 from cbtui.text.cells import fit
-from cbtui.text.durations import duration
 from cbtui.widgets.painted import Painted
+from sim.durations import duration, timestamp
 from sim.trace.descriptions import executor_label
 from sim.trace.model import Nanoseconds
 
@@ -106,7 +106,7 @@ def status_row(status: Status, width: int) -> list[Run]:
     title = Run(f" {status.title}", _STRONG)
     state = _state(status)
     pace = Run(f"  {status.pace}", _PLAIN)
-    time = Run(f"t {status.at / 1e9:.3f} s", _STRONG)
+    time = Run(f"t {timestamp(status.at)}", _STRONG)
     executor = Run(status.executor, _PLAIN)
     losses = _losses(status)
     recording = [*_export(status), *_recording(status)]

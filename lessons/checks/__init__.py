@@ -14,7 +14,6 @@ from lessons.checks.check import Check, Verdict
 from lessons.checks.diagnosed import never_stuck, no_problem, no_problems, problems
 from lessons.checks.reading import (
     ROTATES,
-    SECOND,
     Stretch,
     calls_of,
     entities_named,
@@ -28,6 +27,7 @@ from lessons.checks.reading import (
 )
 from lessons.checks.robot import data_never_older, turns
 from lessons.checks.services import every_call_answered, log_never_says, log_says, replies_within
+from sim.units import SECOND
 
 __all__ = [
     "ROTATES",

@@ -6,8 +6,7 @@ from dataclasses import dataclass
 from sim.trace.events import EntityId, VelocityCommanded
 from sim.trace.model import Call, Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
-
-SECOND: Nanoseconds = 1_000_000_000
+from sim.units import SECOND
 
 
 def whole(run: Timeline) -> Window:

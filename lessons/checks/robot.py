@@ -3,9 +3,10 @@
 from collections.abc import Iterator
 
 from lessons.checks.check import Check, Verdict
-from lessons.checks.reading import SECOND, calls_of, rotations, seconds, spans_of
+from lessons.checks.reading import calls_of, rotations, seconds, spans_of
 from sim.trace.model import Nanoseconds, Span
 from sim.trace.timeline import Timeline
+from sim.units import SECOND
 
 
 def turns(times: int) -> Check:

@@ -1,9 +1,10 @@
 """Checks on service calls and on what is written to the log."""
 
 from lessons.checks.check import Check, Verdict
-from lessons.checks.reading import SECOND, requests_of, seconds
+from lessons.checks.reading import requests_of, seconds
 from sim.trace.events import EntityKind
 from sim.trace.timeline import Timeline
+from sim.units import SECOND
 
 
 def replies_within(service: str, limit: float) -> Check:

@@ -10,9 +10,8 @@ from typing import Any
 
 from sim.clock.outside_work import OutsideWork
 from sim.clock.replacing import Replacements
-from sim.units import wait_ns
+from sim.units import SECOND, wait_ns
 
-_SECOND = 1_000_000_000
 _signal = signal.signal
 _mask = signal.pthread_sigmask
 _taken = signal.sigtimedwait
@@ -83,7 +82,7 @@ class Signals:
                 "use --clock real"
             )
         left = max(self._rings_at - self._clock.now(), 0)
-        return left / _SECOND, self._interval / _SECOND
+        return left / SECOND, self._interval / SECOND
 
     def _set(self, moment: int) -> None:
         self._rings_at = moment

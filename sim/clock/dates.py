@@ -17,8 +17,8 @@ from typing import Any
 
 from sim.clock.outside_work import OutsideWork
 from sim.clock.replacing import Replacements
+from sim.units import SECOND
 
-_SECOND = 1_000_000_000
 _SINCE_1970 = ("CLOCK_REALTIME", "CLOCK_REALTIME_COARSE", "CLOCK_TAI")
 _SINCE_THE_BEGINNING = (
     "CLOCK_MONOTONIC",
@@ -46,7 +46,7 @@ def replace_dates(replacements: Replacements, outside: OutsideWork) -> None:
     replacements.put(time, "thread_time", lambda: 0.0)
     replacements.put(time, "process_time_ns", lambda: 0)
     replacements.put(time, "thread_time_ns", lambda: 0)
-    replacements.put(os, "times", lambda: os.times_result((0.0, 0.0, 0.0, 0.0, clock.now() / _SECOND)))
+    replacements.put(os, "times", lambda: os.times_result((0.0, 0.0, 0.0, 0.0, clock.now() / SECOND)))
     usage = resource.getrusage
 
     def real_usage(who: int) -> resource.struct_rusage:
@@ -62,7 +62,7 @@ def replace_dates(replacements: Replacements, outside: OutsideWork) -> None:
 
 def _of_second(real: Callable[[float], Any], wall: Callable[[], int]) -> Callable[..., Any]:
     def told(seconds: float | None = None) -> Any:
-        return real(wall() // _SECOND if seconds is None else seconds)
+        return real(wall() // SECOND if seconds is None else seconds)
 
     return told
 
@@ -77,7 +77,7 @@ def _replace_system_clocks(replacements: Replacements, wall: Callable[[], int]) 
         clocks |= {getattr(time, name): told for name in names if hasattr(time, name)}
     real, real_ns = time.clock_gettime, time.clock_gettime_ns
     replacements.put(
-        time, "clock_gettime", lambda number: clocks[number]() / _SECOND if number in clocks else real(number)
+        time, "clock_gettime", lambda number: clocks[number]() / SECOND if number in clocks else real(number)
     )
     replacements.put(
         time, "clock_gettime_ns", lambda number: clocks[number]() if number in clocks else real_ns(number)
@@ -86,7 +86,7 @@ def _replace_system_clocks(replacements: Replacements, wall: Callable[[], int]) 
 
 def _replace_now(replacements: Replacements, wall: Callable[[], int]) -> None:
     def at(cls: type[datetime.datetime], zone: datetime.tzinfo | None, moment: int) -> datetime.datetime:
-        seconds, rest = divmod(moment, _SECOND)
+        seconds, rest = divmod(moment, SECOND)
         return cls.fromtimestamp(seconds, zone).replace(microsecond=rest // 1000)
 
     def now(cls: type[datetime.datetime], tz: datetime.tzinfo | None = None) -> datetime.datetime:

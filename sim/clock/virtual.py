@@ -29,6 +29,7 @@ from sim.clock.outside import start_outside
 from sim.clock.pace import Pace
 from sim.clock.schedule import FirstCome, Schedule
 from sim.clock.virtual_threads import VirtualSignal, VirtualThread
+from sim.units import SECOND
 
 # Kept from before sim.clock.stdlib puts the virtual ones in their place.
 _allocate_lock = threading.Lock
@@ -43,7 +44,7 @@ WAITS_TO_RECESS = 1_000
 RECESS = 1_000
 """Nanoseconds that a recess lasts at most; a float of the seconds since 1970 can tell 238."""
 
-VIRTUAL_EPOCH = 1_700_000_000 * 1_000_000_000
+VIRTUAL_EPOCH = 1_700_000_000 * SECOND
 """Every virtual run begins at this moment (14 November 2023), so its stamps are the same each time."""
 
 

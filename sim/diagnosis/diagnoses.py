@@ -11,8 +11,7 @@ from sim.trace.events import EntityId
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
-
-SECOND: Nanoseconds = 1_000_000_000
+from sim.units import SECOND
 
 _LATE: Nanoseconds = SECOND
 """How long threads of a real-clock run may report out of order; what is younger is looked at again."""

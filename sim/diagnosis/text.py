@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 from textwrap import TextWrapper
 
 from sim.diagnosis.rule import Explanation, Finding, Weight
+from sim.durations import timestamp
 from sim.trace.timeline import Timeline
 
 SIGNS = {Weight.PROBLEM: "!", Weight.REMARK: "·"}
@@ -42,7 +43,7 @@ def sentence(text: str) -> str:
 def whereabouts(found: Finding, told: Explanation) -> str:
     """Where in the code and when in the run a finding is: ``node.py:58, at 4.006 s``."""
     place = [] if told.place is None else [str(told.place)]
-    time = [f"at {found.at / 1e9:.3f} s"] if found.at else []
+    time = [f"at {timestamp(found.at)}"] if found.at else []
     return ", ".join([*place, *time])
 
 

@@ -9,6 +9,7 @@ from typing import TypeAlias
 
 from sim.clock import VirtualClock
 from sim.clock.paced import PacedClock
+from sim.durations import timestamp
 from sim.engine import commands
 from sim.engine.commands import PaceCommand
 from sim.trace.events import (
@@ -200,5 +201,5 @@ def in_words(command: PaceCommand) -> str:
 
 
 def _too_late(now: int, moment: int) -> Notice:
-    text = f"the run has come to {now / 1e9:.3f} s, so it cannot go on until {moment / 1e9:.9g} s"
+    text = f"the run has come to {timestamp(now)}, so it cannot go on until {moment / 1e9:.9g} s"
     return Notice(now, Severity.WARN, text)

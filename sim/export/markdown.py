@@ -4,13 +4,14 @@ from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
 from sim.diagnosis import diagnose, sentence, whereabouts
+from sim.durations import duration
 from sim.export.texts import markdown as plain
 from sim.export.texts import seconds
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId, EntityKind
 from sim.trace.figures.statistics import CallbackStatistics, Distribution, Statistics, ages_used, statistics
 from sim.trace.figures.summary import CallbackFigures, Summary, summarise
-from sim.trace.figures.summary_text import duration, robot_line, service_line
+from sim.trace.figures.summary_text import robot_line, service_line
 from sim.trace.model import Mark, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 

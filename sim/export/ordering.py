@@ -18,8 +18,9 @@ from sim.trace.events import (
     WaitStarted,
 )
 from sim.trace.model import Nanoseconds
+from sim.units import SECOND
 
-HORIZON: Nanoseconds = 1_000_000_000
+HORIZON: Nanoseconds = SECOND
 _time = attrgetter("t")
 
 

@@ -3,15 +3,16 @@
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
+from sim.durations import duration
 from sim.export import paper
 from sim.export.lanes import Piece, Scale, losses, pieces, rows, ticks
 from sim.export.paper import Box
 from sim.export.texts import seconds, xml
 from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import GroupKind, Reason
-from sim.trace.figures.summary_text import duration
 from sim.trace.model import Entity, Group, Nanoseconds, Span, Thread, Wait, Window
 from sim.trace.timeline import Timeline
+from sim.units import SECOND
 
 LABELS = 210.0
 """Pixels for the names at the left."""
@@ -239,5 +240,5 @@ def _short(t: Nanoseconds) -> str:
 
 def _places(steps: Sequence[Nanoseconds]) -> int:
     """How many decimals of a second tell ticks apart."""
-    step = min(steps, default=1_000_000_000)
+    step = min(steps, default=SECOND)
     return next((places for places in range(9) if step % 10 ** (9 - places) == 0), 9)

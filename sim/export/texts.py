@@ -3,6 +3,7 @@
 import re
 
 from sim.trace.model import Nanoseconds
+from sim.units import SECOND
 
 _CONTROLS = "\x00-\x08\x0b-\x1f\x7f-\x9f"
 _DECEIVERS = "\u200b\u200e\u200f\u202a-\u202e\u2060\u2066-\u2069\ufeff"
@@ -40,5 +41,5 @@ def markdown(text: str) -> str:
 
 def seconds(time: Nanoseconds) -> str:
     """A time in seconds, exactly: ``12.480000000``."""
-    whole, rest = divmod(abs(time), 1_000_000_000)
+    whole, rest = divmod(abs(time), SECOND)
     return f"{'-' if time < 0 else ''}{whole}.{rest:09d}"

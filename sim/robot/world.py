@@ -5,6 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from sim.units import SECOND
+
 from .arena import ARENA, Arena, Pose
 from .bullet import Client, silence
 from .drive import STANDSTILL, Velocity, WheelPair, clamped, is_drivable, wheel_speeds
@@ -25,8 +27,6 @@ _SOFTNESS = 1e-9
 
 _STEPS_PER_SAMPLE = 12
 """Steps between two looks at the pose for the counters; fixed, so that nobody's asking changes them."""
-
-_SECOND = 1_000_000_000
 
 
 class World:
@@ -185,7 +185,7 @@ class World:
 
 def _steps_due(time_ns: int) -> int:
     # The greatest k for which k / 240 s, rounded to the nanosecond, is not after the time.
-    return (STEP_RATE * (2 * time_ns + 1) - 1) // (2 * _SECOND)
+    return (STEP_RATE * (2 * time_ns + 1) - 1) // (2 * SECOND)
 
 
 def _turn_between(before: Pose, after: Pose) -> float:

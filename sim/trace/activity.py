@@ -4,8 +4,9 @@ from collections.abc import Iterator
 
 from sim.trace.events import EntityId
 from sim.trace.model import Nanoseconds
+from sim.units import SECOND
 
-_LATE: Nanoseconds = 1_000_000_000
+_LATE: Nanoseconds = SECOND
 """How much later than others an event may be told of."""
 
 

@@ -4,7 +4,7 @@ import pytest
 
 from sim.trace.events import Reason
 from sim.trace.figures.summary import Summary, summarise
-from sim.trace.figures.summary_text import duration, plain_text
+from sim.trace.figures.summary_text import plain_text
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, dummy_server_one_thread_run, ns, shared_group_run, split_groups_run
 
@@ -186,22 +186,3 @@ def test_lost_events_are_admitted() -> None:
     run, _, _, _ = small_run()
     run.lost(12, 1.0)
     assert "The trace lost 12 events, so some figures below are too small.\n" in plain_text(summary_of(run))
-
-
-@pytest.mark.parametrize(
-    ("length", "words"),
-    [
-        (0, "0 s"),
-        (12_400, "12 µs"),
-        (99_600, "0.1 ms"),
-        (800_000, "0.8 ms"),
-        (9_940_000, "9.9 ms"),
-        (9_960_000, "10 ms"),
-        (498_000_000, "498 ms"),
-        (999_400_000, "999 ms"),
-        (999_600_000, "1.0 s"),
-        (9_900_000_000, "9.9 s"),
-    ],
-)
-def test_durations_have_the_unit_that_suits_them(length: int, words: str) -> None:
-    assert duration(length) == words

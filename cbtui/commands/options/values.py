@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from cbtui.runs.setup.quantities import PERIOD, SENSOR_RATE, BadQuantityError, Quantity
 from cbtui.text.output import is_text
+from sim.units import nearest_ns
 
 if TYPE_CHECKING:
     from cbtui.runs.setup.changes import Place
@@ -120,7 +121,7 @@ def group_change(text: str) -> "tuple[Place, str]":
 def period_change(text: str) -> "tuple[Place, int]":
     """Read which timer's callback gets which period, such as ``timer_callback=0.2``; nanoseconds."""
     place, seconds = _place_and_value(text, "seconds, such as timer_callback=0.2")
-    return place, round(_quantity(PERIOD, seconds) * 1_000_000_000)
+    return place, nearest_ns(_quantity(PERIOD, seconds))
 
 
 def sensor_rate(text: str) -> float:

@@ -16,6 +16,7 @@ from cbtui.runs.recorded.repeat import why_unrepeatable
 from cbtui.terminal.interrupts import heard, whole
 from cbtui.text.output import CannotSayError, complain, say
 from sim.diagnosis import diagnose, findings_text
+from sim.durations import timestamp
 from sim.engine.commands import Stop
 from sim.engine.setup import Keyboard, RunSetup
 from sim.recording import Recorder
@@ -23,7 +24,6 @@ from sim.trace.events import AnyEvent
 from sim.trace.figures.summary import summarise
 from sim.trace.figures.summary_text import plain_text
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 
 def run_headless(
@@ -136,7 +136,7 @@ class _Headless:
 
     def _verdict(self, loss: str | None) -> int:
         if loss is not None:
-            complain(f"{loss} at {self._timeline.end / SECOND:.3f} s; run it again")
+            complain(f"{loss} at {timestamp(self._timeline.end)}; run it again")
             return 1
         ended = self._timeline.ended
         if ended is not None and ended.failed:

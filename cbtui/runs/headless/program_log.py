@@ -19,8 +19,7 @@ from sim.trace.events import (
     ThreadId,
     Typed,
 )
-
-_SECOND = 1_000_000_000
+from sim.units import SECOND
 
 
 class ProgramLog:
@@ -41,7 +40,7 @@ class ProgramLog:
         for event in events:
             match event:
                 case Logged(t=t, severity=severity, logger=logger, text=text, thread=thread):
-                    seconds, nanoseconds = divmod(self._epoch + t, _SECOND)
+                    seconds, nanoseconds = divmod(self._epoch + t, SECOND)
                     prefix = self._prefix(self._processes.get(thread, 0))
                     write_line(
                         f"{prefix}[{severity}] [{seconds}.{nanoseconds:09d}] [{logger}]: {text}", error=True

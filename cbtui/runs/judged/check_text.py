@@ -7,13 +7,12 @@ from cbtui.runs.judged.checking import Checked
 from lessons.checks import problems
 from lessons.judge import Judged
 from sim.diagnosis.text import WIDTH
-from sim.trace.model import Nanoseconds
+from sim.durations import timestamp
 from sim.trace.timeline import Timeline
 
 PASSED, FAILED = "✓", "✗"
 _TIME_UP = "its time was up"
 """What the engine says of a run that lasted as long as it was to."""
-_SECOND: Nanoseconds = 1_000_000_000
 
 
 def checked_text(checked: Checked) -> str:
@@ -29,7 +28,7 @@ def checked_text(checked: Checked) -> str:
 def verdict_line(judged: Judged) -> str:
     """What was expected of a check, what was seen, and when."""
     verdict = judged.verdict
-    when = "" if verdict.at is None else f", at {verdict.at / _SECOND:.3f} s"
+    when = "" if verdict.at is None else f", at {timestamp(verdict.at)}"
     return f"expected {verdict.expected}; saw {verdict.seen}{when}"
 
 
@@ -48,6 +47,6 @@ def faults(timeline: Timeline) -> Iterator[str]:
     """Yield what is wrong with a run beside its checks: that it was over too soon, what was diagnosed."""
     ended = timeline.ended
     if ended is not None and not ended.reason.startswith(_TIME_UP):
-        yield f"the run was over at {ended.t / _SECOND:.3f} s: {' '.join(ended.reason.split())}"
+        yield f"the run was over at {timestamp(ended.t)}: {' '.join(ended.reason.split())}"
     for found in problems(timeline):
         yield found.rule.explain(found, timeline).what

@@ -14,16 +14,15 @@ from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.lesson_setup import request_to_judge
 from lessons.judge import Judge, Judged
 from lessons.lesson import Lesson
+from sim.durations import timestamp
 from sim.engine.setup import RunSetup
 from sim.trace.events import AnyEvent, Logged, Printed
-from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 
 LIMIT = 60.0
 """Real seconds that a run may take; those of the lessons take one, on the real clock a few."""
 MOST_TEXT = 32_000_000
 """Characters that a run may write to its log and its output."""
-_SECOND: Nanoseconds = 1_000_000_000
 
 
 @dataclass(frozen=True)
@@ -128,4 +127,4 @@ def took_too_long(timeline: Timeline, name: str, limit: float) -> str:
 
 
 def _time(timeline: Timeline) -> str:
-    return f"{timeline.end / _SECOND:.3f} s"
+    return f"{timestamp(timeline.end)}"

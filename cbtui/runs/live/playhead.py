@@ -5,13 +5,13 @@ from dataclasses import dataclass, replace
 
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
+from sim.units import SECOND
 
 _MILLISECOND = 1_000_000
-_SECOND = 1000 * _MILLISECOND
-_MINUTE = 60 * _SECOND
+_MINUTE = 60 * SECOND
 SPANS = (
     *(length * unit * _MILLISECOND for unit in (1, 10, 100, 1000) for length in (1, 2, 5)),
-    *(length * _SECOND for length in (10, 20, 30)),
+    *(length * SECOND for length in (10, 20, 30)),
     *(length * _MINUTE for length in (1, 2, 5, 10)),
 )
 """The stretches of time that the lanes can show: 1 ms to 10 minutes."""
@@ -29,7 +29,7 @@ class Playhead:
     stands still while the run goes on.
     """
 
-    span: Nanoseconds = 10 * _SECOND
+    span: Nanoseconds = 10 * SECOND
     at: Nanoseconds | None = None
     start: Nanoseconds | None = None
 

@@ -20,8 +20,8 @@ from sim.recording import About, Recording, RecordingError, read
 from sim.trace.events import AnyEvent
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
+from sim.units import SECOND
 
-_SECOND = 1_000_000_000
 _DELIVERED = 2000
 """Events that are delivered at once: what the screen takes in between two frames."""
 _GRACE = 0.4
@@ -241,7 +241,7 @@ def _threads(about: About) -> str:
 
 def _moment(nanoseconds: int) -> str:
     try:
-        return f"{datetime.fromtimestamp(nanoseconds // _SECOND, UTC):%Y-%m-%d %H:%M:%S} UTC"
+        return f"{datetime.fromtimestamp(nanoseconds // SECOND, UTC):%Y-%m-%d %H:%M:%S} UTC"
     except (ValueError, OverflowError, OSError):
         return "at no time that there is"
 

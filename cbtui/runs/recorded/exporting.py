@@ -10,7 +10,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Protocol, Self
 
-from sim.units import nearest_ns
+from sim.units import SECOND, nearest_ns
 from sim.whole_file import whole_file
 
 if TYPE_CHECKING:
@@ -27,7 +27,6 @@ FORMATS = {
     "markdown": ("OUT.md", "a report: set-up, statistics, waits, notices; with the --svg picture, if any"),
 }
 WIDTH = 1100
-_SECOND = 1_000_000_000
 
 
 class Source(Protocol):
@@ -164,7 +163,7 @@ def _window(timeline: "Timeline", wish: Wish) -> "Window":
     start = nearest_ns(wish.start)
     end = timeline.end if wish.end is None else nearest_ns(wish.end)
     if wish.start and start >= timeline.end:
-        raise ExportError(f"the run is over at {timeline.end / _SECOND:g} s, before --from {wish.start:g}")
+        raise ExportError(f"the run is over at {timeline.end / SECOND:g} s, before --from {wish.start:g}")
     return Window(start, max(end, start + 1))
 
 

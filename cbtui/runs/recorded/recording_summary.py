@@ -9,10 +9,11 @@ from cbtui.runs.recorded.reading_progress import ReadingProgress
 from cbtui.runs.recorded.recording_file import setup_of
 from cbtui.runs.setup.changes import changes_in
 from cbtui.text.output import complain, say, shown
+from sim.durations import timestamp
 from sim.recording import Recording, RecordingError, Topic, read
 from sim.trace.events import AnyEvent, ContentsLost, EventsLost, RunEnded, RunEnding, RunStarted
+from sim.units import SECOND
 
-_SECOND = 1_000_000_000
 _LABEL = "{:<11}{}\n"
 
 
@@ -94,7 +95,7 @@ def _lines(recording: Recording, tally: _Tally, topics: list[Topic], size: int) 
     if changed:
         yield _line("changed", changed)
     ending = "it was going on" if tally.ended is None else tally.ended.reason
-    yield _line("lasts", f"{tally.length / _SECOND:.3f} s; {ending}")
+    yield _line("lasts", f"{timestamp(tally.length)}; {ending}")
     yield _line("events", f"{tally.events:,}; the file has {size:,} bytes")
     if tally.lost:
         yield _line("lost", f"{tally.lost:,} events came too fast to be kept")
@@ -111,7 +112,7 @@ def _changed(recording: Recording) -> str:
 
 def _moment(nanoseconds: int) -> str:
     try:
-        return f"{datetime.fromtimestamp(nanoseconds // _SECOND, UTC):%Y-%m-%d %H:%M:%S} UTC"
+        return f"{datetime.fromtimestamp(nanoseconds // SECOND, UTC):%Y-%m-%d %H:%M:%S} UTC"
     except (ValueError, OverflowError, OSError):
         return "at no time that there is"
 

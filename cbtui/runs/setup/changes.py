@@ -10,6 +10,7 @@ import msgspec
 
 from lessons.lesson import with_argument
 from sim.engine.setup import GroupChange, PeriodChange, ProgramSetup, RunSetup
+from sim.units import SECOND
 
 Place: TypeAlias = tuple[str, str]
 """A node's full name ("" for any node), and a callback's name on the trace."""
@@ -17,7 +18,6 @@ Place: TypeAlias = tuple[str, str]
 WISHES = ("own", "shared", "reentrant", "default")
 """The groups that a callback can be put into, as ``GroupChange`` names them."""
 
-_SECOND = 1_000_000_000
 
 Key = TypeVar("Key")
 Value = TypeVar("Value")
@@ -102,8 +102,7 @@ class Changes:
         """What is changed, as short as it can be said: ``odom own group, 4 threads``; "" for nothing."""
         said = [f"{short(callback)} {wish} group" for (_, callback), wish in self.groups.items()]
         said += [
-            f"{short(callback)} every {period / _SECOND:g} s"
-            for (_, callback), period in self.periods.items()
+            f"{short(callback)} every {period / SECOND:g} s" for (_, callback), period in self.periods.items()
         ]
         said += [f"{argument} {number:g}" for argument, number in self.settings.items()]
         if self.sensor_rate is not None:

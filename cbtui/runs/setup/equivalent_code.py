@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from cbtui.runs.setup.changeable import Changeable
 from cbtui.runs.setup.changes import Changes, Place
 from sim.trace.events import EntityKind
+from sim.units import SECOND
 
-_SECOND = 1_000_000_000
 _EXCLUSIVE = "MutuallyExclusiveCallbackGroup()"
 _REENTRANT = "ReentrantCallbackGroup()"
 _SOME_MAKER = "self.create_…(…, {}, …"
@@ -45,7 +45,7 @@ def code_of_threads(threads: int, about: Changeable) -> str:
 
 def code_of_period(callback: str, period: int) -> str:
     """Return the line that makes a timer with a period in nanoseconds."""
-    return f"self.create_timer({period / _SECOND:g}, {_method(callback)}, …)"
+    return f"self.create_timer({period / SECOND:g}, {_method(callback)}, …)"
 
 
 def code_of_argument(argument: str, number: float) -> str:

@@ -9,10 +9,10 @@ from cbtui.runs.live.live_run import ShownRun
 from cbtui.screens.parts.navigation import TimeNavigation
 from cbtui.screens.parts.part import Host, Part
 from cbtui.screens.parts.runs import RunController
-from cbtui.text.durations import duration
 from cbtui.widgets.diagnosis import call_note, diagnose
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.details import details_of_selection
+from sim.durations import duration, timestamp
 from sim.trace.descriptions import executor_label, name_of, why_waiting
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Nanoseconds
@@ -35,7 +35,7 @@ class DetailsCopy(Part):
         lanes = self.screen.query_one(Lanes)
         if lanes.selection is None:
             lines = list(summary(self.heading, timeline, now, self.runs.concurrency))
-            what = f"the moment {now / 1e9:.3f} s"
+            what = f"the moment {timestamp(now)}"
         else:
             details = details_of_selection(timeline, lanes.selection.renewed(timeline), now, lanes.keys)
             lines = [details.title, *(f"  {fact}" for fact in details.facts)]
@@ -47,7 +47,7 @@ class DetailsCopy(Part):
 def summary(heading: str, timeline: Timeline, now: Nanoseconds, concurrency: Concurrency) -> Iterator[str]:
     """Say what a moment means, who runs and who waits for what."""
     label = executor_label(timeline)
-    yield f"{heading}, t {now / 1e9:.3f} s" + (f", {label}" if label else "")
+    yield f"{heading}, t {timestamp(now)}" + (f", {label}" if label else "")
     yield diagnose(timeline, now, concurrency).text
     note = call_note(timeline, now)
     if note:

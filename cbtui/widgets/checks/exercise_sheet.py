@@ -11,8 +11,7 @@ from lessons.checks import Check
 from lessons.judge import Judged
 from lessons.lesson import Lesson
 from sim.trace.model import Nanoseconds
-
-_SECOND: Nanoseconds = 1_000_000_000
+from sim.units import SECOND
 
 
 @dataclass(frozen=True)
@@ -41,7 +40,7 @@ class ExerciseWords:
 
     def running(self, at: Nanoseconds) -> Sheet:
         """Tell of a run that has come to a moment, and is not judged yet."""
-        news = f"{self._name} runs: {at / _SECOND:.1f} s of {self._seconds:g} s"
+        news = f"{self._name} runs: {at / SECOND:.1f} s of {self._seconds:g} s"
         return Sheet(news, Standing.OPEN, self._open, asks=self._asks)
 
     def judged(self, checked: Checked) -> Sheet:

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 from enum import Enum, auto
 
 from cbtui.looks.theme import GLYPHS, Charset
-from cbtui.text.durations import duration
 from cbtui.widgets.code.files import SourceFile, SourceFiles
 from cbtui.widgets.lanes.names import short_thread
+from sim.durations import duration
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId
 from sim.trace.model import Entity, Moment, Nanoseconds, Span, Window

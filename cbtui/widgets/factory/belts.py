@@ -3,10 +3,10 @@
 from collections.abc import Sequence
 
 from cbtui.looks.theme import GLYPHS, Ink, Role
-from cbtui.text.durations import duration
 from cbtui.widgets.factory.canvas import FAINT, PLAIN, STRONG, WARN, Canvas
 from cbtui.widgets.factory.scene import Area, Belt, Scene
 from cbtui.widgets.factory.words import belt_name, details, first_fitting, level, reasons
+from sim.durations import duration
 from sim.trace.events import EntityKind
 
 _MOST_BOXES = 10

@@ -4,12 +4,12 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from cbtui.looks.theme import Ink, Role
-from cbtui.text.durations import duration
 from cbtui.widgets.factory.canvas import FAINT, PLAIN, STRONG, WARN, Canvas
 from cbtui.widgets.factory.plan import Columns, Place
 from cbtui.widgets.factory.scene import STEPS, Scene, Stay, Worker
 from cbtui.widgets.factory.words import first_fitting, just_done, kept_by, stuck
 from cbtui.widgets.lanes.status import short
+from sim.durations import duration
 from sim.trace.model import Entity
 
 _FREE_SEATS = 4

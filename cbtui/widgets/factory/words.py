@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
-from cbtui.text.durations import duration
 from cbtui.widgets.factory.scene import Area, Belt, Scene, Stay, Worker
 from cbtui.widgets.lanes.status import short
+from sim.durations import duration
 from sim.trace.descriptions import name_of
 from sim.trace.events import EntityKind, GroupKind, Reason
 from sim.trace.model import Entity, Nanoseconds

@@ -5,12 +5,12 @@ from dataclasses import dataclass
 
 from cbtui.looks.theme import Glyphs, Ink, Role, texture_of
 from cbtui.text.cells import Row
-from cbtui.text.durations import duration
 from cbtui.widgets.lanes.columns import Column, Interval, Stretch, stretches
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.lanes.scale import Scale
 from cbtui.widgets.lanes.selection import Bar, end_of, start_of
 from cbtui.widgets.lanes.status import is_late, short
+from sim.durations import duration
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
 from sim.trace.model import Blocked, Entity, Group, Nanoseconds, Span, Wait

@@ -5,8 +5,8 @@ from itertools import islice
 
 from cbtui.looks.theme import GLYPHS, Ink, Role
 from cbtui.text.cells import Row
-from cbtui.text.durations import duration
 from cbtui.widgets.lanes.scale import Scale
+from sim.durations import duration
 from sim.trace.model import Call, Nanoseconds
 from sim.trace.timeline import Timeline
 

@@ -3,11 +3,11 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from cbtui.text.durations import duration
 from cbtui.widgets.lanes.keys import USUAL_KEYS, LaneKeys
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLane, ThreadLane
 from cbtui.widgets.lanes.selection import Bar, Selection
+from sim.durations import duration, timestamp
 from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import EntityId, EntityKind
 from sim.trace.model import Call, Entity, Nanoseconds, Span, Wait, Window
@@ -203,4 +203,4 @@ def _with_letter(timeline: Timeline, entity: EntityId) -> str:
 
 
 def _seconds(at: Nanoseconds) -> str:
-    return f"{at / 1e9:.3f} s"
+    return f"{timestamp(at)}"

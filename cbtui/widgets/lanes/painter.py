@@ -7,7 +7,6 @@ from math import inf
 
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, Run, texture_of
 from cbtui.text.cells import Row, fit
-from cbtui.text.durations import duration
 from cbtui.widgets.lanes.axis import draw_axis
 from cbtui.widgets.lanes.bars import Bars
 from cbtui.widgets.lanes.calls import Calls, draw_calls
@@ -29,6 +28,7 @@ from cbtui.widgets.lanes.rows import (
 from cbtui.widgets.lanes.scale import Scale, scale_for
 from cbtui.widgets.lanes.selection import Selection
 from cbtui.widgets.lanes.status import Status
+from sim.durations import duration
 from sim.trace.events import EntityId, EntityKind, ThreadId
 from sim.trace.model import Blocked, Entity, Group, Mark, Moment, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline

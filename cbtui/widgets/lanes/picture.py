@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 from cbtui.looks.theme import Run
-from cbtui.text.durations import duration
 from cbtui.widgets.lanes.rows import Lane
 from cbtui.widgets.lanes.scale import Scale
+from sim.durations import duration
 
 LEAST_WIDTH = 20
 """Columns below which lanes are left blank."""

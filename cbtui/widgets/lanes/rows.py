@@ -7,6 +7,7 @@ from sim.trace.events import EntityId, GroupId, ThreadId
 from sim.trace.model import Entity, Group, Nanoseconds, Thread, Window
 from sim.trace.roster import MOST, roster_of
 from sim.trace.timeline import Timeline
+from sim.units import SECOND
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +86,7 @@ def _working_threads(timeline: Timeline) -> list[Thread]:
 
 def ever_ran(timeline: Timeline, thread: ThreadId, at: Nanoseconds) -> bool:
     """Tell whether a thread ran any callback up to ``at``; looks no further than the first ones."""
-    reach = 1_000_000_000
+    reach = SECOND
     while reach < at:
         if timeline.spans_on(thread, Window(0, reach)):
             return True

@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 from sim.trace.model import Nanoseconds, Window
+from sim.units import SECOND
 
-_SECOND = 1_000_000_000
 _MANTISSAS = (10, 12, 15, 18, 20, 22, 25, 30, 35, 40, 45, 50, 60, 70, 80, 90)
 _LABEL_STEPS = (1, 2, 5)
 _LABEL_ROOM = 8
@@ -74,6 +74,6 @@ def _label_step(least: Nanoseconds) -> Nanoseconds:
 
 def _seconds(at: Nanoseconds, step: Nanoseconds) -> str:
     decimals = 0
-    while step % (_SECOND // 10**decimals) and decimals < 9:
+    while step % (SECOND // 10**decimals) and decimals < 9:
         decimals += 1
-    return f"{at / _SECOND:.{decimals}f}"
+    return f"{at / SECOND:.{decimals}f}"

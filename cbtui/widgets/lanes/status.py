@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, Run
-from cbtui.text.durations import duration
 from cbtui.widgets.lanes.calls import Calls
 from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, SoleLane, ThreadLane, ever_ran
+from sim.durations import duration
 from sim.trace.events import EntityKind, GroupKind
 from sim.trace.model import Entity, Group, Moment, Span, Thread, Window
 from sim.trace.timeline import Timeline

@@ -18,6 +18,7 @@ from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.log.filter import Filter, LogEvent
 from cbtui.widgets.log.line import line_of, width_of
 from cbtui.widgets.log.search import Search
+from sim.durations import timestamp
 from sim.trace.events import Printed, Severity
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
@@ -307,5 +308,5 @@ class LogLines(Following):
 def later_lines(now: Nanoseconds, later: int, width: int) -> str:
     """Return the line at which the cursor stands in the log, and how many lines are yet to come."""
     rule = GLYPHS[Charset.BRAILLE].line
-    words = f"{rule} {now / 1e9:.3f} s, {later:,} later line{'' if later == 1 else 's'} "
+    words = f"{rule} {timestamp(now)}, {later:,} later line{'' if later == 1 else 's'} "
     return fit(words + rule * (width - len(words)), width, Charset.BRAILLE)

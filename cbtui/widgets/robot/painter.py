@@ -8,11 +8,11 @@ from textual.geometry import Region
 
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, Run
 from cbtui.text.cells import Row
-from cbtui.text.durations import duration
 from cbtui.widgets.robot.extents import View, near, whole
 from cbtui.widgets.robot.figures import figures
 from cbtui.widgets.robot.places import Look, Places, arrange
 from cbtui.widgets.robot.scene import Scene
+from sim.durations import duration
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 

@@ -9,13 +9,12 @@ from sim.diagnosis.cures import cure_for_waits
 from sim.diagnosis.look import LongWait, Look
 from sim.diagnosis.rule import Explanation, Finding, Place, Rule, Weight, entity_of, place_of
 from sim.diagnosis.words import often, who
+from sim.durations import duration
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId, EntityKind
-from sim.trace.figures.summary_text import duration
 from sim.trace.model import Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
-
-SECOND: Nanoseconds = 1_000_000_000
+from sim.units import SECOND
 
 
 class DroppedMessages(Rule):

@@ -9,8 +9,9 @@ from sim.diagnosis.words import listed, thread_count
 from sim.trace.events import EntityKind, GroupKind, NodeId
 from sim.trace.model import Entity, Executor, Group, Nanoseconds
 from sim.trace.timeline import Timeline
+from sim.units import SECOND
 
-_WARMED_UP: Nanoseconds = 1_000_000_000
+_WARMED_UP: Nanoseconds = SECOND
 """Before that a run has hardly begun, and its nodes may still be in the making."""
 
 

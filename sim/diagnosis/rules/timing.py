@@ -6,8 +6,8 @@ from sim.diagnosis.cures import cure_for_waits
 from sim.diagnosis.look import Look
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, entity_of, place_of
 from sim.diagnosis.words import group_of, listed, often, threads_for, who, with_threads
+from sim.durations import duration
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
-from sim.trace.figures.summary_text import duration
 from sim.trace.model import Entity, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 

@@ -7,13 +7,13 @@ from sim.diagnosis.cures import cure_for_waits
 from sim.diagnosis.look import LongWait, Look
 from sim.diagnosis.rule import Explanation, Finding, Rule, place_of
 from sim.diagnosis.words import group_of, often, threads_for, who
+from sim.durations import duration
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
-from sim.trace.figures.summary_text import duration
 from sim.trace.model import Entity, Nanoseconds, Window
 from sim.trace.timeline import Timeline
+from sim.units import SECOND
 
-HALF_A_SECOND: Nanoseconds = 500_000_000
-SECOND: Nanoseconds = 1_000_000_000
+HALF_A_SECOND = SECOND // 2
 
 
 class GroupStarvation(Rule):

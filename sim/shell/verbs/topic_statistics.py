@@ -16,8 +16,8 @@ from sim.shell.messages import message_class
 from sim.shell.parser import Parser, positive_int
 from sim.shell.session import Failed, Session
 from sim.shell.verbs.verb import Verb, add_graph_options
+from sim.units import SECOND
 
-_SECOND = 1_000_000_000
 _TYPE_POLL = 0.1
 _WINDOW = 10_000
 _BANDWIDTH_WINDOW = 100
@@ -53,10 +53,10 @@ class Rate:
         if self._reported is None:
             self._reported = self._last
             return None
-        if self._last < self._reported + _SECOND:
+        if self._last < self._reported + SECOND:
             return None
         self._reported = self._last
-        mean, least, greatest, deviation, count = spread(gap / _SECOND for gap in self._gaps)
+        mean, least, greatest, deviation, count = spread(gap / SECOND for gap in self._gaps)
         return (
             f"average rate: {1.0 / mean if mean > 0 else 0.0:.3f}\n"
             f"\tmin: {least:.3f}s max: {greatest:.3f}s std dev: {deviation:.5f}s window: {count}"
@@ -78,7 +78,7 @@ class Bandwidth:
         if len(self._came) < 2 or now <= self._came[0][0]:
             return None
         sizes = [size for _, size in self._came]
-        a_second = sum(sizes) * _SECOND / (now - self._came[0][0])
+        a_second = sum(sizes) * SECOND / (now - self._came[0][0])
         mean, least, greatest = (as_bytes(each) for each in spread(sizes)[:3])
         return (
             f"{as_bytes(a_second)}/s from {len(sizes)} messages\n"
@@ -103,7 +103,7 @@ class Delay:
         if not self._delays or self._last == self._reported:
             return None
         self._reported = self._last
-        mean, least, greatest, deviation, count = spread(delay / _SECOND for delay in self._delays)
+        mean, least, greatest, deviation, count = spread(delay / SECOND for delay in self._delays)
         return (
             f"average delay: {mean:.3f}\n"
             f"\tmin: {least:.3f}s max: {greatest:.3f}s std dev: {deviation:.5f}s window: {count}"
@@ -193,7 +193,7 @@ def _delay(session: Session, arguments: Namespace) -> None:
 
     def hear(message: Any) -> None:
         stamp = message.header.stamp
-        delay.message(clock.epoch + clock.now(), stamp.sec * _SECOND + stamp.nanosec)
+        delay.message(clock.epoch + clock.now(), stamp.sec * SECOND + stamp.nanosec)
 
     session.node.create_subscription(cls, arguments.topic_name, hear, qos_profile_sensor_data)
     session.node.create_timer(1.0, lambda: _say(session, delay.report()))

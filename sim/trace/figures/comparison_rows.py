@@ -6,10 +6,10 @@ from dataclasses import dataclass
 from enum import Enum, auto
 from typing import NamedTuple, TypeAlias, TypeVar
 
+from sim.durations import duration
 from sim.trace.figures.comparison import Comparison, Pair, RunFigures, Side
 from sim.trace.figures.statistics import Distribution
 from sim.trace.figures.summary import RobotFigures
-from sim.trace.figures.summary_text import duration
 from sim.trace.model import Window
 
 RUNS = ("run A", "run B")

@@ -8,8 +8,9 @@ from operator import itemgetter
 from sim.trace.incremental import Incremental, run_to_end, split
 from sim.trace.model import Nanoseconds, Span, Window
 from sim.trace.timeline import Timeline
+from sim.units import SECOND
 
-_SETTLED_AFTER: Nanoseconds = 1_000_000_000
+_SETTLED_AFTER: Nanoseconds = SECOND
 """How long threads of a real-clock run may report out of order; younger calls are looked at again."""
 
 

@@ -3,8 +3,8 @@
 import math
 from collections.abc import Iterator, Sequence
 
+from sim.durations import duration
 from sim.trace.figures.summary import CallbackFigures, RobotFigures, ServiceFigures, Summary
-from sim.trace.model import Nanoseconds
 
 HEADS = ("callback", "group", "calls", "running", "late by", "drops", "errors")
 LATE_BY = "late by: the oldest message it took, or how late its timer was at worst"
@@ -19,19 +19,6 @@ def plain_text(summary: Summary) -> str:
         list(_rest(summary)),
     ]
     return "\n".join("\n".join([*part, ""]) for part in parts if part)
-
-
-def duration(length: Nanoseconds) -> str:
-    """A length of time with the unit that suits it: ``9.9 s``, ``498 ms``, ``0.8 ms``, ``12 µs``."""
-    if length == 0:
-        return "0 s"
-    if length < 99_500:
-        return f"{length / 1e3:.0f} µs"
-    if length < 9_950_000:
-        return f"{length / 1e6:.1f} ms"
-    if length < 999_500_000:
-        return f"{length / 1e6:.0f} ms"
-    return f"{length / 1e9:.1f} s"
 
 
 def _heading(summary: Summary) -> Iterator[str]:

@@ -1,0 +1,27 @@
+"""Lengths and moments of a run's time as text, for people."""
+
+from sim.units import SECOND
+
+_FORMS = (
+    (99_500, 1_000, 0, "µs"),
+    (9_950_000, 1_000_000, 1, "ms"),
+    (999_500_000, 1_000_000, 0, "ms"),
+    (99_950_000_000, SECOND, 1, "s"),
+    (599_500_000_000, SECOND, 0, "s"),
+)
+"""Lengths below the first of each are written in a unit, with so many decimals."""
+
+
+def duration(length: int) -> str:
+    """A length of time (nanoseconds) in few characters: ``12 µs``, ``0.8 ms``, ``9.9 s``, ``12 min``."""
+    if length == 0:
+        return "0 s"
+    for limit, unit, decimals, name in _FORMS:
+        if length < limit:
+            return f"{length / unit:.{decimals}f} {name}"
+    return f"{length / (60 * SECOND):.0f} min"
+
+
+def timestamp(at: int) -> str:
+    """A moment of a run (nanoseconds), to the millisecond: ``12.345 s``."""
+    return f"{at / SECOND:.3f} s"
