@@ -35,7 +35,7 @@ class GivenUpError(Exception):
 
 
 class FollowedRun:
-    """A run and its engine: a context manager that ends the engine, and an iterable of batches of events.
+    """A run and its engine: iterate over it for the batches of events; leaving its context ends the engine.
 
     It is used on one thread; ``given_up`` may be set on any. It waits for ever unless ``limit`` is called.
     """
