@@ -3,13 +3,11 @@
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from sim.trace.events import AnyEvent, Notice, Severity
+from sim.trace.events import AnyEvent, Notice, NoticeKind, Severity
 
 if TYPE_CHECKING:
     from sim.trace.model import Nanoseconds
 
-SILENT = "the engine does not answer"
-"""What a notice of it begins with."""
 LOOK = 0.5
 """Real seconds between two looks whether something has come."""
 
@@ -43,7 +41,8 @@ class Silence:
         self._looks_left -= 1
         if self._looks_left != 0:
             return []
-        return [Notice(self._t, Severity.WARN, f"{SILENT}: {why()}")]
+        text = f"the engine does not answer: {why()}"
+        return [Notice(self._t, Severity.WARN, text, kind=NoticeKind.ENGINE_SILENT)]
 
     def came(self, events: list[AnyEvent]) -> list[AnyEvent]:
         """Return what is to be told when a batch came, which may be empty."""

@@ -12,7 +12,7 @@ from cbtui.runs.live.live_run import ShownRun, State
 from cbtui.runs.live.playhead import Playhead
 from sim.durations import duration
 from sim.trace.descriptions import name_of
-from sim.trace.events import KeyboardAsked, Notice, Reason, Severity
+from sim.trace.events import KeyboardAsked, Notice, NoticeKind, Reason, Severity
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Call, Moment, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
@@ -24,10 +24,6 @@ WORTH_TELLING: Nanoseconds = 10_000_000
 _SERIOUS: Nanoseconds = SECOND
 _NOTICE_STAYS: Nanoseconds = 5_000_000_000
 _REPLY_STAYS: Nanoseconds = 5_000_000_000
-_FOR_EVER = " for ever: "
-"""What the rules on deadlocks say of callbacks that can never go on."""
-_HELD_UP = ("has not come back for", "does not come to a wait", "time stands still")
-"""What the engine's notices say of a callback with which a run may not go on."""
 
 
 class Weight(Enum):
@@ -66,8 +62,10 @@ def verdict(
             return _of_the_end(timeline, f"press {_key('run_again', keymap)} to run again")
         if run.state is State.REPLAY_STANDS and timeline.ended is not None:
             return _of_the_end(timeline, f"{_key('resume', keymap)} plays it from its beginning")
-    moment = diagnose(timeline, playhead.now(timeline.end), concurrency, keymap)
-    if playhead.at is None and run.alive and any(sign in moment.text for sign in _HELD_UP):
+    at = playhead.now(timeline.end)
+    moment = diagnose(timeline, at, concurrency, keymap)
+    notice = _latest_notice(timeline, at)
+    if playhead.at is None and run.alive and notice is not None and notice.kind is NoticeKind.NO_PROGRESS:
         return replace(moment, text=f"{moment.text}; {_key('start_over', keymap)} starts over")
     return moment
 
@@ -85,11 +83,12 @@ def with_worst(moment: Diagnosis, told: Sequence[Told], way_on: str = "") -> Dia
     worst = next((each for each in told if each.is_problem), None)
     if worst is None or moment.stays or moment.weight is not Weight.FINE:
         return moment
-    what = worst.explanation.what
+    explanation = worst.explanation
+    what = explanation.what
     if worst.at is None:
         return Diagnosis(what, Weight.TROUBLE, at_length=f"{worst.name}: {what}")
     text = f"at {worst.at / 1e9:.1f} s: {what}"
-    further = f"; {way_on}" if way_on and _FOR_EVER in what else ""
+    further = f"; {way_on}" if way_on and explanation.for_ever else ""
     return Diagnosis(text, Weight.TROUBLE, at_length=f"{worst.name} {text}{further}")
 
 

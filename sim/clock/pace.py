@@ -67,8 +67,8 @@ class Pace:
         self._hurry(None)
         self._steps += 1
 
-    def hurry(self, until: int | None) -> None:
-        """Hurry to a moment, or for None until ``halt`` is called."""
+    def hurry(self, until: int) -> None:
+        """Hurry to a moment."""
         self._steps = 0
         self._hurry(until)
 

@@ -302,10 +302,10 @@ class VirtualClock:
         """Go on until time has jumped or ``halt`` is called, and let time stand; call through ``steer``."""
         self.pace.step()
 
-    def run_until(self, moment: int | None) -> None:
+    def run_until(self, moment: int) -> None:
         """Hurry until everything up to ``moment`` has happened, and let time stand there.
 
-        None: until ``halt`` is called. Call it through ``steer``.
+        Call it through ``steer``.
         """
         self.pace.hurry(moment)
 

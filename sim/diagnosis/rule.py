@@ -9,7 +9,7 @@ from typing import ClassVar
 
 import sim
 from sim.diagnosis.look import Look
-from sim.trace.events import EntityId
+from sim.trace.events import EntityId, ThreadId
 from sim.trace.model import Entity, Nanoseconds
 from sim.trace.timeline import Timeline
 
@@ -40,7 +40,7 @@ class Finding:
     ``subject`` is the callback that it happened to, ``culprit`` the one that is to blame (0: none or
     unknown); ``about`` is the topic, service or node in question. Occurrences of one rule, subject and
     ``about`` are one finding. ``size`` tells which of them is the worst, in a unit of the rule's; ``detail``
-    is what the rule needs besides to explain it.
+    is what the rule needs besides to explain it, and ``thread`` where it happened, if the rule asks for that.
     """
 
     rule: "Rule"
@@ -52,6 +52,7 @@ class Finding:
     size: int = 0
     count: int = 1
     detail: str = ""
+    thread: ThreadId = 0
 
     @property
     def lasted(self) -> Nanoseconds:
@@ -63,13 +64,15 @@ class Finding:
 class Explanation:
     """A finding in words: ``what`` happened (a line without a full stop), ``why``, and what to do.
 
-    ``place`` is where the learner wrote what it is about; None where that is not known.
+    ``place`` is where the learner wrote what it is about; None where that is not known. ``for_ever`` tells
+    that callbacks wait which can never go on.
     """
 
     what: str
     why: str
     cure: str
     place: Place | None
+    for_ever: bool = False
 
 
 class Rule(ABC):

@@ -36,16 +36,6 @@ class RunUntil(msgspec.Struct, frozen=True, tag="run_until"):
     moment: int
 
 
-class RunUntilCallback(msgspec.Struct, frozen=True, tag="run_until_callback"):
-    """Go on until the next event of an entity and let time stand there; ``name`` is what people call it.
-
-    Its callback begins, ends, leaves its thread or comes back to it, has to wait, or loses a message.
-    """
-
-    entity: int
-    name: str
-
-
 class CallService(msgspec.Struct, frozen=True, tag="call"):
     """Call a SetBool service from outside, as ``ros2 service call`` would; None: the program's first."""
 
@@ -95,7 +85,7 @@ class Stop(msgspec.Struct, frozen=True, tag="stop"):
     """End the run."""
 
 
-PaceCommand: TypeAlias = Pause | Resume | SetSpeed | Step | RunUntil | RunUntilCallback
+PaceCommand: TypeAlias = Pause | Resume | SetSpeed | Step | RunUntil
 
 InputCommand: TypeAlias = CallService | RunLine | InterruptLine | Type | ResetWorld | KeepContents | Stop
 """What changes a run: given again at the same moments, it brings about the same events."""

@@ -6,7 +6,7 @@ from typing import Any
 from sim.interfaces import service
 from sim.ros.middleware.delivery import Request
 from sim.ros.middleware.host import Host
-from sim.trace.events import AnyEvent, CommandGiven, Notice, Severity
+from sim.trace.events import AnyEvent, CommandGiven, CommandKind, Notice, Severity
 
 
 class Requests:
@@ -41,7 +41,7 @@ class Requests:
         host = self._host
         with host.lock:
             now = host.clock.now()
-            self._record(CommandGiven(now, text))
+            self._record(CommandGiven(now, text, CommandKind.CALL))
             call = host.probe.call_id()
             host.probe.service_called(call, name, data)
             request = Request(data, call, now, lambda _response: None)

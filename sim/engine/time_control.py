@@ -19,37 +19,22 @@ from sim.trace.events import (
     CallbackStarted,
     CallbackSuspended,
     CommandGiven,
-    EntityId,
+    CommandKind,
     EntityReady,
-    MessageDropped,
     Notice,
     Severity,
     TimeHalted,
-    WaitStarted,
 )
 
 Sink: TypeAlias = Callable[[AnyEvent], None]
 Wanted: TypeAlias = Callable[[AnyEvent], bool]
 
 _DECISIONS = (CallbackStarted, CallbackEnded, CallbackSuspended, CallbackResumed, EntityReady)
-_OF_CALLBACKS = (
-    CallbackStarted,
-    CallbackEnded,
-    CallbackSuspended,
-    CallbackResumed,
-    WaitStarted,
-    MessageDropped,
-)
 
 
 def is_decision(event: AnyEvent) -> bool:
     """Whether a step ends with this event."""
     return isinstance(event, _DECISIONS)
-
-
-def is_of(entity: EntityId) -> Wanted:
-    """Tells whether an event is one of this entity's, of those that a timeline goes from one to the next."""
-    return lambda event: isinstance(event, _OF_CALLBACKS) and event.entity == entity
 
 
 class VirtualControl:
@@ -100,13 +85,10 @@ class VirtualControl:
                     self._sink(_too_late(clock.now(), moment))
                     return
                 clock.run_until(moment)
-            case commands.RunUntilCallback(entity=entity):
-                clock.run_until(None)
-                wanted = is_of(entity)
         self._wanted = wanted
         if not isinstance(command, commands.SetSpeed):
             self._goal = in_words(command)
-        self._sink(CommandGiven(clock.now(), in_words(command)))
+        self._sink(given(clock.now(), command))
 
     def _note_halt(self) -> None:
         if self._clock.pace.stands:
@@ -122,16 +104,8 @@ class RealControl:
 
     def __init__(self, clock: PacedClock, sink: Sink) -> None:
         self._clock = clock
-        self._sink = sink
-        self._wanted: Wanted | None = None
+        self._sink = self.record = sink
         self._goal: PaceCommand = commands.Resume()
-
-    def record(self, event: AnyEvent) -> None:
-        """Take an event; the clock stands from now on if it is what the run was to go on to."""
-        self._sink(event)
-        wanted = self._wanted
-        if wanted is not None and wanted(event):
-            self._halt(self._goal)
 
     def obey(self, command: PaceCommand) -> None:
         """Carry out a command."""
@@ -145,8 +119,8 @@ class RealControl:
             case commands.RunUntil(moment=moment) if moment <= self._clock.now():
                 self._sink(_too_late(self._clock.now(), moment))
                 return
-        self._sink(CommandGiven(self._clock.now(), in_words(command)))
-        self._goal, self._wanted = command, None
+        self._sink(given(self._clock.now(), command))
+        self._goal = command
         match command:
             case commands.Pause():
                 self._clock.pause()
@@ -156,13 +130,9 @@ class RealControl:
             case commands.RunUntil(moment=moment):
                 self._clock.call_at(moment, lambda: self._halt(command))
                 self._clock.resume()
-            case commands.RunUntilCallback(entity=entity):
-                self._wanted = is_of(entity)
-                self._clock.resume()
 
     def let_go(self) -> None:
         """Have time pass as it does, so that the run can end."""
-        self._wanted = None
         self._clock.resume()
         self._clock.set_speed(1.0)
 
@@ -171,11 +141,11 @@ class RealControl:
             self._say("the real clock cannot go as fast as it can: computing takes its time; give it a speed")
             return
         self._clock.set_speed(speed)
-        self._sink(CommandGiven(self._clock.now(), in_words(commands.SetSpeed(speed))))
+        self._sink(given(self._clock.now(), commands.SetSpeed(speed)))
 
     def _halt(self, goal: PaceCommand) -> None:
         if goal is self._goal:  # else another command has come meanwhile
-            self._goal, self._wanted = commands.Pause(), None
+            self._goal = commands.Pause()
             self._clock.pause()
             self._sink(TimeHalted(self._clock.now(), in_words(goal)))
 
@@ -183,8 +153,22 @@ class RealControl:
         self._sink(Notice(self._clock.now(), severity, text))
 
 
+_KINDS = {
+    commands.Pause: CommandKind.PAUSE,
+    commands.Resume: CommandKind.RESUME,
+    commands.SetSpeed: CommandKind.SPEED,
+    commands.Step: CommandKind.STEP,
+    commands.RunUntil: CommandKind.RUN_UNTIL,
+}
+
+
+def given(now: int, command: PaceCommand) -> CommandGiven:
+    """Return what the trace tells of a command."""
+    return CommandGiven(now, in_words(command), _KINDS[type(command)])
+
+
 def in_words(command: PaceCommand) -> str:
-    """What the trace says of a command."""
+    """Return a command as the trace words it."""
     match command:
         case commands.Pause():
             return "pause"
@@ -196,8 +180,6 @@ def in_words(command: PaceCommand) -> str:
             return "speed max" if speed is None else f"speed x{speed:g}"
         case commands.RunUntil(moment=moment):
             return f"run until {moment / 1e9:.9g} s"
-        case commands.RunUntilCallback(name=name):
-            return f"run until the next event of {name}"
 
 
 def _too_late(now: int, moment: int) -> Notice:

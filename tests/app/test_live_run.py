@@ -13,8 +13,8 @@ from sim.engine.commands import (
     Step,
 )
 from sim.engine.setup import ProgramSetup, RunSetup, ServiceChoice
-from sim.engine.time_control import in_words
-from sim.trace.events import AnyEvent, CommandGiven, RunEnded, RunStarted, TimeHalted
+from sim.engine.time_control import given, in_words
+from sim.trace.events import AnyEvent, RunEnded, RunStarted, TimeHalted
 from tests.support.fake_session import FakeEngines, FakeSession
 
 SETUP = RunSetup(
@@ -55,8 +55,8 @@ def test_a_step_that_is_told_of_after_one_has_gone_on_does_not_pause_the_run(run
     run.pause()
     run.step()
     run.resume()
-    run.take([RunStarted(0, "x", "virtual", 0), CommandGiven(1, in_words(Step())), TimeHalted(1, "step")])
-    run.take([CommandGiven(1, in_words(Resume()))])
+    run.take([RunStarted(0, "x", "virtual", 0), given(1, Step()), TimeHalted(1, "step")])
+    run.take([given(1, Resume())])
     assert state_of(run) is State.LIVE
 
 
@@ -64,7 +64,7 @@ def test_a_run_that_goes_on_to_a_moment_is_not_paused_by_the_step_before(run: Li
     goal = RunUntil(5)
     run.step()
     run.run_until(5)
-    run.take([RunStarted(0, "x", "virtual", 0), TimeHalted(1, "step"), CommandGiven(1, in_words(goal))])
+    run.take([RunStarted(0, "x", "virtual", 0), TimeHalted(1, "step"), given(1, goal)])
     assert state_of(run) is State.LIVE
     run.take([TimeHalted(5, in_words(goal))])
     assert state_of(run) is State.PAUSED
@@ -73,7 +73,7 @@ def test_a_run_that_goes_on_to_a_moment_is_not_paused_by_the_step_before(run: Li
 def test_who_pauses_is_not_overruled_by_what_was_asked_before(run: LiveRun) -> None:
     run.resume()
     run.pause()
-    run.take([RunStarted(0, "x", "virtual", 0), CommandGiven(0, in_words(Resume()))])
+    run.take([RunStarted(0, "x", "virtual", 0), given(0, Resume())])
     assert state_of(run) is State.PAUSED
 
 

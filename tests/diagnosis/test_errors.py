@@ -72,7 +72,8 @@ def test_an_exception_that_ended_the_run_is_well_and_one_beside_it_is_lost() -> 
     trace = diagnosed(program).trace
     events = [each for each in trace.events if not isinstance(each, RunEnded)]
     end = max(each.t for each in events)
-    ended = RunEnded(end, "node.py:3: the program raised ValueError: first", failed=True)
+    sentence = "node.py:3: the program raised ValueError: first"
+    ended = RunEnded(end, sentence, failed=True, error="ValueError: first")
     run = Diagnosed(Trace([*events, ended]))
     assert run.problems() == {("exception-swallowed", "second")}
 

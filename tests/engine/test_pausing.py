@@ -20,7 +20,6 @@ from sim.engine.commands import (
     Resume,
     RunLine,
     RunUntil,
-    RunUntilCallback,
     SetSpeed,
     Step,
 )
@@ -91,7 +90,7 @@ def test_a_lesson_that_is_paused_stepped_and_hurried_is_the_lesson_that_is_not()
             goal = run.until(TimeHalted, 5 * (pause + 1)).t + SECOND
             run.give(Resume() if pause < 3 else RunUntil(goal))
         run.until(TimeHalted, 21)
-        run.give(RunUntilCallback(1, "it"))
+        run.give(Step())
         halted = run.until(TimeHalted, 22)
         run.give(SetSpeed(None), Resume())
         run.to_the_end()
@@ -105,7 +104,7 @@ def test_a_line_that_is_given_in_the_middle_of_a_moment_waits_for_its_end_and_sa
         run.until(RobotMoved)
         run.give(Step(), Step(), Step(), Step())
         run.until(TimeHalted, 4)
-        run.give(RunUntilCallback(1, "it"))
+        run.give(Step())
         run.until(TimeHalted, 5)
         run.give(RunLine(1, "ros2 node list"), CompleteLine(2, "ros2 no", 7))
         completed = run.until(LineCompleted)
@@ -234,8 +233,6 @@ def test_on_the_real_clock_a_pause_stops_timers_and_says_what_it_cannot_stop(tmp
         assert refused.t == notice.t
         halted = run.until(TimeHalted)
         assert halted.t >= notice.t + SECOND
-        run.give(RunUntilCallback(1, "tick"))
-        run.until(TimeHalted, 2)
     in_pause = [e for e in run.events if isinstance(e, CallbackStarted) and e.t == notice.t]
     assert len(in_pause) <= 2
 

@@ -8,16 +8,15 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from sim.engine.commands import PaceCommand, Pause, Resume, RunUntil, RunUntilCallback, SetSpeed, Step
+from sim.engine.commands import PaceCommand, Pause, Resume, RunUntil, SetSpeed, Step
 from sim.engine.time_control import is_decision
 from sim.interfaces import message
 from sim.ros.node.node import Node
 from sim.ros.scheduling.executors import MultiThreadedExecutor
 from sim.trace.events import (
     AnyEvent,
-    CallbackEnded,
-    CallbackStarted,
     CommandGiven,
+    CommandKind,
     EntityReady,
     Notice,
     TimeHalted,
@@ -51,7 +50,6 @@ def orders() -> st.SearchStrategy[list[Given]]:
         st.just(Step()),
         st.builds(SetSpeed, speeds),
         st.builds(RunUntil, st.integers(0, ns(SECONDS))),
-        st.builds(RunUntilCallback, st.integers(1, 6), st.just("it")),
     )
     return st.lists(st.builds(Given, st.integers(0, 3000), commands), max_size=12)
 
@@ -195,22 +193,6 @@ def test_a_moment_that_has_passed_is_refused_in_words_and_time_goes_on_as_before
     assert notice.text == "the run has come to 2.000 s, so it cannot go on until 1 s"
 
 
-def test_the_run_stands_at_the_next_event_of_a_chosen_callback() -> None:
-    slow = 2
-
-    def steering(helm: Helm) -> None:
-        for _ in range(2):
-            helm.give(RunUntilCallback(slow, "slow"))
-            helm.until_halted()
-
-    events = steered(two_hear, steering, until=3.0, speed=0.001)
-    places = [place for place, event in enumerate(events) if isinstance(event, TimeHalted)]
-    started, ended = (events[place - 1] for place in places)
-    assert isinstance(started, CallbackStarted)
-    assert isinstance(ended, CallbackEnded)
-    assert (started.entity, started.t, ended.entity, ended.t) == (slow, ns(1.0), slow, ns(1.5))
-
-
 def test_a_step_of_a_run_in_which_nothing_can_happen_any_more_ends_at_once() -> None:
     def nobody_sleeps(simulation: Simulation) -> None:
         signal = simulation.clock.signal()
@@ -230,20 +212,15 @@ def test_what_was_done_to_time_is_on_the_trace_in_words() -> None:
         for command in (Pause(), SetSpeed(0.5), SetSpeed(None), Resume(), RunUntil(ns(2.5))):
             helm.give(command)
         helm.until_halted()
-        helm.give(RunUntilCallback(2, "slow"))
-        helm.until_halted()
 
     events = steered(two_hear, steering, until=5.0, speed=0.001)
-    assert [event.text for event in events if isinstance(event, CommandGiven)][:6] == [
-        "pause",
-        "speed x0.5",
-        "speed max",
-        "resume",
-        "run until 2.5 s",
-        "run until the next event of slow",
+    commands = [(event.kind, event.text) for event in events if isinstance(event, CommandGiven)]
+    assert commands[:5] == [
+        (CommandKind.PAUSE, "pause"),
+        (CommandKind.SPEED, "speed x0.5"),
+        (CommandKind.SPEED, "speed max"),
+        (CommandKind.RESUME, "resume"),
+        (CommandKind.RUN_UNTIL, "run until 2.5 s"),
     ]
-    halts = [event for event in events if isinstance(event, TimeHalted)]
-    assert [(event.t, event.text) for event in halts[:2]] == [
-        (ns(2.5), "run until 2.5 s"),
-        (ns(3.0), "run until the next event of slow"),
-    ]
+    halted = next(event for event in events if isinstance(event, TimeHalted))
+    assert (halted.t, halted.text) == (ns(2.5), "run until 2.5 s")

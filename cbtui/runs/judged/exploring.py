@@ -18,7 +18,7 @@ from cbtui.runs.recorded.repeat import why_unrepeatable
 from lessons.checks import problems
 from lessons.judge import Judge
 from sim.engine.setup import RunSetup
-from sim.trace.events import Severity
+from sim.trace.events import NoticeKind, Severity
 from sim.trace.model import Window
 
 _PRELOADED = ["cbtui.cli", "sim.engine.process", "sim.robot.driver", "sim.robot.world"]
@@ -97,9 +97,10 @@ class Exploration:
             if rule in _STUCK:
                 yield Failure(f"deadlock: {rule}")
         for notice in observed.timeline.notices:
-            if notice.severity is Severity.ERROR:
-                kind, _, text = notice.text.partition(":")
-                yield Failure(kind, text.strip())
+            if notice.kind is NoticeKind.DEADLOCK:
+                yield Failure("deadlock", f"{notice.problem}; {notice.advice}")
+            elif notice.severity is Severity.ERROR:
+                yield Failure(notice.text)
         if observed.broken_off:
             yield Failure("it did not come to its end", observed.trouble or "")
         elif observed.trouble is not None and not raised:

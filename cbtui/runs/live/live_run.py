@@ -5,7 +5,6 @@ from enum import Enum, auto
 from itertools import count
 from typing import Protocol
 
-from cbtui.engines.hang_detector import SILENT
 from cbtui.engines.session import Deliver, Ended, OpenSession
 from cbtui.runs.live.disk_space import DiskSpaceWatch
 from cbtui.runs.live.live_export import Material
@@ -25,7 +24,15 @@ from sim.engine.commands import (
     Type,
 )
 from sim.engine.setup import RunSetup
-from sim.trace.events import AnyEvent, CommandGiven, KeyboardAsked, Notice, TimeHalted
+from sim.trace.events import (
+    AnyEvent,
+    CommandGiven,
+    CommandKind,
+    KeyboardAsked,
+    Notice,
+    NoticeKind,
+    TimeHalted,
+)
 from sim.trace.model import Nanoseconds
 from sim.trace.storage.event_store import EventStore
 from sim.trace.timeline import Timeline
@@ -33,8 +40,8 @@ from sim.trace.timeline import Timeline
 SPEEDS: tuple[float | None, ...] = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, None)
 """Seconds of a run per real second that can be chosen; None, virtual only, is as fast as the engine can."""
 
-_LETS_GO = ("resume", "run until ")
-"""What the trace says of commands that let time go on: a halt before those was that of an earlier command."""
+_LETS_TIME_PASS = (CommandKind.RESUME, CommandKind.RUN_UNTIL)
+"""Commands after which time goes on; a halt before them is that of an earlier command."""
 
 _CHANGES_STATE = {Notice, TimeHalted, CommandGiven}
 """Events that say whether time goes on; most batches have none."""
@@ -202,10 +209,10 @@ class LiveRun:
         self._silent = False
         for event in events if not _CHANGES_STATE.isdisjoint(map(type, events)) else ():
             if isinstance(event, Notice):
-                self._silent = self._silent or event.text.startswith(SILENT)
+                self._silent = self._silent or event.kind is NoticeKind.ENGINE_SILENT
             elif isinstance(event, TimeHalted):
                 self.paused = True
-            elif isinstance(event, CommandGiven) and self._goes_on and event.text.startswith(_LETS_GO):
+            elif isinstance(event, CommandGiven) and self._goes_on and event.kind in _LETS_TIME_PASS:
                 self.paused = False
         failure = self.recording.take(events)
         if failure is not None:

@@ -38,10 +38,11 @@ class SelfMadeDeadlock(Rule):
         if threads_for([found.subject], found.until, timeline) == 1:
             cure += f", and spin with {with_threads(found.size + 1)}"
         return Explanation(
-            f"{subject} {_for_ever(found, timeline)}: {found.detail}{often(found.count)}",
+            f"{subject} {_waiting(found, timeline)}: {found.detail}{often(found.count)}",
             "the reply is brought by the executor, and needs a group that lets it in and a thread",
             cure,
             place_of(found.subject, timeline),
+            for_ever=_lasts(found, timeline),
         )
 
 
@@ -62,10 +63,11 @@ class NeedsOneMoreWorker(Rule):
         """Tell how many threads would do."""
         subject = who(found.subject, timeline)
         return Explanation(
-            f"{subject} {_for_ever(found, timeline)}: {found.detail}{often(found.count)}",
+            f"{subject} {_waiting(found, timeline)}: {found.detail}{often(found.count)}",
             f"{found.size} callbacks in call() at once need at least {found.size + 1} threads",
             f"spin with MultiThreadedExecutor(num_threads={found.size + 1}), or use call_async()",
             place_of(found.subject, timeline),
+            for_ever=_lasts(found, timeline),
         )
 
 
@@ -120,7 +122,11 @@ def _found(rule: Rule, knot: Sequence[Stuck], until: Nanoseconds) -> Finding:
     )
 
 
-def _for_ever(found: Finding, timeline: Timeline) -> str:
-    if found.until < timeline.end:
-        return f"waited in vain for {found.about}"
-    return f"waits for {found.about} for ever"
+def _lasts(found: Finding, timeline: Timeline) -> bool:
+    return found.until >= timeline.end
+
+
+def _waiting(found: Finding, timeline: Timeline) -> str:
+    if _lasts(found, timeline):
+        return f"waits for {found.about} for ever"
+    return f"waited in vain for {found.about}"

@@ -5,11 +5,12 @@ from collections.abc import Iterator
 from sim.diagnosis.look import Look
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, place_of
 from sim.diagnosis.words import often, who
-from sim.trace.events import Notice
+from sim.trace.events import Notice, NoticeKind, Severity
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 
-_SURE = "deadlock: "
+_ADVICE = "wait with a timeout, and see that something ends the wait"
+"""For recordings whose notices have none."""
 
 
 class EndlessWait(Rule):
@@ -31,19 +32,29 @@ class EndlessWait(Rule):
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Say it as the engine does."""
-        what, _, cure = found.detail.removeprefix(_SURE).rpartition("; ")
-        how = "is in a deadlock" if found.detail.startswith(_SURE) else "stands still"
+        notice = _notice_of(found, timeline)
+        how = "is in a deadlock" if _is_deadlock(notice) else "stands still"
+        what = f" {how}: {notice.problem}" if notice.problem else f": {notice.text}"
         return Explanation(
-            f"{who(found.subject, timeline)} {how}: {what}{often(found.count)}",
+            f"{who(found.subject, timeline)}{what}{often(found.count)}",
             "a thread that waits serves nothing else, and without a timeout it may do so for ever",
-            cure,
+            notice.advice or _ADVICE,
             place_of(found.subject, timeline),
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
         """Nothing, if it came to an end after all."""
-        over = found.until < timeline.end and not found.detail.startswith(_SURE)
+        over = found.until < timeline.end and not _is_deadlock(_notice_of(found, timeline))
         return None if over else Weight.PROBLEM
+
+
+def _notice_of(found: Finding, timeline: Timeline) -> Notice:
+    return next(each for each in timeline.notices if each.t == found.at and each.text == found.detail)
+
+
+def _is_deadlock(notice: Notice) -> bool:
+    """Whether it is sure; recordings without kinds tell of deadlocks, and of nothing else, as errors."""
+    return notice.kind is NoticeKind.DEADLOCK or notice.severity is Severity.ERROR
 
 
 def _until(notice: Notice, look: Look) -> int:

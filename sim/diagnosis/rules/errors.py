@@ -5,7 +5,6 @@ from collections.abc import Iterator
 from sim.diagnosis.look import Look, is_worker, pool_of
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, place_of
 from sim.diagnosis.words import often, who
-from sim.trace.events import ThreadId
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -28,14 +27,21 @@ class ExceptionSwallowed(Rule):
         for entity in look.entities():
             for span in look.spans(entity.id):
                 if span.error and span.end is not None and is_worker(span.thread, look.timeline):
-                    detail = f"{span.thread} {span.error}"
-                    yield Finding(self, span.start, span.end, entity.id, size=span.start, detail=detail)
+                    yield Finding(
+                        self,
+                        span.start,
+                        span.end,
+                        entity.id,
+                        size=span.start,
+                        detail=span.error,
+                        thread=span.thread,
+                    )
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Name the exception."""
-        subject, (_, error) = who(found.subject, timeline), _parted(found)
+        subject = who(found.subject, timeline)
         return Explanation(
-            f"{subject} raised {error}, and spin() has not raised it{often(found.count)}",
+            f"{subject} raised {found.detail}, and spin() has not raised it{often(found.count)}",
             "a MultiThreadedExecutor raises only the oldest exception, when it starts the next callback",
             f"catch exceptions in {subject} and log them",
             place_of(found.subject, timeline),
@@ -43,14 +49,13 @@ class ExceptionSwallowed(Rule):
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
         """Nothing, if the exception ended the run or another callback was started since."""
-        thread, error = _parted(found)
         ended = timeline.ended
         if ended is not None and ended.failed:
-            return None if error in ended.reason else Weight.PROBLEM
+            return None if ended.error in (None, found.detail) else Weight.PROBLEM
         if timeline.end - found.until < self.threshold and ended is None:
             return None
         since = Window(found.until, timeline.end + 1)
-        pool = pool_of(thread, timeline)
+        pool = pool_of(found.thread, timeline)
         starts = [
             span.start
             for each in pool
@@ -58,8 +63,3 @@ class ExceptionSwallowed(Rule):
             if (span.entity, span.start) != (found.subject, found.at)
         ]
         return None if any(start >= found.until for start in starts) else Weight.PROBLEM
-
-
-def _parted(found: Finding) -> tuple[ThreadId, str]:
-    thread, _, error = found.detail.partition(" ")
-    return int(thread), error

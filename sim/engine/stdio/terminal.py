@@ -23,10 +23,11 @@ from sim.clock import Clock, Signal, VirtualClock
 from sim.engine.commands import END_OF_INPUT, INTERRUPT
 from sim.engine.setup import Keyboard
 from sim.engine.stdio.output import ProcessStream
+from sim.engine.watchdogs.wait_words import WaitProblem
 from sim.marks import waits_for_keyboard
 from sim.probes.own_code import place_of_caller
 from sim.ros.middleware.process import Process, current_process
-from sim.trace.events import AnyEvent, EntityId, KeyboardAsked, Notice, Reading, Severity, Typed
+from sim.trace.events import AnyEvent, KeyboardAsked, Notice, Reading, Severity, Typed
 from sim.units import wait_ns
 
 if TYPE_CHECKING:
@@ -212,8 +213,10 @@ class Terminal:
             self._note(self._mode())
         entity = (process.probe or process.host.probe).callback_here()
         if entity and without_end:
-            text = f"a callback waits for the keyboard ({place_of_caller()}): its thread serves nothing else"
-            self._warn_once(f"{text} meanwhile; read in a thread of its own", entity)
+            problem = f"a callback waits for the keyboard ({place_of_caller()})"
+            problem += ": its thread serves nothing else meanwhile"
+            wait = WaitProblem(problem, "read in a thread of its own", is_deadlock=False)
+            self._record_once(wait.notice(self._clock.now(), entity))
         if not process.has_keyboard:
             text = "which ros2 launch gives to no program; run this one by itself, with cbtui run or ros2 run"
             self._warn_once(f"{_name(process)} reads from the keyboard, {text}")
@@ -226,10 +229,13 @@ class Terminal:
             self._asked = reads
             self._record(KeyboardAsked(self._clock.now(), reads, _name(current_process())))
 
-    def _warn_once(self, text: str, entity: EntityId = 0) -> None:
-        if text not in self._warned:
-            self._warned.add(text)
-            self._record(Notice(self._clock.now(), Severity.WARN, text, entity))
+    def _warn_once(self, text: str) -> None:
+        self._record_once(Notice(self._clock.now(), Severity.WARN, text))
+
+    def _record_once(self, notice: Notice) -> None:
+        if notice.text not in self._warned:
+            self._warned.add(notice.text)
+            self._record(notice)
 
     @contextmanager
     def _awaited(self, live: bool) -> Iterator[None]:

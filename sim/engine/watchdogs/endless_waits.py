@@ -10,7 +10,7 @@ from sim.clock.virtual_threads import VirtualThread
 from sim.engine.watchdogs.wait_words import deadlock_of_circle, deadlock_of_last, long_wait
 from sim.ros.middleware.host import Host
 from sim.ros.middleware.process import Process, current_process, process_of
-from sim.trace.events import AnyEvent, EntityId, Notice, Severity
+from sim.trace.events import AnyEvent, EntityId
 
 _PATIENCE = 3_000_000_000
 """Virtual nanoseconds after which the person is told of a callback's wait that somebody might still end."""
@@ -68,7 +68,9 @@ class EndlessWaits:
                 self._tell_of_deadlock(wait, circle_of(wait.thread))
             elif wait.entity and not wait.told and self._lasted(wait) >= _PATIENCE:
                 wait.told = True
-                self._tell(Severity.WARN, long_wait(wait.thread, self._lasted(wait)), wait)
+                self._record(
+                    long_wait(wait.thread, self._lasted(wait)).notice(self._clock.now(), wait.entity)
+                )
 
     def finish(self) -> None:
         """Look for the last time: the run is over."""
@@ -108,11 +110,7 @@ class EndlessWaits:
 
     def _tell_of_deadlock(self, wait: _Wait, circle: list[VirtualThread]) -> None:
         self._deadlocked = True
-        self._tell(
-            Severity.ERROR, deadlock_of_circle(circle) if circle else deadlock_of_last(wait.thread), wait
-        )
+        told = deadlock_of_circle(circle) if circle else deadlock_of_last(wait.thread)
+        self._record(told.notice(self._clock.now(), wait.entity))
         for each in circle or [wait.thread]:
             self._waits.pop(each, None)
-
-    def _tell(self, severity: Severity, sentence: str, wait: _Wait) -> None:
-        self._record(Notice(self._clock.now(), severity, sentence, wait.entity))

@@ -9,7 +9,7 @@ from types import FrameType
 from sim.clock import Clock
 from sim.marks import calls_the_program, waits_for_keyboard, waits_for_time
 from sim.probes.own_code import is_own, outwards, place_of
-from sim.trace.events import AnyEvent, Notice, Severity
+from sim.trace.events import AnyEvent, Notice, NoticeKind, Severity
 
 # Kept from before a clock puts its own in their place.
 _Thread = threading.Thread
@@ -49,7 +49,8 @@ class HeldUp:
                 before, looks = self._seen.get(thread, (0, 0))
                 seen[thread] = id(call), looks + 1 if before == id(call) else 1
                 if seen[thread][1] == _PATIENCE:
-                    self._record(Notice(self._clock.now(), Severity.WARN, _sentence(call, top)))
+                    text, kind = _sentence(call, top), NoticeKind.NO_PROGRESS
+                    self._record(Notice(self._clock.now(), Severity.WARN, text, kind=kind))
         self._seen = seen
 
 

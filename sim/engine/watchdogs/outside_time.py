@@ -8,7 +8,7 @@ from collections.abc import Callable
 from sim.clock import VirtualClock
 from sim.engine.watchdogs.places import place_of
 from sim.probes.own_code import outwards
-from sim.trace.events import AnyEvent, Notice, Severity
+from sim.trace.events import AnyEvent, Notice, NoticeKind, Severity
 
 _RealThread = threading.Thread
 _real_sleep = time.sleep
@@ -52,7 +52,7 @@ class Watchdog:
             steps = self._clock.steps
             if still == _PATIENCE:
                 sentence = self._sentence()
-                self._record(Notice(self._clock.now(), Severity.WARN, sentence))
+                self._record(Notice(self._clock.now(), Severity.WARN, sentence, kind=NoticeKind.NO_PROGRESS))
             elif still == (_PATIENCE_WITH_IMPORTS if self._imports() else _LAST_PATIENCE):
                 self._give_up(sentence)
 

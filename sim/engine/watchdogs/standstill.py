@@ -6,7 +6,7 @@ from collections.abc import Callable
 from sim.clock import VirtualClock
 from sim.clock.virtual import WAITS_TO_RECESS
 from sim.engine.watchdogs.places import place_of
-from sim.trace.events import AnyEvent, Notice, Severity
+from sim.trace.events import AnyEvent, Notice, NoticeKind, Severity
 
 # Kept from before sim.clock.stdlib puts the virtual one in its place.
 _monotonic = time.monotonic
@@ -43,7 +43,8 @@ class Standstill:
             self._began, self._said = _monotonic(), self._sentence()
             if not self._told and self._clock.idles:
                 self._told = True
-                self._record(Notice(self._clock.now(), Severity.WARN, self._said))
+                now, kind = self._clock.now(), NoticeKind.NO_PROGRESS
+                self._record(Notice(now, Severity.WARN, self._said, kind=kind))
         elif recess > _PATIENCE and _monotonic() - self._began > _LAST_PATIENCE:
             self._give_up(self._said)
 

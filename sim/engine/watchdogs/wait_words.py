@@ -1,41 +1,59 @@
-"""Puts into words what a thread of virtual time waits for without an end, and who would have to end that.
-
-What is said is one sentence, and behind its last semicolon what to do.
-"""
+"""Describes what a thread on the virtual clock waits for without a timeout, and what to do about it."""
 
 import sys
 import threading
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import takewhile
 
 from sim.clock.virtual_threads import VirtualThread
 from sim.engine.watchdogs.places import place_in, place_of
 from sim.probes.own_code import is_own, outwards
+from sim.trace.events import EntityId, Notice, NoticeKind, Severity
 
 _AWAITS = threading.Condition.wait.__code__
 """What every wait of Python's own comes to that is not for a lock."""
 
 
-def deadlock_of_circle(circle: Sequence[VirtualThread]) -> str:
-    """Tell of threads that wait for each other's locks or ends, or of one that waits for its own lock."""
+@dataclass(frozen=True, slots=True)
+class WaitProblem:
+    """What is wrong with a wait, and what to do about it. ``is_deadlock``: it can never end."""
+
+    problem: str
+    advice: str
+    is_deadlock: bool
+
+    def notice(self, t: int, entity: EntityId) -> Notice:
+        """Return the notice of it; ``entity`` is the callback that waits (0: none)."""
+        text, fields = f"{self.problem}; {self.advice}", (self.problem, self.advice)
+        if self.is_deadlock:
+            text = f"deadlock: {text}"
+            return Notice(t, Severity.ERROR, text, entity, False, NoticeKind.DEADLOCK, *fields)
+        return Notice(t, Severity.WARN, text, entity, False, NoticeKind.ENDLESS_WAIT, *fields)
+
+
+def deadlock_of_circle(circle: Sequence[VirtualThread]) -> WaitProblem:
+    """Describe threads that wait for each other's locks or ends, or one that waits for its own lock."""
     chain = ", and ".join(_waits(each) for each in circle)
     if any(_waits_for_end(each) for each in circle):
-        return f"deadlock: {chain}; let go of locks before you wait for a thread to end"
-    if len(circle) > 1:
-        return f"deadlock: {chain}; take locks in the same order everywhere"
-    return f"deadlock: {chain}; take it once, let go of it before, or use threading.RLock"
+        advice = "let go of locks before you wait for a thread to end"
+    elif len(circle) > 1:
+        advice = "take locks in the same order everywhere"
+    else:
+        advice = "take it once, let go of it before, or use threading.RLock"
+    return WaitProblem(chain, advice, is_deadlock=True)
 
 
-def deadlock_of_last(thread: VirtualThread) -> str:
-    """Tell of a thread that waits when no thread of its program is left to end that."""
-    told = f"deadlock: {_waits(thread)}, and no thread of the program is left that could end that"
-    return f"{told}; {_cure(thread)}"
+def deadlock_of_last(thread: VirtualThread) -> WaitProblem:
+    """Describe a thread that waits when no other thread of its program is left to end the wait."""
+    problem = f"{_waits(thread)}, and no thread of the program is left that could end that"
+    return WaitProblem(problem, _cure(thread), is_deadlock=True)
 
 
-def long_wait(thread: VirtualThread, lasted: int) -> str:
-    """Tell of a thread that has waited for so many nanoseconds for what somebody might still do."""
+def long_wait(thread: VirtualThread, lasted: int) -> WaitProblem:
+    """Describe a thread that has waited ``lasted`` nanoseconds for what another thread might still do."""
     seconds = f"{lasted / 1e9:.1f}".removesuffix(".0")
-    return f"{_waits(thread)}, for {seconds} s already; {_cure(thread)}"
+    return WaitProblem(f"{_waits(thread)}, for {seconds} s already", _cure(thread), is_deadlock=False)
 
 
 def _waits(thread: VirtualThread) -> str:

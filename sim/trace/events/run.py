@@ -1,5 +1,7 @@
 """The run itself: its beginning and end, its inputs, its time, and what its trace has lost."""
 
+from enum import StrEnum
+
 from sim.trace.events.event import Event
 from sim.trace.events.fields import Nanoseconds, Text, WireOnly
 
@@ -15,6 +17,19 @@ class RunStarted(Event, frozen=True, tag="run_start"):
     """Time since 1970 that ``t`` = 0 has in log lines."""
 
 
+class CommandKind(StrEnum):
+    """What a command does to a run."""
+
+    PAUSE = "pause"
+    RESUME = "resume"
+    SPEED = "speed"
+    STEP = "step"
+    RUN_UNTIL = "run until"
+    CALL = "call"
+    OTHER = "other"
+    """Also in recordings that do not tell."""
+
+
 class RunEnded(Event, frozen=True, tag="run_end"):
     """The run is over: its time was up, its program returned or failed, or somebody stopped it."""
 
@@ -22,6 +37,10 @@ class RunEnded(Event, frozen=True, tag="run_end"):
     """Why the run is over, as a sentence."""
     failed: bool
     """Whether the run ended because something went wrong."""
+    time_was_up: WireOnly[bool] = False
+    """Whether it had been given so much time, and no more."""
+    error: WireOnly[str | None] = None
+    """The exception that ended it, as ``CallbackFailed.error`` has it; "" for none, None if not known."""
 
 
 class RunEnding(Event, frozen=True, tag="run_ending"):
@@ -36,6 +55,8 @@ class CommandGiven(Event, frozen=True, tag="command"):
 
     text: Text
     """What was done."""
+    kind: WireOnly[CommandKind] = CommandKind.OTHER
+    """What it does to the run."""
 
 
 class InputGiven(Event, frozen=True, tag="input"):

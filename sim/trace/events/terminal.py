@@ -61,6 +61,21 @@ class Printed(Event, frozen=True, tag="print"):
     """False for the beginning of a line behind which the program waits for the keyboard."""
 
 
+class NoticeKind(StrEnum):
+    """What a notice is about, where more than a reader's eye depends on it."""
+
+    OTHER = "other"
+    """Also in recordings that do not tell."""
+    ENGINE_SILENT = "engine silent"
+    """Nothing comes from the engine."""
+    NO_PROGRESS = "no progress"
+    """A thread does not come back, or lets no time pass; the run may not go on by itself."""
+    ENDLESS_WAIT = "endless wait"
+    """A callback waits without a timeout for what may still come."""
+    DEADLOCK = "deadlock"
+    """Threads wait without a timeout for what cannot come any more."""
+
+
 class Notice(Event, frozen=True, tag="notice"):
     """The engine has something to say to the person about the run itself."""
 
@@ -71,6 +86,12 @@ class Notice(Event, frozen=True, tag="notice"):
     entity: CallbackId = 0
     unrepeatable: WireOnly[bool] = False
     """Whether it says why a run on virtual time cannot be repeated exactly."""
+    kind: WireOnly[NoticeKind] = NoticeKind.OTHER
+    """What it is about."""
+    problem: WireOnly[str] = ""
+    """The part of ``text`` that says what is wrong, where the notice is about a callback that waits."""
+    advice: WireOnly[str] = ""
+    """The part of ``text`` that says what to do about it."""
 
 
 class KeyboardAsked(Event, frozen=True, tag="keyboard"):
