@@ -11,7 +11,7 @@ from functools import partial
 from itertools import count
 from typing import TYPE_CHECKING, Any
 
-from sim.error_text import error_text
+from sim.error_text import error_line
 from sim.probes.own_code import call_into_ros, is_own, place_of_caller
 from sim.probes.traced import MessageContents, TracedEntity
 from sim.trace import events
@@ -209,7 +209,7 @@ class Probe:
     def callback_failed(self, entity: TracedEntity, error: BaseException) -> None:
         """A callback raised."""
         file, line = _raised_at(error)
-        text = f"{type(error).__name__}: {error_text(error)}"
+        text = error_line(error)
         self._sink(
             events.CallbackFailed(self._now(), entity.trace_id, self.thread(), text, file, line),
         )

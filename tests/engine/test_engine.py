@@ -48,7 +48,9 @@ def test_the_same_run_twice_gives_the_same_events(lesson: str) -> None:
 def test_a_run_ends_when_its_time_is_up(tmp_path: Path) -> None:
     run = run_program(tmp_path, SPIN.format(body="node.create_timer(1.0, lambda: None)"), seconds=3.5)
     assert run.loss is None
-    assert run.ending == RunEnded(round(3.5 * SECOND), "its time was up", failed=False)
+    assert run.ending == RunEnded(
+        round(3.5 * SECOND), "its time was up", failed=False, time_was_up=True, error=""
+    )
 
 
 def test_a_robot_that_cannot_be_there_from_the_beginning_is_told_of_with_what_to_do(
@@ -90,7 +92,7 @@ finally:
 
 def test_a_program_that_returns_ends_its_run(tmp_path: Path) -> None:
     run = run_program(tmp_path, "import time\ntime.sleep(1.5)\nprint('done')")
-    assert run.ending == RunEnded(round(1.5 * SECOND), "the program returned", failed=False)
+    assert run.ending == RunEnded(round(1.5 * SECOND), "the program returned", failed=False, error="")
     assert [event.text for event in run.events if isinstance(event, Printed)] == ["done"]
 
 

@@ -11,8 +11,6 @@ from sim.durations import timestamp
 from sim.trace.timeline import Timeline
 
 PASSED, FAILED = "✓", "✗"
-_TIME_UP = "its time was up"
-"""What the engine says of a run that lasted as long as it was to."""
 
 
 def checked_text(checked: Checked) -> str:
@@ -46,7 +44,7 @@ def _lines(checked: Checked) -> Iterator[str]:
 def faults(timeline: Timeline) -> Iterator[str]:
     """Yield what is wrong with a run beside its checks: that it was over too soon, what was diagnosed."""
     ended = timeline.ended
-    if ended is not None and not ended.reason.startswith(_TIME_UP):
+    if ended is not None and not ended.time_was_up:
         yield f"the run was over at {timestamp(ended.t)}: {' '.join(ended.reason.split())}"
     for found in problems(timeline):
         yield found.rule.explain(found, timeline).what

@@ -57,7 +57,7 @@ class Launching:
 
     def _over(self, status: int) -> None:
         if self._run.error is not None:
-            self._programs.failures.append(str(self._run.error))
+            self._programs.failures.append(Outcome(str(self._run.error), failed=True, status=1))
         self._on_exit(status)
         self._programs.release()
 

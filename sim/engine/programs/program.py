@@ -19,8 +19,12 @@ from sim.engine.failures.failure import failure, place_of
 from sim.engine.programs.ending import run_thread_exit_functions
 from sim.engine.programs.source import NothingToRunError, read_source
 from sim.engine.stdio.output import finish_lines
+from sim.error_text import error_line
 from sim.ros.context.signals import deliver_sigint
 from sim.ros.middleware.process import Process, current_process, process_of
+
+STOPPED = "it was stopped"
+"""What is said of a program that ended because somebody wanted that."""
 
 _INTERRUPTED = 130
 
@@ -46,11 +50,12 @@ def script(path: str, arguments: tuple[str, ...] = ()) -> Program:
 
 @dataclass(frozen=True, slots=True)
 class Outcome:
-    """How a program ended: a sentence, whether that was a failure, and the exit code."""
+    """How a program ended: a sentence, whether it failed, the exit code, and the exception ("" for none)."""
 
     sentence: str
     failed: bool
     status: int = 0
+    error: str = ""
 
 
 def run_program(program: Program) -> Outcome:
@@ -81,10 +86,11 @@ def _outcome_of(program: Program) -> Outcome:
     except NothingToRunError as error:
         return Outcome(str(error), failed=True, status=1)
     except KeyboardInterrupt:
-        return Outcome("it was stopped", failed=False, status=_INTERRUPTED)
+        return Outcome(STOPPED, failed=False, status=_INTERRUPTED)
     except BaseException as error:  # noqa: BLE001 -- whatever a learner's program raises ends its run, not the engine
         traceback.print_exception(error)
-        return Outcome(failure(error, program.path, program.folder), failed=True, status=1)
+        sentence = failure(error, program.path, program.folder)
+        return Outcome(sentence, failed=True, status=1, error=error_line(error))
     return Outcome(silence() or _returned(), failed=status != 0, status=status)
 
 

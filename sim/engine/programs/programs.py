@@ -7,7 +7,7 @@ main threads of their processes.
 import signal
 import threading
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import count
 
 from sim.clock import Signal
@@ -63,8 +63,8 @@ class Programs:
 
     host: Host
     record: Callable[[AnyEvent], None]
-    failures: list[str] = field(default_factory=list)
-    """Sentences on the programs, and on what started programs, that failed."""
+    failures: list[Outcome] = field(default_factory=list)
+    """Of the programs, and of what started programs, those that failed, with their names in the sentences."""
     _running: list[RunningProgram] = field(default_factory=list)
     _only: list[Process] = field(default_factory=list)
     _numbers: "count[int]" = field(default_factory=lambda: count(1))
@@ -128,8 +128,9 @@ class Programs:
             now = self.host.clock.now()
             self.record(ProcessEnded(now, running.number, outcome.sentence, outcome.status))
             if outcome.failed:
-                self.failures.append(f"{running.process.label}: {outcome.sentence}")
-                self.record(Notice(now, Severity.ERROR, self.failures[-1]))
+                sentence = f"{running.process.label}: {outcome.sentence}"
+                self.failures.append(replace(outcome, sentence=sentence))
+                self.record(Notice(now, Severity.ERROR, sentence))
         running.on_exit(outcome)
         self.look()
 
@@ -153,7 +154,7 @@ class Programs:
     def joint_outcome(self) -> Outcome:
         """How the programs that ended did, taken together: the first failure speaks for all."""
         if self.failures:
-            return Outcome(self.failures[0], failed=True, status=1)
+            return replace(self.failures[0], status=1)
         return Outcome("every program returned", failed=False)
 
     def hold(self) -> None:

@@ -1,0 +1,52 @@
+"""Turns batches of events into the bytes that go down the pipe: encoded, and sealed if the run wants that."""
+
+from collections.abc import Mapping
+from itertools import count
+
+from sim.clock import Clock, VirtualClock
+from sim.engine.watchdogs.own_functions import OwnFunctions
+from sim.ros.middleware.contents import Contents
+from sim.trace.events import AnyEvent, RunEnded, TimePassed
+from sim.trace.integrity.sealing import Seal
+
+_BATCHES_A_LOOK = 16
+"""Sealed batches to one that is sent with a look at the engine's own functions, which takes milliseconds."""
+
+
+class Batches:
+    """Packs batches, and makes the one that is sent while nothing happens. Used with the outbox's lock held.
+
+    ``key`` is what the trace is sealed with, b"" for nothing.
+    """
+
+    def __init__(self, clock: Clock, contents: Contents, key: bytes) -> None:
+        self._clock = clock
+        self._contents = contents
+        self._seal = Seal(key) if key else None
+        self._own_functions: OwnFunctions | None = None
+        self._sealed = count()
+        self._time_told = 0
+
+    def guard(self, parts: Mapping[str, object]) -> None:
+        """Tell in sealed batches from now on which functions of the engine and ``parts`` are replaced."""
+        if self._seal is not None:
+            self._own_functions = OwnFunctions(parts)
+
+    def pack(self, events: list[AnyEvent]) -> bytes:
+        """Return a batch as it is sent."""
+        packed = self._contents.pack(events)
+        if self._seal is None:
+            return packed
+        replaced: tuple[str, ...] = ()
+        is_last = bool(events) and isinstance(events[-1], RunEnded)
+        if self._own_functions is not None and (is_last or next(self._sealed) % _BATCHES_A_LOOK == 0):
+            replaced = self._own_functions.replaced()
+        return self._seal.close(packed, replaced)
+
+    def heartbeat(self) -> list[AnyEvent]:
+        """Tell the time, if it has passed since; virtual time passes with events alone."""
+        now = 0 if isinstance(self._clock, VirtualClock) else self._clock.now()
+        if now <= self._time_told:
+            return []
+        self._time_told = now
+        return [TimePassed(now)]

@@ -1,0 +1,126 @@
+"""Carries out what a run is told: commands from the console, and the inputs that its set-up has foreseen."""
+
+import os
+import threading
+from collections.abc import Callable
+from functools import partial
+from multiprocessing.connection import Connection
+
+import msgspec
+
+from sim.clock import Clock, VirtualClock
+from sim.engine import commands
+from sim.engine.programs.ros2_lines import Lines
+from sim.engine.requests import Requests
+from sim.engine.setup import RunSetup
+from sim.engine.shutdown import Cause, Shutdown
+from sim.engine.stdio.terminal import Terminal
+from sim.engine.time_control import RealControl, VirtualControl
+from sim.ros.middleware.contents import Contents
+from sim.trace.events import AnyEvent, InputGiven, Notice, Severity
+
+# Kept from before the keeping of last words puts its own in its place.
+_leave = os._exit
+
+
+class CommandLoop:
+    """Reads commands on a thread of its own; what changes the run is carried out in the run's time."""
+
+    def __init__(
+        self,
+        pipe: Connection,
+        clock: Clock,
+        record: Callable[[AnyEvent], None],
+        control: RealControl | VirtualControl,
+        shutdown: Shutdown,
+        contents: Contents,
+        requests: Requests,
+        lines: Lines,
+        terminal: Terminal,
+    ) -> None:
+        self._pipe = pipe
+        self._clock = clock
+        self._virtual = clock if isinstance(clock, VirtualClock) else None
+        self._record = record
+        self._control = control
+        self._shutdown = shutdown
+        self._contents = contents
+        self._requests = requests
+        self._lines = lines
+        self._terminal = terminal
+
+    def start(self) -> None:
+        """Begin to read."""
+        threading.Thread(target=self._read, name="commands", daemon=True).start()
+
+    def schedule(self, setup: RunSetup) -> None:
+        """Have the inputs of a set-up carried out at their moments."""
+        service = None if setup.service is None else setup.service.name
+        for call in setup.calls:
+            self._clock.call_at(call.at, partial(self._requests.set_bool, service, call.data))
+        self._lines.schedule(setup.lines)
+        for typed in setup.typed:
+            self._clock.call_at(typed.at, partial(self._type, typed.text, scheduled=True))
+        if setup.until is not None:
+            self._clock.call_at(setup.until, self._shutdown.time_is_up)
+        if self._virtual is not None:
+            for given in setup.inputs:
+                command = commands.input_of(given.command)
+                self._virtual.give_at(given.at, partial(self._carry_out, command), given.recess)
+
+    def _read(self) -> None:
+        while True:
+            try:
+                command = commands.decode(self._pipe.recv_bytes())
+            except (EOFError, OSError):
+                _leave(0)  # the console is gone
+            except msgspec.DecodeError as error:
+                self._record(Notice(self._clock.now(), Severity.ERROR, f"unreadable command: {error}"))
+                continue
+            if isinstance(command, commands.PaceCommand):
+                self._control.obey(command)
+            elif self._virtual is not None:
+                self._carry_out_on(self._virtual, command)
+            else:
+                self._carry_out(command)
+
+    def _carry_out_on(self, clock: VirtualClock, command: commands.WorldCommand) -> None:
+        """Have a command carried out at the end of the moment that the run is in."""
+        if isinstance(command, commands.CompleteLine):
+            clock.steer(lambda: self._carry_out(command))
+            return
+        if clock.in_moment and not isinstance(command, commands.Stop):
+            text = "time stands in the middle of a moment, and this comes at its end: step, or let time go on"
+            self._record(Notice(clock.now(), Severity.WARN, text))
+        clock.give(lambda: self._carry_out(command))
+        if isinstance(command, commands.Stop):
+            self._shutdown.hurry()
+
+    def _carry_out(self, command: commands.WorldCommand) -> None:
+        if not isinstance(command, commands.CompleteLine):
+            recess = 0 if self._virtual is None else self._virtual.recess
+            self._record(InputGiven(self._clock.now(), commands.input_text(command), recess))
+        match command:
+            case commands.CallService(name=name, data=data):
+                self._requests.set_bool(name, data)
+            case commands.RunLine(line=line, text=text):
+                self._lines.begin(line, text)
+            case commands.InterruptLine(line=line):
+                self._lines.interrupt(line)
+            case commands.CompleteLine(line=line, text=text, cursor=cursor):
+                self._lines.complete(line, text, cursor)
+            case commands.Type(text=text, ends=ends):
+                self._type(text, ends=ends)
+            case commands.ResetWorld():
+                self._requests.reset_world()
+            case commands.KeepContents(wanted=wanted):
+                self._contents.wanted = wanted
+            case commands.Stop():
+                self._shutdown.stop()
+
+    def _type(self, text: str, *, ends: bool = False, scheduled: bool = False) -> None:
+        """Type at the programs' terminal; ctrl+c ends the run, unless the program takes it as a key."""
+        if self._terminal.interrupts(text):
+            self._shutdown.request(Cause("it was interrupted from the keyboard", failed=False))
+        else:
+            self._terminal.type(text, ends=ends, scheduled=scheduled)

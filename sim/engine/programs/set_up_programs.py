@@ -1,0 +1,43 @@
+"""Runs the programs that a run was set up with, from their start until all have ended."""
+
+from collections.abc import Callable
+from pathlib import Path
+
+from sim.engine.programs.program import STOPPED, Outcome, script
+from sim.engine.programs.programs import Programs
+from sim.engine.programs.ros2_lines import Lines
+from sim.engine.programs.starting import Starter, StartError, is_launch_file
+from sim.engine.setup import ProgramSetup
+
+
+def run_programs(
+    setup: tuple[ProgramSetup, ...], programs: Programs, starter: Starter, lines: Lines
+) -> Outcome:
+    """Run all to their ends, and a run without programs to that of its lines; return how that went."""
+    if len(setup) == 1 and not is_launch_file(setup[0].path):
+        return programs.run_only(script(setup[0].path, setup[0].arguments))
+    interrupts: list[Callable[[], None]] = []
+    try:
+        for place, program in enumerate(setup, start=1):
+            if is_launch_file(program.path):
+                launch = starter.launch(None, program.path, program.arguments, _ignore_end)
+                interrupts.append(launch.interrupt)
+            else:
+                label = f"{Path(program.path).stem}-{place}"
+                started = programs.start(script(program.path, program.arguments), label, _ignore_end)
+                interrupts.append(started.raise_interrupt)
+        programs.wait_until(lambda: not (programs.any_run or lines.any_left))
+    except KeyboardInterrupt:
+        lines.interrupt_all()
+        for interrupt in interrupts:
+            interrupt()
+        programs.wait_until(lambda: not programs.any_run)
+        return Outcome(STOPPED, failed=False)
+    except StartError as error:
+        programs.interrupt_all()
+        return Outcome(str(error), failed=True, status=1)
+    return programs.joint_outcome()
+
+
+def _ignore_end(_end: object) -> None:
+    """Take the end of a program for which nobody waits."""

@@ -1,0 +1,221 @@
+"""How a run ends: the first reason counts, the program is interrupted, and the process is gone in time."""
+
+import os
+import signal
+import sys
+import threading
+import time
+from dataclasses import dataclass
+from functools import partial
+from typing import NoReturn
+
+from sim.clock import Clock, VirtualClock
+from sim.engine.outbox import Outbox
+from sim.engine.programs.ending import GRACE, VIRTUAL_GRACE, flush_files_soon
+from sim.engine.programs.program import STOPPED, Outcome, threads_left_by
+from sim.engine.programs.programs import Programs
+from sim.engine.programs.starting import Starter
+from sim.engine.stdio.descriptors import Descriptors
+from sim.engine.stdio.output import finish_lines
+from sim.engine.time_control import RealControl, VirtualControl
+from sim.engine.watchdogs.endless_waits import EndlessWaits
+from sim.probes import own_code
+from sim.ros.middleware.host import Host
+from sim.trace.events import Notice, RunEnded, RunEnding, Severity
+
+_SIGNAL_AFTER = 0.5
+"""Real seconds after which a program on virtual time that comes to no wait is interrupted by a signal."""
+
+# Kept from before a clock, a program or the keeping of last words put their own in their place.
+_real_sleep = time.sleep
+_leave = os._exit
+_allocate_lock = threading.Lock
+
+
+@dataclass(frozen=True, slots=True)
+class Cause:
+    """Why a run ends, as ``RunEnded`` tells it."""
+
+    reason: str
+    failed: bool
+    error: str = ""
+    time_was_up: bool = False
+
+
+class Shutdown:
+    """Ends a run. Thread-safe: a command, a watchdog, the clock and the program itself may all ask for it."""
+
+    def __init__(
+        self,
+        title: str,
+        clock: Clock,
+        host: Host,
+        outbox: Outbox,
+        control: RealControl | VirtualControl,
+        programs: Programs,
+        starter: Starter,
+        descriptors: Descriptors,
+        endless: EndlessWaits | None,
+    ) -> None:
+        self._title = title
+        self._clock = clock
+        self._virtual = clock if isinstance(clock, VirtualClock) else None
+        self._host = host
+        self._outbox = outbox
+        self._control = control
+        self._programs = programs
+        self._starter = starter
+        self._descriptors = descriptors
+        self._endless = endless
+        self._cause: Cause | None = None
+        self._leaves = _allocate_lock()
+        self._grace_begins = threading.Semaphore(0)
+
+    def start(self) -> None:
+        """See from now on that the process is gone soon after the run's end."""
+        threading.Thread(target=self._end_in_time, name="grace", daemon=True).start()
+
+    @property
+    def has_begun(self) -> bool:
+        """Whether there is a reason to end."""
+        return self._cause is not None
+
+    def fail(self, sentence: str) -> None:
+        """End the run as a failure."""
+        self.request(Cause(sentence, failed=True))
+
+    def stop(self) -> None:
+        """End the run because somebody wants that."""
+        self.request(Cause(STOPPED, failed=False))
+
+    def time_is_up(self) -> None:
+        """End the run because it has lasted as long as it was to."""
+        failures = self._programs.failures
+        sentence = "; ".join(["its time was up", *(each.sentence for each in failures[:1])])
+        error = failures[0].error if failures else ""
+        self.request(Cause(sentence, bool(failures), error, time_was_up=True))
+
+    def request(self, cause: Cause) -> None:
+        """Have the program end as by Ctrl-C, and the run with it; by force if that takes too long."""
+        self._grace_begins.release()
+        if self.conclude(cause):
+            self._outbox.record(RunEnding(self._clock.now(), cause.reason))
+            self._control.let_go()
+            if self._virtual is None:
+                self._interrupt()
+            elif self._virtual.owns_current_thread():
+                self._interrupt_on(self._virtual)
+            else:
+                self._virtual.inject(partial(self._interrupt_on, self._virtual))
+
+    def hurry(self) -> None:
+        """Let the grace period begin, and time pass if it is paused: a request to stop is on its way."""
+        self._grace_begins.release()
+        self._control.let_go()
+
+    def conclude(self, cause: Cause) -> bool:
+        """Take the cause of the run's end and return True; False if there is one already."""
+        if self._cause is not None:
+            return False
+        self._cause = cause
+        if self._endless is not None:
+            self._endless.finish()
+        if self._host.tuning is not None and not cause.failed:
+            with self._host.lock:
+                for sentence in self._host.tuning.unmet():
+                    self._tell(Severity.WARN, sentence)
+        return True
+
+    def finish(self, outcome: Outcome) -> NoReturn:
+        """Leave once the program has ended; it may have failed after it was told to end."""
+        cause = Cause(outcome.sentence, outcome.failed, outcome.error)
+        if not self.conclude(cause) and outcome.failed:
+            self._tell(Severity.ERROR, outcome.sentence)
+        finish_lines()
+        self.leave()
+
+    def give_up_computing(self, clock: VirtualClock, sentence: str) -> None:
+        """End a program of which a thread comes to no wait: the main thread by a signal, another by force."""
+        if not self.conclude(Cause(sentence, failed=True)):
+            return
+        self._outbox.record(RunEnding(clock.now(), sentence))
+        if not clock.current.is_main:
+            flush_files_soon()
+            self.leave()
+        clock.inject(partial(self._limit_ending, clock))
+        clock.inject(self._programs.end_contexts)
+        self._grace_begins.release()
+        _signal_main()
+
+    def leave(self) -> NoReturn:
+        """Send the cause as the last event of all, and leave the process. For any thread, once."""
+        if not self._leaves.acquire(blocking=False):
+            while True:
+                _real_sleep(GRACE)  # another thread is at it
+        self._descriptors.finish()
+        cause = self._cause or Cause(STOPPED, failed=False)
+        last = RunEnded(self._clock.now(), cause.reason, cause.failed, cause.time_was_up, cause.error)
+        self._outbox.close(last)
+        self._starter.close()
+        _leave(0)
+
+    def _interrupt(self) -> None:
+        try:
+            self._programs.end_contexts()
+        finally:
+            _signal_main()
+
+    def _interrupt_on(self, clock: VirtualClock) -> None:
+        self._limit_ending(clock)
+        self._programs.end_contexts()
+        clock.interrupt(threading.main_thread().ident or 0)
+
+    def _limit_ending(self, clock: VirtualClock) -> None:
+        clock.resume()
+        clock.set_speed(None)
+        clock.call_at(clock.now() + VIRTUAL_GRACE, partial(self._end_by_force, VIRTUAL_GRACE / 1e9))
+
+    def _end_in_time(self) -> None:
+        """Wait on a thread outside the clock for the run's end, and see that the process ends then."""
+        self._grace_begins.acquire()
+        _real_sleep(_SIGNAL_AFTER)
+        if self._virtual is not None and self._main_computes_on(self._virtual):
+            self.conclude(Cause(STOPPED, failed=False))
+            _signal_main()
+        _real_sleep(GRACE - _SIGNAL_AFTER)
+        self._end_by_force(GRACE)
+
+    def _main_computes_on(self, clock: VirtualClock) -> bool:
+        """Whether the main thread has come to no wait since it was to be interrupted there."""
+        main = clock.current
+        computes = main.is_main and not clock.rests and (main.knocked or self._cause is None)
+        main.knocked = main.knocked and not computes
+        return computes
+
+    def _end_by_force(self, seconds: float) -> None:
+        self.conclude(Cause(STOPPED, failed=False))
+        text = f"{self._title} had not ended {seconds:g} s after it was told to{self._where_it_stands()}"
+        self._tell(Severity.WARN, f"{text}: it was ended by force")
+        try:
+            flush_files_soon()
+        finally:
+            self.leave()
+
+    def _where_it_stands(self) -> str:
+        """Return what keeps the program from ending, as " (worker: node.py:12, in work)"."""
+        frames = sys._current_frames()
+        left = [thread for process in self._programs.processes for thread in threads_left_by(process)]
+        for thread in (threading.main_thread(), *left):
+            place = own_code.place_of(frames.get(thread.ident or 0))
+            if place:
+                return f" ({thread.name}: {place})"
+        return ""
+
+    def _tell(self, severity: Severity, sentence: str) -> None:
+        self._outbox.record(Notice(self._clock.now(), severity, sentence))
+
+
+def _signal_main() -> None:
+    main = threading.main_thread().ident
+    assert main is not None
+    signal.pthread_kill(main, signal.SIGINT)

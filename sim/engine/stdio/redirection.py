@@ -1,0 +1,35 @@
+"""Records what programs write to Python's streams, each line with the program that wrote it."""
+
+import sys
+from collections.abc import Callable
+
+from sim.clock import Clock
+from sim.engine.stdio.output import ProcessStream
+from sim.ros.middleware.process import Process, current_process
+from sim.trace.events import AnyEvent, Notice, Printed, Severity
+
+
+def redirect_output(clock: Clock, record: Callable[[AnyEvent], None]) -> None:
+    """Replace Python's streams by such as record what each program writes."""
+
+    def tell_of_hidden_output() -> None:
+        text = (
+            f"{current_process().label} prints to stdout, which ros2 launch only shows with output='screen'; "
+            "its log goes to stderr and is shown"
+        )
+        record(Notice(clock.now(), Severity.INFO, text))
+
+    def take_from(error: bool) -> Callable[[Process, str, bool], None]:
+        def take(process: Process, text: str, ends: bool) -> None:
+            if process.take_output is not None:
+                process.take_output(text, error)
+            elif error or process.shows_stdout:
+                record(Printed(clock.now(), text, error, process.number, ends))
+            else:
+                process.keep(tell_of_hidden_output)
+
+        return take
+
+    sys.stdout = ProcessStream(take_from(error=False), clock.switch_point)
+    # Python's own logging writes errors while it holds a lock that does not live on the clock.
+    sys.stderr = ProcessStream(take_from(error=True))
