@@ -21,28 +21,23 @@ import threading
 from collections import deque
 from collections.abc import Callable, Generator, Set
 from contextlib import contextmanager
-from heapq import heappop, heappush
-from itertools import count
 
+from sim.clock.deadlines import Deadlines
+from sim.clock.inbox import Inbox, Inputs
 from sim.clock.interface import Stopped
 from sim.clock.outside import start_outside
 from sim.clock.pace import Pace
+from sim.clock.recesses import RECESS, Recesses
 from sim.clock.schedule import FirstCome, Schedule
 from sim.clock.virtual_threads import VirtualSignal, VirtualThread
 from sim.units import SECOND
 
 # Kept from before sim.clock.stdlib puts the virtual ones in their place.
-_allocate_lock = threading.Lock
 _get_ident = threading.get_ident
 _Thread = threading.Thread
 
 _LOOK = 20_000_000
 """Real nanoseconds after which is looked again whether outside work goes on."""
-
-WAITS_TO_RECESS = 1_000
-"""Waits between two recesses of a moment."""
-RECESS = 1_000
-"""Nanoseconds that a recess lasts at most; a float of the seconds since 1970 can tell 238."""
 
 VIRTUAL_EPOCH = 1_700_000_000 * SECOND
 """Every virtual run begins at this moment (14 November 2023), so its stamps are the same each time."""
@@ -64,42 +59,30 @@ class VirtualClock:
         self.held_together = 0
         """How many reasons there are not to switch threads at a switch point."""
         self._now = 0
-        self._order = count(1)
         self._ready: deque[VirtualThread] = deque()
-        self._deadlines: list[tuple[int, int, VirtualThread | Callable[[], None]]] = []
-        self._inbox: deque[Callable[[], None]] = deque()
-        self._inputs: deque[Callable[[], None]] = deque()
-        self._script: deque[tuple[int, int, Callable[[], None]]] = deque()
-        self._bell = _allocate_lock()
-        self._bell.acquire()
+        self._deadlines = Deadlines()
+        self._inbox = Inbox()
+        self._inputs = Inputs()
+        self._recesses = Recesses()
         self.pace = Pace(speed)
         self._stopping = False
         self._threads: set[VirtualThread] = set()
-        self.before_jump: Callable[[], int | None] = _nothing
+        self.before_jump: Callable[[], int | None] = _nobody
         """Called whenever time is about to pass, on whichever thread is at hand; it must not wait.
 
         It may return a moment at which time is to stop over, so that it is called there too.
         """
-        self.on_recess: Callable[[int], None] = _ignore
+        self.on_recess: Callable[[int], None] = _nobody
         """Called in every recess, with its number, on the thread that waits; it must not wait."""
-        self.on_lock_wait: Callable[[VirtualThread], None] = _pass
+        self.on_lock_wait: Callable[[VirtualThread], None] = _nobody
         """Called when a thread begins to wait without an end for a lock, or for another thread to end.
 
         It is called on that thread, and must not wait.
         """
         self.outside_works: Callable[[], bool] = _no
         """Whether something outside is at work, so that time passes as on the wall; it must not wait."""
-        self.handle_signals: Callable[[], None] = _do_nothing
+        self.handle_signals: Callable[[], None] = _nobody
         """Called on the main thread when it goes on after a wait."""
-        self.recess = 0
-        """Which recess of its moment the run is in; 0: none."""
-        self._recesses = 0
-        self._next_recess = WAITS_TO_RECESS
-        self._idle_waits = 0
-        self.steps = 0
-        """How often a thread came to a wait; a run that neither takes steps nor rests is stuck."""
-        self.rests = False
-        """Whether the run waits for its pace, for the end of a pause, or for something from outside."""
         self.in_moment = False
         """Whether time stands in the middle of a moment: only ``steer`` reaches the run then."""
         self.current = VirtualThread("MainThread")
@@ -119,7 +102,22 @@ class VirtualClock:
     @property
     def idles(self) -> bool:
         """Whether most of the waits in this moment up to its last recess were for no time."""
-        return self._idle_waits * 2 > self._recesses * WAITS_TO_RECESS
+        return self._recesses.idles
+
+    @property
+    def recess(self) -> int:
+        """Which recess of its moment the run is in; 0: none."""
+        return self._recesses.current
+
+    @property
+    def steps(self) -> int:
+        """How often a thread came to a wait; a run that neither takes steps nor rests is stuck."""
+        return self._recesses.steps
+
+    @property
+    def rests(self) -> bool:
+        """Whether the run waits for its pace, for the end of a pause, or for something from outside."""
+        return self._inbox.rests
 
     @property
     def threads(self) -> Set[VirtualThread]:
@@ -166,7 +164,7 @@ class VirtualClock:
 
     def call_at(self, time: int, action: Callable[[], None]) -> None:
         """Run ``action`` when virtual time reaches ``time``, on whichever thread is at hand."""
-        heappush(self._deadlines, (max(time, self._now), next(self._order), action))
+        self._deadlines.add((max(time, self._now), self._deadlines.number(), action))
 
     def park(self, deadline: int | None) -> bool:
         """Hand the baton on until unparked or until ``deadline``; True if unparked, which a signal does, too.
@@ -183,10 +181,10 @@ class VirtualClock:
         self._raise_knock(me)
         me.waiting = True
         me.woken = False
-        me.current_wait = next(self._order)
+        me.current_wait = self._deadlines.number()
         if deadline is not None:
-            self._idle_waits += deadline <= self._now
-            heappush(self._deadlines, (deadline, me.current_wait, me))
+            self._recesses.idle_waits += deadline <= self._now
+            self._deadlines.add((deadline, me.current_wait, me))
         self._hand_on(me)
         self._raise_knock(me)
         if self._stopped():
@@ -203,11 +201,12 @@ class VirtualClock:
         """
         if self.held_together or not self.owns_current_thread():
             return
-        if self.steps >= self._next_recess:
+        recesses = self._recesses
+        if recesses.steps >= recesses.due:
             self.park(self._now)
         else:
-            self._idle_waits += 1
-            self.steps += 1
+            recesses.idle_waits += 1
+            recesses.steps += 1
 
     def unpark(self, thread: VirtualThread) -> None:
         """Let a parked thread run again, after those that can run already; else nothing happens."""
@@ -239,13 +238,11 @@ class VirtualClock:
 
     def inject(self, action: Callable[[], None]) -> None:
         """Have ``action`` run at the moment the run has reached; it must not wait. Any thread may call it."""
-        self._inbox.append(action)
-        self._ring()
+        self._inbox.put(action)
 
     def steer(self, action: Callable[[], None]) -> None:
         """As ``inject``, and at once where time stands in the middle of a moment; for the pace."""
-        self._inbox.append(_Steering(action))
-        self._ring()
+        self._inbox.put(action, steers=True)
 
     def give(self, action: Callable[[], None]) -> None:
         """Have an input carried out at the end of the moment the run has reached; any thread may call this.
@@ -255,22 +252,15 @@ class VirtualClock:
         each recess. So the moments and recesses of its inputs and their order determine a run, whatever their
         real times were: ``give_at`` repeats it. The action must not wait.
         """
-        self._inputs.append(action)
-        self._ring()
+        self._inputs.given.append(action)
+        self._inbox.ring()
 
     def give_at(self, moment: int, action: Callable[[], None], recess: int = 0) -> None:
         """Have an input carried out at the end of ``moment``, or in a recess of it.
 
         Call it in the order of the moments and recesses.
         """
-        self._script.append((moment, recess, action))
-
-    def _ring(self) -> None:
-        if self._bell.locked():
-            try:
-                self._bell.release()
-            except RuntimeError:  # another thread rang it between the question and the answer
-                return
+        self._inputs.scheduled.append((moment, recess, action))
 
     def interrupt(self, thread: int) -> None:
         """Raise KeyboardInterrupt out of a thread's wait, its present or its next one."""
@@ -320,15 +310,15 @@ class VirtualClock:
         self.in_moment = self.pace.stands
         with self._together():
             while self.pace.stands:
-                self._take_steering()
+                self._inbox.steer(lambda: self.pace.stands)
                 if self.pace.stands:
-                    self._rest(None)
+                    self._inbox.rest(None)
         self.in_moment = False
 
     def stop(self) -> None:
         """End the run: every wait, now and later, raises. Call it from ``call_at`` or ``inject``."""
         self._stopping = True
-        self._script.clear()
+        self._inputs.scheduled.clear()
         self.pace.go_on(self._now)
         for thread in sorted(self._threads, key=lambda each: (not each.is_main, each.current_wait)):
             self.unpark(thread)
@@ -358,8 +348,9 @@ class VirtualClock:
             self._pass_baton(self._next_thread())
 
     def _hand_on(self, me: VirtualThread) -> None:
-        self.steps += 1
-        if self.steps >= self._next_recess and not self._stopping:
+        recesses = self._recesses
+        recesses.steps += 1
+        if recesses.steps >= recesses.due and not self._stopping:
             with self._together():
                 self._take_recess()
         following = self._next_thread()
@@ -397,39 +388,35 @@ class VirtualClock:
 
     def _take_recess(self) -> None:
         """Do what is done at the end of a moment, but for letting time pass."""
-        self._recesses += 1
-        self._next_recess = self.steps + WAITS_TO_RECESS
-        self.recess = self._recesses
+        number = self._recesses.begin()
         self.before_jump()
-        self.on_recess(self.recess)
+        self.on_recess(number)
         self._input_is_taken()
         if self.pace.steps:
             self.pace.halt()
-        self._empty_inbox()
-        while self.pace.stands and not self._inputs:
-            self._rest(None)
-            self._empty_inbox()
-        self.recess = 0
+        self._inbox.empty()
+        while self.pace.stands and not self._inputs.given:
+            self._inbox.rest(None)
+            self._inbox.empty()
+        self._recesses.end()
         if self.idles:
-            later = (deadline for deadline, *_ in self._deadlines if deadline > self._now)
-            self._now = min((self._now + RECESS, *later))
+            self._now = min([self._now + RECESS, *self._deadlines.later_than(self._now)])
 
     def _come_to(self, moment: int) -> None:
         if moment > self._now:
             self._now = moment
-            self._recesses = self._idle_waits = 0
-            self._next_recess = self.steps + WAITS_TO_RECESS
+            self._recesses.begin_moment()
 
     def _jump(self) -> None:
         """Bring time to the next deadline, or to where something from outside makes a thread able to run."""
-        deadline = self._earliest_deadline()
+        deadline = self._deadlines.first()
         target = deadline
         if deadline is None or deadline > self._now:
             target = self._stopover_before(deadline)
-            if not self._inbox and self._input_is_taken():
+            if not self._inbox.waiting and self._input_is_taken():
                 return
-            if self._script:
-                moment, *_ = self._script[0]
+            if self._inputs.scheduled:
+                moment, *_ = self._inputs.scheduled[0]
                 target = moment if target is None else min(moment, target)
             if self._goal_is_reached_before(target):
                 return
@@ -451,18 +438,13 @@ class VirtualClock:
 
     def _input_is_taken(self) -> bool:
         """Carry out one input, if there is one for the end of the moment or its recess."""
-        if self._script and self._is_due(*self._script[0][:2]):
-            _, _, action = self._script.popleft()
-        elif self._inputs:
-            action = self._inputs.popleft()
-        else:
+        inputs = self._inputs
+        if not (inputs.given or inputs.scheduled):
             return False
-        if not self._stopping:
+        action = inputs.take(self._now, self.recess)
+        if action is not None and not self._stopping:
             action()
-        return True
-
-    def _is_due(self, moment: int, recess: int) -> bool:
-        return moment <= self._now and (not self.recess or 0 < recess <= self.recess)
+        return action is not None
 
     def _goal_is_reached_before(self, target: int | None) -> bool:
         goal = self.pace.goal_before(target)
@@ -474,7 +456,7 @@ class VirtualClock:
         return True
 
     def _serve_deadline(self) -> None:
-        _, _, due = heappop(self._deadlines)
+        _, _, due = self._deadlines.take()
         if isinstance(due, VirtualThread):
             due.waiting = False
             self._ready.append(due)
@@ -483,85 +465,34 @@ class VirtualClock:
 
     def _serve_equals(self) -> None:
         """Let all threads go on whose deadline is this moment, up to the next action."""
-        while self._earliest_deadline() == self._now and isinstance(self._deadlines[0][2], VirtualThread):
+        while self._deadlines.first() == self._now and self._deadlines.first_is_thread():
             self._serve_deadline()
-
-    def _earliest_deadline(self) -> int | None:
-        while self._deadlines:
-            deadline, order, due = self._deadlines[0]
-            if not isinstance(due, VirtualThread) or (due.waiting and due.current_wait == order):
-                return deadline
-            heappop(self._deadlines)
-        return None
 
     def _pass_time(self, target: int | None) -> bool:
         """Wait as long as the pace wants; False if something from outside came first.
 
         What was injected has been done then; an input comes when the moment that the run has reached ends.
         """
-        while not self._inbox:
+        while not self._inbox.waiting:
             if target is not None and target <= self._now:
                 return True  # the moment goes on to its end, even if time stands
-            if self._inputs:
+            if self._inputs.given:
                 break
             works = self.outside_works()
             self.pace.keep_real(works, self._now)
             delay = self.pace.delay_until(target)
             if delay is not None and delay <= 0:
                 return True
-            self._rest(min(delay, _LOOK) if works and delay is not None else delay)
+            self._inbox.rest(min(delay, _LOOK) if works and delay is not None else delay)
         self._come_to(self.pace.reached(self._now, target))
-        self._empty_inbox()
+        self._inbox.empty()
         return False
 
-    def _empty_inbox(self) -> None:
-        while self._inbox:
-            self._inbox.popleft()()
 
-    def _take_steering(self) -> None:
-        """Do what was to be done at once; the rest stays in its order."""
-        others = []
-        while self._inbox and self.pace.stands:
-            action = self._inbox.popleft()
-            if isinstance(action, _Steering):
-                action()
-            else:
-                others.append(action)
-        self._inbox.extendleft(reversed(others))
-
-    def _rest(self, nanoseconds: float | None) -> None:
-        """Wait for something from outside, at most so long."""
-        self.rests = True
-        self._bell.acquire(timeout=-1 if nanoseconds is None else nanoseconds / 1e9)
-        self.rests = False
-
-
-class _Steering:
-    """An action for which a run does not have to come to the end of a moment."""
-
-    def __init__(self, action: Callable[[], None]) -> None:
-        self._action = action
-
-    def __call__(self) -> None:
-        self._action()
-
-
-def _nothing() -> int | None:
-    """Stand in for a hook that nobody set."""
+def _nobody(*_what: object) -> None:
+    """Stand in for a listener, or for a question that nobody answers."""
 
 
 def _no() -> bool:
     """Stand in for a question that nobody answers."""
     return False
-
-
-def _do_nothing() -> None:
-    """Stand in for a listener that nobody set."""
-
-
-def _pass(_thread: VirtualThread) -> None:
-    """Stand in for a listener that nobody set."""
-
-
-def _ignore(_recess: int) -> None:
-    """Stand in for a listener that nobody set."""

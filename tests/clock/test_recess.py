@@ -4,7 +4,7 @@ import threading
 from collections.abc import Callable
 
 from sim.clock import VirtualClock
-from sim.clock.virtual import RECESS, WAITS_TO_RECESS
+from sim.clock.recesses import RECESS, WAITS_TO_RECESS
 from tests.support.simulation import no_thread_left, wind_up
 
 PATIENCE = 60.0

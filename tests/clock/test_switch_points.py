@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 import pytest
 
-from sim.clock import VirtualClock, virtual
+from sim.clock import VirtualClock, recesses
 from sim.clock.schedule import Seeded
 from tests.support.simulation import no_thread_left, wind_up
 
@@ -46,23 +46,23 @@ def start_busy(clock: VirtualClock, number: int) -> None:
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_recess_is_no_place_to_switch(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(virtual, "WAITS_TO_RECESS", 2)
+    monkeypatch.setattr(recesses, "WAITS_TO_RECESS", 2)
 
-    recesses = []
+    found = []
 
     def program(clock: VirtualClock) -> None:
         def busy() -> None:
             for _ in range(60):
                 clock.sleep(0)
-                recesses.append(clock.recess)
+                found.append(clock.recess)
 
         clock.before_jump = clock.switch_point
         clock.on_recess = lambda _: clock.switch_point()
         for _ in range(3):
             clock.start_thread(busy, "busy")
         clock.sleep(1_000_000_000)
-        assert recesses
-        assert not any(recesses), "a thread went on while another one was in a recess"
+        assert found
+        assert not any(found), "a thread went on while another one was in a recess"
 
     run(seed, program)
 

@@ -207,7 +207,7 @@ def _ask_the_scheduler(simulation: Simulation, fate: Fate) -> None:
     assert isinstance(clock, VirtualClock)
     alive = [
         due
-        for _, order, due in clock._deadlines
+        for _, order, due in clock._deadlines._heap
         if not isinstance(due, VirtualThread) or (due.waiting and due.current_wait == order)
     ]
     fate.something_can_run = bool(clock._ready) or len(alive) > 1

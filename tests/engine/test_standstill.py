@@ -8,7 +8,7 @@ import msgspec
 import pytest
 
 from cbtui.engines.session import Session
-from sim.clock.virtual import RECESS
+from sim.clock.recesses import RECESS
 from sim.engine.commands import CallService, InputCommand, Stop
 from sim.engine.inputs import inputs_of
 from sim.trace.events import AnyEvent, CommandGiven, InputGiven, Logged, Notice, RunEnded, TimeHalted

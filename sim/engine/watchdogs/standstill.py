@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable
 
 from sim.clock import VirtualClock
-from sim.clock.virtual import WAITS_TO_RECESS
+from sim.clock.recesses import WAITS_TO_RECESS
 from sim.engine.watchdogs.places import place_of
 from sim.trace.events import AnyEvent, Notice, NoticeKind, Severity
 
