@@ -1,4 +1,4 @@
-"""An engine from which nothing comes, though it says several times a second that it is there."""
+"""Detects an engine from which nothing comes, though it sends a heartbeat several times a second."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -29,7 +29,7 @@ def why_silent(stands: str, stands_later: str) -> str:
     return f"the program computes ({stands_later}), and the machine has no time for both"
 
 
-class Silence:
+class HangDetector:
     """Turns what comes from an engine, and what does not, into batches. It belongs to the reader's thread."""
 
     def __init__(self) -> None:

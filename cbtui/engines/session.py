@@ -17,14 +17,14 @@ from uuid import uuid4
 
 import msgspec
 
-from cbtui.engines.hang_detector import LOOK, Silence, why_silent
+from cbtui.engines.hang_detector import LOOK, HangDetector, why_silent
 from cbtui.engines.orphan_guard import ENDS_ITSELF, watch_over
 from cbtui.engines.process_tree import MARK, Family
 from cbtui.engines.resource_guard import Warden, ceiling
 from cbtui.terminal.interrupts import whole
 from sim.clean_start import without_current_folder
 from sim.engine.commands import Command, Stop, encode
-from sim.engine.failures.last_words import ASKED, overflowed, place_in, was_kept
+from sim.engine.failures.crash_dump import ASKED, overflowed, place_in, timed_out
 from sim.engine.outbox import TRACE_CLOSED
 from sim.engine.programs.ending import GRACE, TO_LEAVE
 from sim.engine.setup import RunSetup
@@ -164,7 +164,7 @@ class Session:
         self._last_words.close()
 
     def _read(self) -> None:
-        silence = Silence()
+        silence = HangDetector()
         while True:
             try:
                 if self._pipe.poll(LOOK):
@@ -227,7 +227,7 @@ class Session:
             return "the program closed files of the engine's, as os.closerange does; close only your own"
         if code is None or code >= 0:
             held_up = "code in C held up virtual time for seconds, as only --clock real allows"
-            return held_up if was_kept(last_words) else f"the engine ended with exit code {code}"
+            return held_up if timed_out(last_words) else f"the engine ended with exit code {code}"
         name = signal.Signals(-code).name if -code in set(signal.Signals) else str(-code)
         if -code == signal.SIGKILL:
             return f"the engine was killed by signal {-code}"

@@ -6,7 +6,7 @@ import threading
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from sim.clock.circles import Held
+    from sim.clock.lock_cycles import Held
     from sim.clock.virtual import VirtualClock
 
 # Kept from before sim.clock.stdlib puts the virtual ones in their place.

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from itertools import count
 
 from sim.clock import Clock, VirtualClock
-from sim.engine.watchdogs.own_functions import OwnFunctions
+from sim.engine.watchdogs.function_integrity import FunctionIntegrity
 from sim.ros.middleware.contents import Contents
 from sim.trace.events import AnyEvent, RunEnded, TimePassed
 from sim.trace.integrity.sealing import Seal
@@ -23,14 +23,14 @@ class Batches:
         self._clock = clock
         self._contents = contents
         self._seal = Seal(key) if key else None
-        self._own_functions: OwnFunctions | None = None
+        self._integrity: FunctionIntegrity | None = None
         self._sealed = count()
         self._time_told = 0
 
     def guard(self, parts: Mapping[str, object]) -> None:
         """Tell in sealed batches from now on which functions of the engine and ``parts`` are replaced."""
         if self._seal is not None:
-            self._own_functions = OwnFunctions(parts)
+            self._integrity = FunctionIntegrity(parts)
 
     def pack(self, events: list[AnyEvent]) -> bytes:
         """Return a batch as it is sent."""
@@ -39,8 +39,8 @@ class Batches:
             return packed
         replaced: tuple[str, ...] = ()
         is_last = bool(events) and isinstance(events[-1], RunEnded)
-        if self._own_functions is not None and (is_last or next(self._sealed) % _BATCHES_A_LOOK == 0):
-            replaced = self._own_functions.replaced()
+        if self._integrity is not None and (is_last or next(self._sealed) % _BATCHES_A_LOOK == 0):
+            replaced = self._integrity.replaced()
         return self._seal.close(packed, replaced)
 
     def heartbeat(self) -> list[AnyEvent]:

@@ -19,7 +19,7 @@ from sim.engine.time_control import RealControl, VirtualControl
 from sim.ros.middleware.contents import Contents
 from sim.trace.events import AnyEvent, InputGiven, Notice, Severity
 
-# Kept from before the keeping of last words puts its own in its place.
+# Kept from before the crash dump puts its own in its place.
 _leave = os._exit
 
 

@@ -12,7 +12,7 @@ from multiprocessing.connection import Connection
 
 from sim.trace.events import AnyEvent, EventsLost, Logged, Notice, Printed, Severity, encode
 
-# Kept from before virtual time, or the keeping of last words, puts its own in their place.
+# Kept from before virtual time, or the crash dump, puts its own in their place.
 _RealThread = threading.Thread
 _real_sleep = time.sleep
 _real_lock = threading.Lock

@@ -20,10 +20,10 @@ from sim.clock.schedule import schedule_of
 from sim.clock.stdlib import live_on
 from sim.engine.batches import Batches
 from sim.engine.command_loop import CommandLoop
+from sim.engine.failures.crash_dump import enable_crash_dump, exit_unless_renewed
 from sim.engine.failures.failure import breakdown, is_learners
-from sim.engine.failures.last_words import keep_last_words, leave_if_kept
 from sim.engine.failures.tracebacks import leave_out_own_frames
-from sim.engine.failures.unheard import tell_of_unheard
+from sim.engine.failures.uncaught_exceptions import report_uncaught
 from sim.engine.outbox import Outbox
 from sim.engine.programs.children import allow_children, refuse_children
 from sim.engine.programs.ending import finalise, set_engine_apart
@@ -31,8 +31,8 @@ from sim.engine.programs.program import Outcome
 from sim.engine.programs.programs import Programs
 from sim.engine.programs.ros2_lines import Lines
 from sim.engine.programs.set_up_programs import run_programs
-from sim.engine.programs.sourced import use_workspace
 from sim.engine.programs.starting import Starter
+from sim.engine.programs.workspace_imports import use_workspace
 from sim.engine.requests import Requests
 from sim.engine.robot import provide_robot
 from sim.engine.setup import RunSetup
@@ -41,9 +41,9 @@ from sim.engine.stdio.descriptors import Descriptors, leave_terminal
 from sim.engine.stdio.redirection import redirect_output
 from sim.engine.stdio.terminal import Terminal
 from sim.engine.time_control import RealControl, VirtualControl
-from sim.engine.tuned import tuning_of
+from sim.engine.tuning import tuning_of
 from sim.engine.watchdogs.endless_waits import EndlessWaits
-from sim.engine.watchdogs.held_up import HeldUp
+from sim.engine.watchdogs.hung_callbacks import HungCallbacks
 from sim.engine.watchdogs.outside_time import Watchdog
 from sim.engine.watchdogs.repeatability import Repeatability
 from sim.engine.watchdogs.standstill import Standstill
@@ -55,17 +55,17 @@ from sim.ros.middleware.host import Host, install
 from sim.ros.middleware.process import share_machine
 from sim.trace.events import Notice, Printed, RunStarted, Severity
 
-# Kept from before the keeping of last words puts its own in its place.
+# Kept from before the crash dump puts its own in its place.
 _leave = os._exit
 
 
 class Engine:
     """One run of one set-up. ``pipe`` carries events out and commands in."""
 
-    def __init__(self, setup: RunSetup, pipe: Connection, last_words: Connection) -> None:
+    def __init__(self, setup: RunSetup, pipe: Connection, crash_dump: Connection) -> None:
         self._setup = setup
         self._pipe = pipe
-        self._last_words = last_words
+        self._crash_dump = crash_dump
         self._pid = os.getpid()
         clock = (
             VirtualClock(setup.speed, schedule_of(setup.seed))
@@ -144,11 +144,11 @@ class Engine:
         self._shutdown.start()
         redirect_output(clock, record)
         self._descriptors.detach()
-        keep_last_words(self._last_words, self._outbox.flush)
+        enable_crash_dump(self._crash_dump, self._outbox.flush)
         if not setup.whole_tracebacks:
             leave_out_own_frames()
         for program in setup.programs[:1]:
-            tell_of_unheard(self._tell_of_error, program.path, str(Path(program.path).resolve().parent))
+            report_uncaught(self._tell_of_error, program.path, str(Path(program.path).resolve().parent))
         install(self._host)
         importing.install()
         self._starter.add_own_interfaces()
@@ -163,7 +163,7 @@ class Engine:
             self._live_on(clock)
         elif isinstance(clock, PacedClock):
             follow(clock)
-            HeldUp(clock, record).start()
+            HungCallbacks(clock, record).start()
         self._terminal.put_in_place()
         self._commands.schedule(setup)
         self._batches.guard(
@@ -181,7 +181,7 @@ class Engine:
         clock.before_jump = self._look_at_waits
         clock.on_lock_wait = self._endless.begins
         give_up_computing = _ignore if is_watched else partial(self._shutdown.give_up_computing, clock)
-        be_back_in = _ignore if is_watched else partial(leave_if_kept, self._last_words)
+        be_back_in = _ignore if is_watched else partial(exit_unless_renewed, self._crash_dump)
         Watchdog(clock, record, give_up_computing, be_back_in).start()
         clock.on_recess = Standstill(clock, record, _ignore if is_watched else self._shutdown.fail).look
         live_on(clock, Repeatability(clock, record).lose)
@@ -214,10 +214,10 @@ def _ignore(_what: object) -> None:
     """Stand in for what a run that a person watches does not need."""
 
 
-def run(packed_setup: bytes, pipe: Connection, last_words: Connection) -> None:
-    """Be the engine process of one run; where its threads stand as it crashes goes to ``last_words``."""
+def run(packed_setup: bytes, pipe: Connection, crash_dump: Connection) -> None:
+    """Be the engine process of one run; where its threads stand as it crashes goes to ``crash_dump``."""
     leave_terminal()
     clean_start.forget()
     setup = msgspec.msgpack.decode(packed_setup, type=RunSetup)
     os.set_inheritable(pipe.fileno(), False)
-    Engine(setup, pipe, last_words).run()
+    Engine(setup, pipe, crash_dump).run()

@@ -26,7 +26,7 @@ from sim.trace.events import Notice, RunEnded, RunEnding, Severity
 _SIGNAL_AFTER = 0.5
 """Real seconds after which a program on virtual time that comes to no wait is interrupted by a signal."""
 
-# Kept from before a clock, a program or the keeping of last words put their own in their place.
+# Kept from before a clock, a program or the crash dump put their own in their place.
 _real_sleep = time.sleep
 _leave = os._exit
 _allocate_lock = threading.Lock

@@ -11,7 +11,7 @@ _PRELUDE = """
 import queue, sys, threading, time
 import concurrent.futures.thread as futures
 from sim.clock import VirtualClock
-from sim.clock.circles import circle_of
+from sim.clock.lock_cycles import cycle_of
 from sim.clock.schedule import schedule_of
 from sim.clock.stdlib import live_on
 clock = VirtualClock(schedule=schedule_of(int(sys.argv[1])))
@@ -158,7 +158,7 @@ PROGRAMS = {
     """,
     "threads_that_wait_for_each_others_locks_are_noticed": """
         one, two, found = threading.RLock(), threading.Lock(), []
-        clock.on_lock_wait = lambda thread: found.append([each.name for each in circle_of(thread)])
+        clock.on_lock_wait = lambda thread: found.append([each.name for each in cycle_of(thread)])
         def take(first, second):
             with first:
                 time.sleep(1)
@@ -178,7 +178,7 @@ PROGRAMS = {
     """,
     "a_condition_or_a_lock_as_a_signal_is_no_circle": """
         found = []
-        clock.on_lock_wait = lambda thread: found.append(circle_of(thread))
+        clock.on_lock_wait = lambda thread: found.append(cycle_of(thread))
         signal, event = threading.Lock(), threading.Event()
         signal.acquire()
         def give():

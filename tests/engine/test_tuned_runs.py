@@ -8,7 +8,7 @@ import pytest
 from cbtui.runs.setup.lesson_setup import setup_for
 from lessons.catalogue import find
 from sim.engine.setup import GroupChange, PeriodChange, RunSetup
-from sim.engine.tuned import tuning_of
+from sim.engine.tuning import tuning_of
 from sim.trace.events import GroupKind, NodeAppeared, RunEnded
 from sim.trace.timeline import Timeline
 from tests.support.engine_runs import SECOND, Run, run_to_end

@@ -16,7 +16,7 @@ from threading import Event
 
 import pytest
 
-from cbtui.engines.hang_detector import Silence
+from cbtui.engines.hang_detector import HangDetector
 from cbtui.engines.session import Session
 from cbtui.runs.live.live_run import State
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
@@ -112,7 +112,7 @@ async def test_an_engine_that_code_in_c_keeps_is_told_of(
 
 
 def test_a_machine_that_slept_says_nothing_of_the_engine() -> None:
-    silence = Silence()
+    silence = HangDetector()
     silence.came([RunStarted(0, "", "real", 0), Printed(7, "last", error=False)])
     assert [silence.nothing_came(lambda: "why") for _ in range(9)] == [[]] * 9
     (notice,) = silence.nothing_came(lambda: "why")

@@ -23,7 +23,7 @@ from sim.clock import Clock, Signal, VirtualClock
 from sim.engine.commands import END_OF_INPUT, INTERRUPT
 from sim.engine.setup import Keyboard
 from sim.engine.stdio.output import ProcessStream
-from sim.engine.watchdogs.wait_words import WaitProblem
+from sim.engine.watchdogs.wait_descriptions import WaitProblem
 from sim.marks import waits_for_keyboard
 from sim.probes.own_code import place_of_caller
 from sim.ros.middleware.process import Process, current_process

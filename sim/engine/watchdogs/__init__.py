@@ -1,1 +1,1 @@
-"""What notices programs that wait, hang or spin, and names the places."""
+"""Watchdogs: they find programs that wait, hang or spin, and name the line."""

@@ -1,13 +1,13 @@
-"""Notices threads that wait without an end for what nobody does any more, and names the places."""
+"""Finds threads that wait without a timeout for what no other thread will do."""
 
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass
 
 from sim.clock import VirtualClock
-from sim.clock.circles import Held, circle_of, lasts
+from sim.clock.lock_cycles import Held, cycle_of, lasts
 from sim.clock.virtual_threads import VirtualThread
-from sim.engine.watchdogs.wait_words import deadlock_of_circle, deadlock_of_last, long_wait
+from sim.engine.watchdogs.wait_descriptions import deadlock_of_circle, deadlock_of_last, long_wait
 from sim.ros.middleware.host import Host
 from sim.ros.middleware.process import Process, current_process, process_of
 from sim.trace.events import AnyEvent, EntityId
@@ -53,7 +53,7 @@ class EndlessWaits:
         """A thread begins to wait for a lock or another thread's end; the clock calls this on that thread."""
         process = current_process()
         entity = (process.probe or self._host.probe).callback_here()
-        circle = circle_of(thread)
+        circle = cycle_of(thread)
         if not (circle or entity or thread.is_main):
             return
         wait = _Wait(thread, thread.wants, process, entity, self._clock.now())
@@ -65,7 +65,7 @@ class EndlessWaits:
         """Look at the waits; call it whenever time is about to pass."""
         for wait in self._standing():
             if (wait.entity or not self._deadlocked) and self._is_last(wait):
-                self._tell_of_deadlock(wait, circle_of(wait.thread))
+                self._tell_of_deadlock(wait, cycle_of(wait.thread))
             elif wait.entity and not wait.told and self._lasted(wait) >= _PATIENCE:
                 wait.told = True
                 self._record(
@@ -76,7 +76,7 @@ class EndlessWaits:
         """Look for the last time: the run is over."""
         self.look()
         for wait in self._standing():
-            circle = circle_of(wait.thread)
+            circle = cycle_of(wait.thread)
             if circle and wait.thread in self._waits and self._lasted(wait) >= _SETTLES:
                 self._tell_of_deadlock(wait, circle)
 

@@ -1,4 +1,4 @@
-"""Notices a program that stands still outside virtual time, and names the place."""
+"""Finds a program that makes no progress outside virtual time, and names the line."""
 
 import sys
 import threading
@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 
 from sim.clock import VirtualClock
-from sim.engine.watchdogs.places import place_of
+from sim.engine.watchdogs.thread_positions import place_of
 from sim.probes.own_code import outwards
 from sim.trace.events import AnyEvent, Notice, NoticeKind, Severity
 

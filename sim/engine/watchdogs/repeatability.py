@@ -1,4 +1,4 @@
-"""Tells once in a run on virtual time of what a program does that no run can repeat exactly."""
+"""Warns once in a run on virtual time of what a program does that cannot be repeated exactly."""
 
 from collections.abc import Callable
 

@@ -1,11 +1,11 @@
-"""Notices a program whose threads go on and on in one moment of virtual time, and names the place."""
+"""Finds a program whose threads never let virtual time pass, and names the line."""
 
 import time
 from collections.abc import Callable
 
 from sim.clock import VirtualClock
 from sim.clock.recesses import WAITS_TO_RECESS
-from sim.engine.watchdogs.places import place_of
+from sim.engine.watchdogs.thread_positions import place_of
 from sim.trace.events import AnyEvent, Notice, NoticeKind, Severity
 
 # Kept from before sim.clock.stdlib puts the virtual one in its place.

@@ -1,4 +1,4 @@
-"""Circles of threads each of which waits for a lock that the next one holds, or for the next one's end."""
+"""Cycles in the wait-for graph of threads: each waits for a lock that the next one holds, or for its end."""
 
 from types import CodeType
 from typing import Protocol
@@ -17,7 +17,7 @@ class Held(Protocol):
     """Where in the program a lock was taken last: the code, and how far in; None for a thread's end."""
 
 
-def circle_of(thread: VirtualThread) -> list[VirtualThread]:
+def cycle_of(thread: VirtualThread) -> list[VirtualThread]:
     """The threads that wait for each other in a circle through ``thread``, which comes first.
 
     Empty where there is no such circle. A thread that waits for what it took itself makes one only where the

@@ -1,7 +1,7 @@
-"""Where a program's threads stood when its process came to a sudden end, written down without Python's help.
+"""The crash dump: where a program's threads stood when its process ended without Python's help.
 
-``faulthandler`` writes to a file that the console handed to the engine: as C code crashes, as the process is
-aborted, and whenever the console asks by a signal. The console reads the file when the engine is gone.
+``faulthandler`` writes it to a file that the console handed to the engine: when C code crashes, when the
+process is aborted, and when the console asks by a signal. The console reads the file once the engine is gone.
 """
 
 import faulthandler
@@ -32,8 +32,8 @@ class _Frame(NamedTuple):
     function: str
 
 
-def keep_last_words(file: Connection, flush: Callable[[], None]) -> None:
-    """Have last words written to ``file`` from now on; ``flush`` sends what waits to be sent.
+def enable_crash_dump(file: Connection, flush: Callable[[], None]) -> None:
+    """Write crash dumps to ``file`` from now on; ``flush`` sends what waits to be sent.
 
     ``os._exit``, of which the interpreter takes no notice, writes and flushes before it ends the process.
     """
@@ -43,27 +43,27 @@ def keep_last_words(file: Connection, flush: Callable[[], None]) -> None:
     faulthandler.register(ASKED, number, all_threads=True)
     leave, engine = os._exit, os.getpid()
 
-    def leave_with_last_words(status: int) -> NoReturn:
+    def leave_with_crash_dump(status: int) -> NoReturn:
         if os.getpid() == engine:
             faulthandler.dump_traceback(number, all_threads=True)
             flush()
         leave(status)
 
     module: Any = os
-    module._exit = leave_with_last_words
+    module._exit = leave_with_crash_dump
 
 
-def leave_if_kept(file: Connection, seconds: float) -> None:
-    """End the process with last words unless this is called again in time, which code in C may prevent."""
+def exit_unless_renewed(file: Connection, seconds: float) -> None:
+    """End the process with a crash dump unless this is called again in time, which code in C may prevent."""
     faulthandler.dump_traceback_later(seconds, exit=True, file=file.fileno())
 
 
-def was_kept(last_words: str) -> bool:
-    """Whether that is how the process ended."""
-    return _KEPT in last_words
+def timed_out(crash_dump: str) -> bool:
+    """Whether the process ended because ``exit_unless_renewed`` was not called again."""
+    return _KEPT in crash_dump
 
 
-def place_in(last_words: str, programs: Iterable[str]) -> str:
+def place_in(crash_dump: str, programs: Iterable[str]) -> str:
     """Where in the learner's own files a thread stood, as "node.py:42, in tick"; "" if nowhere.
 
     ``programs`` are the paths of the programs. The thread that crashed comes first, of the others one that
@@ -71,7 +71,7 @@ def place_in(last_words: str, programs: Iterable[str]) -> str:
     """
     paths = [Path(each) for path in programs for each in (path, os.path.realpath(path))]
     folders = tuple(f"{path.parent}{os.sep}" for path in paths)
-    threads = [_frames(text) for text in _threads(last_words)]
+    threads = [_frames(text) for text in _threads(crash_dump)]
     busy = [frames for frames in threads[1:] if frames and _is_own(frames[0].file, folders)]
     for frames in (*threads[:1], *busy, *threads[1:]):
         for file, line, function in frames:
@@ -80,14 +80,14 @@ def place_in(last_words: str, programs: Iterable[str]) -> str:
     return ""
 
 
-def overflowed(last_words: str) -> bool:
+def overflowed(crash_dump: str) -> bool:
     """Whether the thread that crashed had called more functions within one another than can be told."""
-    return any(_CUT in text for text in _threads(last_words)[:1])
+    return any(_CUT in text for text in _threads(crash_dump)[:1])
 
 
-def _threads(last_words: str) -> list[str]:
+def _threads(crash_dump: str) -> list[str]:
     """The frames of each thread, those of the current one first."""
-    found = sorted(_THREAD.findall(last_words), key=lambda each: each[0] != "Current thread")
+    found = sorted(_THREAD.findall(crash_dump), key=lambda each: each[0] != "Current thread")
     return [text for _, text in found]
 
 

@@ -1,11 +1,11 @@
-"""Notices a program that replaces functions of the engine's own, to change what the trace tells."""
+"""Finds functions of the engine that a program has replaced, which could change what the trace tells."""
 
 import sys
 from collections.abc import Iterator, Mapping
 from types import CodeType, FunctionType
 
 
-class OwnFunctions:
+class FunctionIntegrity:
     """The code of the model's functions and methods as it is now, and the callables that ``parts`` hold.
 
     ``parts`` are objects of the engine by name; a method that an object itself replaces is noticed too.

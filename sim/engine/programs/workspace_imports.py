@@ -1,4 +1,4 @@
-"""What a program can import as on a machine with its workspace sourced, found when it first asks for it."""
+"""Import hooks for the packages of the workspace, the launch system, and asyncio on the run's clock."""
 
 from __future__ import annotations
 

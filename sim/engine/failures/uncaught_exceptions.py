@@ -1,4 +1,4 @@
-"""Tells of exceptions that Python itself only prints: those of threads, destructors and exit handlers."""
+"""Reports exceptions that Python itself only prints: those of threads, destructors and exit handlers."""
 
 import sys
 import threading
@@ -13,7 +13,7 @@ from sim.error_text import error_text
 Tell = Callable[[str], None]
 
 
-def tell_of_unheard(tell: Tell, path: str, folder: str) -> None:
+def report_uncaught(tell: Tell, path: str, folder: str) -> None:
     """Have ``tell`` called with a sentence for each line they come from, and their tracebacks printed.
 
     ``path`` is the program's file; files in ``folder`` count as the learner's own too. What came up in none

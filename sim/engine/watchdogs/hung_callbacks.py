@@ -1,4 +1,4 @@
-"""Notices on the real clock a callback that does not come back and does not wait for time, and its place."""
+"""Finds callbacks on the real clock that neither return nor wait for time, and names the line."""
 
 import sys
 import threading
@@ -18,13 +18,13 @@ _sleep = time.sleep
 _LOOK = 0.5
 """Real seconds between two looks."""
 _PATIENCE = 6
-"""Looks at which the same call was found held up before the person is told."""
+"""Looks at which the same call was found hung before the person is told."""
 
 _MODEL = ("sim.ros.", "sim.interfaces.")
 
 
-class HeldUp:
-    """Looks from outside at what the threads do. Each call is told of once."""
+class HungCallbacks:
+    """Samples the stacks of all threads, and warns of each call once."""
 
     def __init__(self, clock: Clock, record: Callable[[AnyEvent], None]) -> None:
         self._clock = clock
@@ -33,7 +33,7 @@ class HeldUp:
 
     def start(self) -> None:
         """Begin to look."""
-        _Thread(target=self._watch, name="held-up", daemon=True).start()
+        _Thread(target=self._watch, name="hung-callbacks", daemon=True).start()
 
     def _watch(self) -> None:
         while True:
@@ -44,7 +44,7 @@ class HeldUp:
         """Look once."""
         seen = {}
         for thread, top in sys._current_frames().items():
-            call = _call_held_up(top)
+            call = _hung_call(top)
             if call is not None:
                 before, looks = self._seen.get(thread, (0, 0))
                 seen[thread] = id(call), looks + 1 if before == id(call) else 1
@@ -54,7 +54,7 @@ class HeldUp:
         self._seen = seen
 
 
-def _call_held_up(top: FrameType) -> FrameType | None:
+def _hung_call(top: FrameType) -> FrameType | None:
     """The learner's call on a thread, if it runs or waits for something other than time; else None."""
     inner: FrameType | None = None
     for frame in outwards(top):

@@ -1,4 +1,4 @@
-"""Where in a program a thread of virtual time is, or a lock was taken, as ``node.py:12, in tick``."""
+"""The line of a program where a thread is, or where a lock was taken, as ``node.py:12, in tick``."""
 
 import sys
 from pathlib import Path

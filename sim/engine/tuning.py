@@ -1,4 +1,4 @@
-"""From the changes of a set-up to what the model makes of them."""
+"""Turns the changes of a set-up into the tuning of the model."""
 
 from sim.engine.setup import RunSetup
 from sim.ros.middleware.tuning import GroupWish, Tuning

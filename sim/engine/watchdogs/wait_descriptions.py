@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import takewhile
 
 from sim.clock.virtual_threads import VirtualThread
-from sim.engine.watchdogs.places import place_in, place_of
+from sim.engine.watchdogs.thread_positions import place_in, place_of
 from sim.probes.own_code import is_own, outwards
 from sim.trace.events import EntityId, Notice, NoticeKind, Severity
 
