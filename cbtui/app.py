@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
     from cbtui.engines.session import Deliver, Ended, EngineSession, OpenSession
     from cbtui.learning.outcome import Observe
-    from cbtui.runs.compared_runs import Contender, Terms
+    from cbtui.runs.compared_runs import ComparedRun, Terms
     from cbtui.runs.setup.changes import Changes
     from cbtui.runs.setup.subject import Subject
     from sim.engine.setup import RunSetup
@@ -87,7 +87,7 @@ class CbtuiApp(EndingApp):
         start_file: tuple[Path, Sequence[str], str] | None = None,
         start_changes: "Changes | None" = None,
         start_recording: "Recording | None" = None,
-        start_comparison: "tuple[Contender, Contender, Terms] | None" = None,
+        start_comparison: "tuple[ComparedRun, ComparedRun, Terms] | None" = None,
         theme: str = STANDARD,
         keys: Keymap | None = None,
         complaints: Sequence[str] = (),
@@ -119,9 +119,9 @@ class CbtuiApp(EndingApp):
 
     def search_themes(self) -> None:
         """Open a palette of the themes."""
-        from cbtui.keys.command_palette import Palette
+        from cbtui.terminal.textual_internals import LeavablePalette
 
-        self.push_screen(Palette(providers=[ThemeProvider], placeholder="Search for themes…"))
+        self.push_screen(LeavablePalette(providers=[ThemeProvider], placeholder="Search for themes…"))
 
     def get_driver_class(self) -> "type[Driver]":
         """Return what keys are read from and all is drawn to."""
@@ -134,10 +134,10 @@ class CbtuiApp(EndingApp):
 
     def action_command_palette(self) -> None:
         """Open the command palette, unless it is open."""
-        from cbtui.keys.command_palette import Palette
+        from cbtui.terminal.textual_internals import LeavablePalette
 
-        if not isinstance(self.screen, Palette):
-            self.push_screen(Palette(id="--command-palette"))
+        if not isinstance(self.screen, LeavablePalette):
+            self.push_screen(LeavablePalette(id="--command-palette"))
 
     def tell_saved(self, sentence: str) -> None:
         """Say what was saved when a screen was left: now, and once more when the terminal is as it was."""

@@ -33,7 +33,7 @@ from cbtui.commands.options import appearance, more_lessons
 from cbtui.commands.options.parsing import Parser
 from cbtui.commands.options.targets import refuse
 from cbtui.commands.ros2 import ros2
-from cbtui.engines.resource_guard import BadCeilingError, ceiling
+from cbtui.engines.memory_limit import BadMemoryLimitError, memory_limit
 from cbtui.terminal import streams
 from cbtui.text.output import CannotSayError, is_text, say
 
@@ -81,7 +81,7 @@ def _carried_out(words: list[str]) -> int:
     if not all(map(is_text, options.arguments)):
         refuse("what stands behind -- has to be text in UTF-8")
     _check_folder()
-    _check_ceiling()
+    _check_memory_limit()
     action: Callable[[argparse.Namespace], int] = options.action
     with more_lessons.brought_in(options):
         try:
@@ -101,11 +101,11 @@ def _check_folder() -> None:
         refuse(f"the current folder cannot be used: {error.strerror}; go to another one")
 
 
-def _check_ceiling() -> None:
+def _check_memory_limit() -> None:
     """End the program with one line and 2, if what nodes may use of the memory is set to no number."""
     try:
-        ceiling()
-    except BadCeilingError as error:
+        memory_limit()
+    except BadMemoryLimitError as error:
         refuse(str(error))
 
 

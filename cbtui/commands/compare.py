@@ -10,7 +10,7 @@ from cbtui.commands.options.targets import file_of, is_file_name, lesson_of, ref
 from cbtui.commands.run import DEFAULT_SECONDS
 
 if TYPE_CHECKING:
-    from cbtui.runs.compared_runs import Contender, Terms
+    from cbtui.runs.compared_runs import ComparedRun, Terms
 
 _RECORDING = ".mcap"
 
@@ -59,7 +59,7 @@ def compare(options: argparse.Namespace) -> int:
     threads = [options.threads_a, options.threads_b]
     _check(options, names, threads)
     first, second = (
-        _contender(name, number, options.arguments) for name, number in zip(names, threads, strict=True)
+        _compared_run(name, number, options.arguments) for name, number in zip(names, threads, strict=True)
     )
     terms = _terms(options)
     if options.text or not (sys.stdin.isatty() and sys.stdout.isatty()):
@@ -95,19 +95,19 @@ def _is_recording(name: str) -> bool:
     return name.endswith(_RECORDING)
 
 
-def _contender(name: str, threads: int | None, arguments: list[str]) -> "Contender":
-    from cbtui.runs.compared_runs import Contender
+def _compared_run(name: str, threads: int | None, arguments: list[str]) -> "ComparedRun":
+    from cbtui.runs.compared_runs import ComparedRun
     from cbtui.runs.setup.changes import Changes
     from cbtui.runs.setup.lesson_setup import RunRequest
 
     if _is_recording(name):
-        return Contender(name, _readable(Path(name)))
+        return ComparedRun(name, _readable(Path(name)))
     called = name if threads is None else f"{name}, {threads} thread{'s'[: threads - 1]}"
     if is_file_name(name):
         file = file_of(name)
         request = RunRequest(files=[file], arguments=arguments, changes=Changes(threads), clock="virtual")
-        return Contender(called, request)
-    return Contender(called, RunRequest(lesson=lesson_of(name), changes=Changes(threads)))
+        return ComparedRun(called, request)
+    return ComparedRun(called, RunRequest(lesson=lesson_of(name), changes=Changes(threads)))
 
 
 def _readable(path: Path) -> Path:

@@ -9,7 +9,7 @@ import signal
 from multiprocessing.connection import Connection
 from typing import NoReturn
 
-from cbtui.engines.process_tree import MARK, Family
+from cbtui.engines.process_tree import MARK, ProcessTree
 
 _MOST_FILES = 1 << 16
 """More than an engine has open as it begins."""
@@ -41,7 +41,7 @@ def _wait(engine: int, console: int) -> NoReturn:
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
         _let_go_of_all_but(console)
         if os.read(console, 1) != ENDS_ITSELF:
-            Family(engine, os.environ.get(MARK, "")).end()
+            ProcessTree(engine, os.environ.get(MARK, "")).end()
     finally:
         os._exit(0)
 

@@ -1,108 +1,89 @@
 """The processes of one engine: what they take of the machine, and how they are ended.
 
 The engine is a subreaper: whatever a program starts stays below it in the process tree as long as it lives,
-daemons included, and is ended as it leaves. If it is killed, they are known by its session, by the mark that
-it got in its environment, and by the last look at the tree; what started since then, in a session and an
-environment of its own, is not found any more. All that is looked for in ``/proc``; where there is none, only
-the engine's own group is known.
+daemons included, and is ended as it leaves. If the engine is killed, its processes are known by its session,
+by the mark in their environment, and by the last look at the tree. A process that was started after that
+look, in a session and an environment of its own, is not found.
 """
 
 import ctypes
 import os
-import signal
 import sys
 import time
 from collections.abc import Iterable, Iterator
 from contextlib import suppress
-from pathlib import Path
 from typing import Any, NoReturn, cast
+
+import psutil
+from psutil import Process
 
 MARK = "CBTUI_RUN"
 """The environment variable that holds the mark."""
 
-_PROC = Path("/proc")
 _SWEEPS = 20
 """How often processes are looked for that were started while others were being ended."""
 _PR_SET_CHILD_SUBREAPER = 36
 """Of Linux's ``prctl``: orphans below the caller become its children."""
-_PAGE = os.sysconf("SC_PAGESIZE")
+_ENDED = {psutil.STATUS_ZOMBIE, psutil.STATUS_DEAD}
+_STOPPED = {psutil.STATUS_STOPPED, psutil.STATUS_TRACING_STOP}
 
 
-class Family:
+class ProcessTree:
     """The engine ``pid`` and every process that came of it. Thread-safe."""
 
     def __init__(self, pid: int, mark: str) -> None:
         self.pid = pid
-        self._entry = f"{MARK}={mark}\0".encode()
-        self._seen: dict[int, str] = {}
+        self._mark = mark
+        self._seen: list[Process] = []
 
     def lives(self) -> bool:
         """Whether the engine itself has not ended."""
-        try:
-            state, *_ = _status(_PROC / str(self.pid))
-        except OSError:
-            return not _PROC.exists()
-        return state not in {"Z", "X"}
+        return _status(self.pid) not in _ENDED
 
     def is_stopped(self) -> bool:
         """Whether the engine has been stopped, as by SIGSTOP, and not ended."""
-        try:
-            state, *_ = _status(_PROC / str(self.pid))
-        except OSError:
-            return False
-        return state in {"T", "t"}
+        return _status(self.pid) in _STOPPED
 
-    def memory(self, processes: Iterable[int]) -> int:
-        """Bytes of memory that processes hold; what several of them share may count for each."""
-        return sum(map(_resident, processes))
+    def engine(self) -> list[Process]:
+        """The engine's process alone, which is cheap to look up; nothing if it is gone."""
+        return list(_processes([self.pid]))
 
-    def own_memory(self, processes: Iterable[int]) -> int:
-        """Bytes of memory that processes hold, what they share counted once. Dearer than ``memory``."""
-        return sum(map(_proportional, processes))
-
-    def descendants(self) -> list[int]:
-        """The engine and those that are its children, their children and so on, but for zombies."""
-        found = [self.pid]
-        for pid in found:
-            with suppress(OSError):
-                for children in (_PROC / str(pid) / "task").glob("*/children"):
-                    with suppress(OSError):
-                        found += map(int, children.read_text().split())
-        seen = {pid: began for pid in found if (began := _began(pid))}
-        if self.pid in seen:  # else nobody is below it any more
-            self._seen = seen
-        return [self.pid, *(pid for pid in found[1:] if pid in seen)]
+    def processes(self) -> list[Process]:
+        """The engine and all processes below it, without zombies."""
+        found = [each for engine in self.engine() for each in (engine, *_below(engine))]
+        found = [process for process in found if _status(process.pid) not in _ENDED]
+        if found and found[0].pid == self.pid:  # else its children have another parent by now
+            self._seen = found
+        return found
 
     def leave_nothing(self) -> None:
-        """Have the calling process be the engine: it keeps orphans, and ends all below it as it leaves."""
+        """Make the calling process the engine: it adopts orphans, and ends all below it as it leaves."""
         if sys.platform != "linux":
             return
         ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
         leave, system = os._exit, cast("Any", os)
 
         def leave_nothing(status: int) -> NoReturn:
-            if os.getpid() == self.pid and len(self.descendants()) > 1:
+            if os.getpid() == self.pid and len(self.processes()) > 1:
                 self.end()
             leave(status)
 
         system._exit = leave_nothing
 
     def end(self) -> None:
-        """Kill them all but the caller; those that start others are stopped first, so that none gets away."""
-        stopped: set[int] = set()
-        seen = {pid for pid, began in self._seen.items() if _began(pid) == began}
+        """Kill them all but the caller. Each is stopped first, so that none starts another one meanwhile."""
+        stopped: set[Process] = set()
         for _ in range(_SWEEPS):
-            found = {*seen, *self._marked(), *self.descendants()} - stopped - {os.getpid()}
+            found = {*self._seen, *self._marked(), *self.processes()} - stopped - {Process()}
             if not found:
                 break
-            for pid in found:
-                _send(pid, signal.SIGSTOP)
+            for process in found:
+                with suppress(psutil.Error):
+                    process.suspend()
             stopped |= found
-        for pid in stopped:
-            _send(pid, signal.SIGKILL)
-        if not _PROC.exists():
-            with suppress(OSError):
-                os.killpg(self.pid, signal.SIGKILL)
+        for process in stopped:
+            with suppress(psutil.Error):
+                process.kill()
 
     def wait_for_end(self, seconds: float) -> bool:
         """Wait until the engine has ended, at most so long; whether it has."""
@@ -113,49 +94,42 @@ class Family:
             time.sleep(0.005)
         return True
 
-    def _marked(self) -> Iterator[int]:
-        if not _PROC.exists():
-            return
-        for place in _PROC.iterdir():
-            if place.name.isdigit():
-                with suppress(OSError):
-                    if self._is_ours(place):
-                        yield int(place.name)
-
-    def _is_ours(self, place: Path) -> bool:
-        _, _, _, session, *_ = _status(place)
-        return int(session) == self.pid or self._entry in (place / "environ").read_bytes()
+    def _marked(self) -> Iterator[Process]:
+        for process in _processes(psutil.pids()):
+            with suppress(psutil.Error, OSError):
+                if os.getsid(process.pid) == self.pid or process.environ().get(MARK) == self._mark:
+                    yield process
 
 
-def _status(place: Path) -> list[str]:
-    """State, parent, group, session and so on of a process."""
-    return (place / "stat").read_text(errors="replace").rpartition(")")[2].split()
+def resident(process: Process) -> int:
+    """Bytes of memory that a process holds; memory shared by several processes counts for each."""
+    with suppress(psutil.Error):
+        return process.memory_info().rss
+    return 0
 
 
-def _began(pid: int) -> str:
-    """When a process began, which tells it from a later one of that number; "" if it is no more."""
+def proportional(process: Process) -> int:
+    """Bytes of memory that a process holds, its part of what it shares (PSS). Dearer than ``resident``."""
     try:
-        state, *rest = _status(_PROC / str(pid))
-    except OSError:
-        return ""
-    return "" if state in {"Z", "X"} else rest[18]
+        return process.memory_full_info().pss
+    except (psutil.Error, AttributeError):  # only Linux knows it
+        return resident(process)
 
 
-def _resident(pid: int) -> int:
+def _processes(pids: Iterable[int]) -> Iterator[Process]:
+    for pid in pids:
+        with suppress(psutil.Error):
+            yield Process(pid)
+
+
+def _below(process: Process) -> list[Process]:
+    with suppress(psutil.Error):
+        return process.children(recursive=True)
+    return []
+
+
+def _status(pid: int) -> str:
     try:
-        return int((_PROC / str(pid) / "statm").read_text().split()[1]) * _PAGE
-    except OSError:
-        return 0
-
-
-def _proportional(pid: int) -> int:
-    try:
-        rollup = (_PROC / str(pid) / "smaps_rollup").read_text()
-    except OSError:
-        return _resident(pid)
-    return next((int(line.split()[1]) * 1024 for line in rollup.splitlines() if line.startswith("Pss:")), 0)
-
-
-def _send(pid: int, number: int) -> None:
-    with suppress(OSError):
-        os.kill(pid, number)
+        return Process(pid).status()
+    except psutil.Error:
+        return psutil.STATUS_DEAD

@@ -18,9 +18,10 @@ from uuid import uuid4
 import msgspec
 
 from cbtui.engines.hang_detector import LOOK, HangDetector, why_silent
+from cbtui.engines.memory_limit import memory_limit
 from cbtui.engines.orphan_guard import ENDS_ITSELF, watch_over
-from cbtui.engines.process_tree import MARK, Family
-from cbtui.engines.resource_guard import Warden, ceiling
+from cbtui.engines.process_tree import MARK, ProcessTree
+from cbtui.engines.resource_guard import ResourceGuard
 from cbtui.terminal.interrupts import whole
 from sim.clean_start import without_current_folder
 from sim.engine.commands import Command, Stop, encode
@@ -125,9 +126,9 @@ class Session:
         last_words.close()
         ours.close()
         assert self._process.pid is not None
-        self._family = Family(self._process.pid, mark)
-        self._warden = Warden(self._family, ceiling(), self._ask_where_it_stands)
-        self._warden.start()
+        self._tree = ProcessTree(self._process.pid, mark)
+        self._guard = ResourceGuard(self._tree, memory_limit(), self._ask_where_it_stands)
+        self._guard.start()
         self._reader.start()
         self._started = True
 
@@ -151,8 +152,8 @@ class Session:
     def _stop(self) -> None:
         self.send(Stop())
         runs = self._begun and not self._finished
-        self._family.wait_for_end(LONGEST_END if runs and not self._family.is_stopped() else _GRACE)
-        self._warden.stop()
+        self._tree.wait_for_end(LONGEST_END if runs and not self._tree.is_stopped() else _GRACE)
+        self._guard.stop()
         self._process.kill()
         self._process.join()
         if self._reader is not threading.current_thread():
@@ -164,18 +165,18 @@ class Session:
         self._last_words.close()
 
     def _read(self) -> None:
-        silence = HangDetector()
+        hang_detector = HangDetector()
         while True:
             try:
                 if self._pipe.poll(LOOK):
-                    events = silence.came(self._unpack(self._pipe.recv_bytes(_LONGEST_BATCH)))
+                    events = hang_detector.came(self._unpack(self._pipe.recv_bytes(_LONGEST_BATCH)))
                     self._begun = True
                 else:
-                    events = silence.nothing_came(self._why_silent)
+                    events = hang_detector.nothing_came(self._why_silent)
             except (EOFError, OSError):
                 break
             except msgspec.DecodeError as error:
-                self._warden.stop()
+                self._guard.stop()
                 self._ended(f"the engine sent something unreadable: {error}")
                 return
             self._finished = self._finished or RunEnded in map(type, events)
@@ -184,7 +185,7 @@ class Session:
         self._ended(None if self._finished or self._stopping else self._epitaph())
 
     def _why_silent(self) -> str:
-        if self._family.is_stopped():
+        if self._tree.is_stopped():
             return "its process was stopped"
         if not self._begun:  # to one that does not listen yet, the question would be the end
             return "it has not begun yet"
@@ -204,15 +205,15 @@ class Session:
         return place_in(words, [program.path for program in self._setup.programs])
 
     def _ask_where_it_stands(self) -> None:
-        os.kill(self._family.pid, ASKED)
-        self._family.wait_for_end(_TO_WRITE)
+        os.kill(self._tree.pid, ASKED)
+        self._tree.wait_for_end(_TO_WRITE)
 
     def _epitaph(self) -> str:
         """What became of the engine, and where in the program."""
-        if not self._family.wait_for_end(_GRACE):
-            self._warden.stop()
+        if not self._tree.wait_for_end(_GRACE):
+            self._guard.stop()
             return "the engine closed its trace"
-        self._warden.wait(_GRACE)
+        self._guard.wait(_GRACE)
         self._process.join(_GRACE)
         self._last_words.seek(0)
         words = self._last_words.read().decode(errors="replace")
@@ -221,8 +222,8 @@ class Session:
 
     def _cause(self, last_words: str) -> str:
         code = self._process.exitcode
-        if self._warden.verdict is not None:
-            return f"{self._warden.verdict} and was ended"
+        if self._guard.verdict is not None:
+            return f"{self._guard.verdict} and was ended"
         if code == TRACE_CLOSED:
             return "the program closed files of the engine's, as os.closerange does; close only your own"
         if code is None or code >= 0:
@@ -239,7 +240,7 @@ class Session:
 def _engine(packed_setup: bytes, pipe: Connection, last_words: Connection, console: Connection) -> None:
     """Be the engine; imported only over there, so that the console stays light."""
     watch_over(os.getpid(), console)
-    Family(os.getpid(), os.environ.get(MARK, "")).leave_nothing()
+    ProcessTree(os.getpid(), os.environ.get(MARK, "")).leave_nothing()
     from sim.engine.process import run
 
     run(packed_setup, pipe, last_words)

@@ -2,34 +2,13 @@
 
 from collections.abc import Coroutine, Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from textual.await_complete import AwaitComplete
-from textual.command import CommandList, CommandPalette, DiscoveryHit, Hit, Hits, Provider
+from textual.command import DiscoveryHit, Hit, Hits, Provider
 
 from cbtui.keys.actions import Action, Scope, actions_of, method_of, perform, signs_of
 from cbtui.keys.keymap import keymap_of
 from cbtui.looks.theme import Charset
-
-if TYPE_CHECKING:
-    from textual.worker import Worker
-
-
-class Palette(CommandPalette):
-    """Textual's palette, for the hasty."""
-
-    def dismiss(self, result: None = None) -> AwaitComplete:
-        """Leave the palette; a second click beside it would take the screen below away too."""
-        return super().dismiss(result) if self.is_active else AwaitComplete()
-
-    def _gather_commands(self, search_value: str) -> "Worker[None] | None":  # type: ignore[override]
-        # What is typed behind the key that closes it would be looked for in a list that goes away meanwhile.
-        return super()._gather_commands(search_value) if self.is_active else None
-
-    def _action_command_list(self, action: str) -> None:
-        # Where nothing of the list is shown yet, Textual finds no lines of the highlighted command.
-        if self.query_one(CommandList).scrollable_content_region.height > 0:
-            super()._action_command_list(action)
 
 
 class ActionsProvider(Provider):

@@ -30,7 +30,7 @@ class CannotCompareError(Exception):
 
 
 @dataclass(frozen=True)
-class Contender:
+class ComparedRun:
     """One of two runs: a recording's path, or what is to be run."""
 
     name: str
@@ -121,7 +121,7 @@ def side_of(run: ShownRun, changes: Changes) -> Side:
     )
 
 
-def compare_runs(first: Contender, second: Contender, terms: Terms) -> int:
+def compare_runs(first: ComparedRun, second: ComparedRun, terms: Terms) -> int:
     """Print the comparison; returns the exit code: 0 well, 1 a run failed, 2 there is nothing to compare."""
     try:
         found = gather(first, second, terms, tell=lambda _: None, given_up=Event())
@@ -138,7 +138,7 @@ def compare_runs(first: Contender, second: Contender, terms: Terms) -> int:
     return 1 if failures else 0
 
 
-def gather(first: Contender, second: Contender, terms: Terms, tell: Tell, given_up: Event) -> Gathered:
+def gather(first: ComparedRun, second: ComparedRun, terms: Terms, tell: Tell, given_up: Event) -> Gathered:
     """Read what is recorded and run the rest, on the caller's thread; may take as long as it takes.
 
     Raises:
@@ -197,14 +197,14 @@ def _recorded(name: str, path: Path, tell: Tell, given_up: Event) -> Side:
 
 
 def _prepared(
-    contender: Contender, terms: Terms, until: Nanoseconds, missing: Callable[[str], None]
+    compared: ComparedRun, terms: Terms, until: Nanoseconds, missing: Callable[[str], None]
 ) -> RunSetup:
-    """A set-up for the contender's own clock, as fast as it goes; for virtual time, if it gets inputs.
+    """A set-up for the compared's own clock, as fast as it goes; for virtual time, if it gets inputs.
 
     ``missing`` gets a sentence if some of these cannot be read.
     """
-    assert isinstance(contender.what, RunRequest)
-    request = replace(contender.what, seconds=until / SECOND, calls=terms.calls, lines=terms.lines)
+    assert isinstance(compared.what, RunRequest)
+    request = replace(compared.what, seconds=until / SECOND, calls=terms.calls, lines=terms.lines)
     if terms.inputs is None:
         return request.setup()
     try:
@@ -213,10 +213,10 @@ def _prepared(
         raise CannotCompareError(str(error)) from None
 
 
-def _run(contender: Contender, terms: Terms, until: Nanoseconds, tell: Tell, given_up: Event) -> Side:
-    name = contender.name
+def _run(compared: ComparedRun, terms: Terms, until: Nanoseconds, tell: Tell, given_up: Event) -> Side:
+    name = compared.name
     damage: list[str] = []
-    setup = _prepared(contender, terms, until, damage.append)
+    setup = _prepared(compared, terms, until, damage.append)
     timeline = Timeline(until_ending=True)
     with FollowedRun(setup, Session, given_up) as run:
         try:
@@ -226,4 +226,4 @@ def _run(contender: Contender, terms: Terms, until: Nanoseconds, tell: Tell, giv
                 tell(Progress(name, "running", timeline.end, setup.until))
         except EngineLostError as error:
             raise CannotCompareError(f"{name} could not be run to its end: {error}") from None
-    return Side(name, timeline, contender.service, damage=next(iter(damage), None))
+    return Side(name, timeline, compared.service, damage=next(iter(damage), None))

@@ -14,7 +14,7 @@ from textual.widgets.option_list import Option
 from cbtui.keys.actions import Scope, bindings_of
 from cbtui.keys.keymap import Keymap
 from cbtui.looks.theme import GLYPHS, Charset
-from cbtui.runs.live.findings import Told, counted
+from cbtui.runs.live.findings import ExplainedFinding, counted
 from cbtui.screens.sized import SizedModal
 from cbtui.text.cells import visible
 from cbtui.widgets.key_bar import KeyBar
@@ -25,24 +25,24 @@ _ALL_IS_WELL = "✓ Nothing has gone wrong so far: the rules have found no probl
 _TIME = 10
 
 
-class DiagnosesScreen(SizedModal[Told]):
+class DiagnosesScreen(SizedModal[ExplainedFinding]):
     """Lists findings, problems first; gives the one to go to, None to stay."""
 
     SCOPE = Scope.DIAGNOSES
     CSS_PATH = "window.tcss"
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.DIAGNOSES)]
 
-    def __init__(self, told: Sequence[Told], charset: Charset) -> None:
+    def __init__(self, findings: Sequence[ExplainedFinding], charset: Charset) -> None:
         super().__init__()
-        self._told = told
+        self._findings = findings
         self._charset = charset
 
     def compose(self) -> ComposeResult:
         """Lay out the list, and what there is to say of the highlighted one."""
         with Container(classes="window") as window:
-            window.border_title = title_of(self._told)
-            if self._told:
-                yield FindingList(*(Option(row_of(each, self._charset)) for each in self._told))
+            window.border_title = title_of(self._findings)
+            if self._findings:
+                yield FindingList(*(Option(row_of(each, self._charset)) for each in self._findings))
                 with VerticalScroll(can_focus=False):
                     yield Static(classes="told")
             else:
@@ -58,14 +58,14 @@ class DiagnosesScreen(SizedModal[Told]):
         """Offer to go where there is something to go to."""
         match action:
             case "previous" | "next":
-                return len(self._told) > 1
+                return len(self._findings) > 1
             case "go":
                 return self._chosen is not None and self._chosen.leads_somewhere
         return True
 
     @on(OptionList.OptionHighlighted)
     def _tell(self, event: OptionList.OptionHighlighted) -> None:
-        self.query_one(".told", Static).update(details_of(self._told[event.option_index], self._charset))
+        self.query_one(".told", Static).update(details_of(self._findings[event.option_index], self._charset))
         self.query_one(VerticalScroll).scroll_home(animate=False)
         self.query_one(KeyBar).changed()
 
@@ -86,50 +86,50 @@ class DiagnosesScreen(SizedModal[Told]):
         self.dismiss(None)
 
     @property
-    def _chosen(self) -> Told | None:
+    def _chosen(self) -> ExplainedFinding | None:
         place = next((listed.highlighted for listed in self.query(FindingList)), None)
-        return None if place is None else self._told[place]
+        return None if place is None else self._findings[place]
 
 
 class FindingList(OptionList, inherit_bindings=False):
     """The findings, a line each; the screen's keys move the highlight, a click does."""
 
 
-def title_of(told: Sequence[Told]) -> str:
+def title_of(findings: Sequence[ExplainedFinding]) -> str:
     """Return how many there are of what: ``Diagnoses: 2 problems, 1 remark``."""
-    problems = sum(each.is_problem for each in told)
-    counts = ((problems, "problem"), (len(told) - problems, "remark"))
+    problems = sum(each.is_problem for each in findings)
+    counts = ((problems, "problem"), (len(findings) - problems, "remark"))
     words = [f"{count} {name}{'s'[: count - 1]}" for count, name in counts if count]
     return f"Diagnoses: {', '.join(words)}" if words else "Diagnoses"
 
 
-def row_of(told: Told, charset: Charset) -> Content:
+def row_of(each: ExplainedFinding, charset: Charset) -> Content:
     """Return a finding's line: ``!`` for a problem, ``·`` for a remark; when; what."""
-    sign, style = ("!", "bold $text-warning") if told.is_problem else ("·", "$text-muted")
-    time = "" if told.at is None else f"{timestamp(told.at)}"
+    sign, style = ("!", "bold $text-warning") if each.is_problem else ("·", "$text-muted")
+    time = "" if each.at is None else f"{timestamp(each.at)}"
     return Content.assemble(
         (f"{sign} ", style),
         (f"{time:>{_TIME}}  ", "$text-muted"),
-        visible(told.explanation.what, charset),
+        visible(each.explanation.what, charset),
     )
 
 
-def details_of(told: Told, charset: Charset) -> Content:
+def details_of(each: ExplainedFinding, charset: Charset) -> Content:
     """Return what happened, why, what to do, and where in the code and when."""
-    explained = told.explanation
+    explained = each.explanation
     parts = [
         (f"{visible(explained.what, charset)}.", "bold"),
         (f"\n{visible(sentence(explained.why), charset)}", ""),
         (f"\n→ {visible(explained.cure, charset)}.", "$text-success"),
     ]
-    where = whereabouts(told.finding, explained)
+    where = whereabouts(each.finding, explained)
     if where:
         parts.append((f"\n{visible(where, charset)}", "$text-muted"))
     return Content.assemble(*parts)
 
 
-def problems_note(told: Sequence[Told], keymap: Keymap, charset: Charset) -> str:
+def problems_note(findings: Sequence[ExplainedFinding], keymap: Keymap, charset: Charset) -> str:
     """Return how many problems there are, and the key that lists them: ``2 problems · d``; "" for none."""
-    count = counted(told)
+    count = counted(findings)
     opens = keymap.sign(Scope.LESSON, "diagnoses", charset)
     return f"{count} {GLYPHS[charset].between} {opens}" if count else ""

@@ -16,7 +16,7 @@ from cbtui.keys.keymap import STANDARD, Keymap, keymap_of
 from cbtui.learning.lesson_page import page_of_exercise
 from cbtui.looks.theme import Charset
 from cbtui.runs.judged.checking import Observed, over
-from cbtui.runs.judged.run_budget import Allowance
+from cbtui.runs.judged.run_budget import RunBudget
 from cbtui.runs.live.file_watch import CANNOT_WATCH, contents
 from cbtui.runs.live.live_recording import LiveRecording
 from cbtui.runs.live.live_run import LiveRun
@@ -131,7 +131,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
 
     def on_mount(self) -> None:
         """Watch the file and the run."""
-        self.set_interval(_LOOK, self.look_at_allowance)
+        self.set_interval(_LOOK, self.look_at_budget)
         self.run_worker(self._watch_file(), group="file")
 
     def draw_pane(self, pane: Widget) -> None:
@@ -176,18 +176,18 @@ class ExerciseScreen(RunScreen[LiveRun]):
     @on(RunController.Delivered)
     def _count(self, message: RunController.Delivered) -> None:
         if message.run == self.runs.number:
-            self._judging.allowance.write(message.events)
+            self._judging.budget.write(message.events)
 
     @on(RunController.Over)
     def _judge_when_over(self, message: RunController.Over) -> None:
         if message.run == self.runs.number:
             self._come_to_an_end(over(self.runs.timeline, self._judging.file.name, message.trouble))
 
-    def allow(self, allowance: Allowance) -> None:
+    def allow(self, budget: RunBudget) -> None:
         """Let the run on screen take this much."""
-        self._judging.allowance = allowance
+        self._judging.budget = budget
 
-    def look_at_allowance(self) -> None:
+    def look_at_budget(self) -> None:
         """End the run if it has taken too much."""
         sentence = self._judging.spent(self.runs.run)
         if sentence is not None:

@@ -14,7 +14,7 @@ from textual.widgets import Static
 from cbtui.engines.follow import GivenUpError
 from cbtui.keys.actions import Scope, bindings_of
 from cbtui.looks.theme import Charset
-from cbtui.runs.compared_runs import CannotCompareError, Contender, Gathered, Progress, Terms, gather
+from cbtui.runs.compared_runs import CannotCompareError, ComparedRun, Gathered, Progress, Terms, gather
 from cbtui.screens.compare import CompareScreen
 from cbtui.screens.sized import SizedScreen
 from cbtui.widgets.key_bar import KeyBar
@@ -36,7 +36,7 @@ class GatheringScreen(SizedScreen[None]):
     CSS_PATH = "gathering.tcss"
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.COMPARE)]
 
-    class Told(Message):
+    class Progressed(Message):
         """How far it has come."""
 
         def __init__(self, progress: Progress) -> None:
@@ -57,9 +57,9 @@ class GatheringScreen(SizedScreen[None]):
             super().__init__()
             self.sentence = sentence
 
-    def __init__(self, first: Contender, second: Contender, terms: Terms, charset: Charset) -> None:
+    def __init__(self, first: ComparedRun, second: ComparedRun, terms: Terms, charset: Charset) -> None:
         super().__init__()
-        self._contenders = (first, second)
+        self._runs = (first, second)
         self._terms = terms
         self._charset = charset
         self._given_up = Event()
@@ -90,7 +90,7 @@ class GatheringScreen(SizedScreen[None]):
 
     def _gather(self) -> None:
         try:
-            found = gather(*self._contenders, self._terms, self._tell, self._given_up)
+            found = gather(*self._runs, self._terms, self._tell, self._given_up)
         except CannotCompareError as error:
             self.post_message(self.Failed(str(error)))
         except GivenUpError:
@@ -102,12 +102,12 @@ class GatheringScreen(SizedScreen[None]):
         now = monotonic()
         if now - self._began >= _QUIET and now - self._told >= _BETWEEN:
             self._told = now
-            self.post_message(self.Told(progress))
+            self.post_message(self.Progressed(progress))
 
     # on the screen's
 
-    @on(Told)
-    def _show_progress(self, message: Told) -> None:
+    @on(Progressed)
+    def _show_progress(self, message: Progressed) -> None:
         self.query_one("#progress", Static).update(sentence_on(message.progress))
 
     @on(Ready)

@@ -268,7 +268,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
 
     def look_for_findings(self) -> None:
         """Have the rules look at the run now, not when their time has come."""
-        self.runs.watch.look()
+        self.runs.findings.look()
         self.redraw()
 
     # drawing
@@ -286,7 +286,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         if self.layout_now is Layout.SMALL:
             return
         self.draw_lanes()
-        run, told, keymap = self.runs.run, self.runs.watch.told, keymap_of(self.app)
+        run, told, keymap = self.runs.run, self.runs.findings.findings, keymap_of(self.app)
         self.query_one(StatusLine).status = status_of(
             self.subject.heading,
             run,
@@ -339,7 +339,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
             self.draw()
 
     def _draw_if_due(self) -> None:
-        if self.runs.watch.look_when_due():
+        if self.runs.findings.look_when_due():
             self.redraw()
         match self._frames.next():
             case Extent.ALL:

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-BROWSER_DRIVER = "cbtui.web.driver:BrowserDriver"
+BROWSER_DRIVER = "cbtui.terminal.browser_driver:BrowserDriver"
 """Textual's name of what the console draws to in a browser."""
 
 _COERCED = ("C.UTF-8", "C.utf8", "UTF-8")

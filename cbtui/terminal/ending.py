@@ -35,6 +35,7 @@ class EndingApp(PatientApp):
         super().__init__()
         self._unheard = Interruption()
         self._told_at: float | None = None
+        self._leaving = False
         self.saved: list[str] = []
         """Sentences on what was saved as screens were left."""
         self._fault: str | None = None
@@ -65,11 +66,12 @@ class EndingApp(PatientApp):
             again = partial(self.exit, result, return_code, message)
             asyncio.get_running_loop().call_later(_AGAIN, again)
         else:
+            self._leaving = True
             super().exit(result, return_code, message)
 
     def _handle_exception(self, error: Exception) -> None:
         cause = error.error if isinstance(error, WorkerFailed) else error
-        if not (self._exit and isinstance(cause, _MISSED)):
+        if not (self._leaving and isinstance(cause, _MISSED)):
             super()._handle_exception(error)
 
     def _fatal_error(self) -> None:

@@ -9,7 +9,7 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from textual._styles_cache import StylesCache
+from cbtui.terminal.textual_internals import forget_drawn_styles
 
 _FULL = 2
 """The oldest generation: a collection of it is a full one."""
@@ -35,8 +35,7 @@ def collect_now() -> None:
 
 def let_go_of_screen() -> None:
     """Have the next full collection look at everything: a screen's objects are of no use any more."""
-    # Of Textual 8: a cache of a thousand pairs of colours, each with the widget that asked and all it drew.
-    StylesCache.get_inner_outer.cache_clear()
+    forget_drawn_styles()
     if _set_survivors_aside in gc.callbacks:
         gc.unfreeze()
 

@@ -12,6 +12,8 @@ from textual.errors import NoWidget
 from textual.events import Event, InputEvent, MouseDown
 from textual.widget import Widget
 
+from cbtui.terminal.textual_internals import is_mounted
+
 LONGEST = 3.0
 """Seconds that widgets may take to be mounted; then nothing waits for them any more."""
 _AGAIN = 0.005
@@ -24,8 +26,8 @@ class PatientApp(App[None]):
     @property
     def is_mounting(self) -> bool:
         """Whether any widget that is there still has to get its children."""
-        if not self._is_mounted:
-            return self._running
+        if not is_mounted(self):
+            return self.is_running
         screens = self.screen_stack
         return not all(
             node.is_mounted for screen in screens for node in [screen, *screen.walk_children(Widget)]

@@ -7,7 +7,7 @@ from enum import Enum, auto
 from cbtui.keys.actions import Scope
 from cbtui.keys.keymap import STANDARD, Keymap
 from cbtui.looks.theme import Charset
-from cbtui.runs.live.findings import Told
+from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import ShownRun, State
 from cbtui.runs.live.playhead import Playhead
 from sim.durations import duration
@@ -75,12 +75,12 @@ def way_on(run: ShownRun, keymap: Keymap) -> str:
     return f"{_key('start_over', keymap)} starts over" if run.alive else ""
 
 
-def with_worst(moment: Diagnosis, told: Sequence[Told], way_on: str = "") -> Diagnosis:
-    """Return what to say where the rules have told of a run: its worst problem, if the moment has none.
+def with_worst(moment: Diagnosis, findings: Sequence[ExplainedFinding], way_on: str = "") -> Diagnosis:
+    """Replace a verdict without a problem by the worst problem that the rules found in the run.
 
     What stays is said in any case; of what lasts for ever also the ``way_on``, where there is room.
     """
-    worst = next((each for each in told if each.is_problem), None)
+    worst = next((each for each in findings if each.is_problem), None)
     if worst is None or moment.stays or moment.weight is not Weight.FINE:
         return moment
     explanation = worst.explanation

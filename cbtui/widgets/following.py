@@ -3,6 +3,7 @@
 from textual.geometry import Size
 from textual.reactive import var
 
+from cbtui.terminal.textual_internals import resize_content
 from cbtui.widgets.inked import Inked
 
 
@@ -55,9 +56,7 @@ class Following(Inked):
         self._fitting = True
         size = Size(self._widest + self.beside(), self._count + self.below())
         if size != self.virtual_size:
-            # Assigning it would lay out the whole screen anew for every line.
-            self.set_reactive(Following.virtual_size, size)
-            self._scroll_update(size)
+            resize_content(self, size)
         if self.follows:
             self._go_to_end()
         self._fitting = False

@@ -1,7 +1,5 @@
 """A list of choices in a window, which a terminal may be too small to show."""
 
-from typing import Literal
-
 from textual.widgets import OptionList
 
 
@@ -11,6 +9,12 @@ class Options(OptionList):
     Textual looks for the lines of the highlighted choice then, and there are none.
     """
 
-    def _move_page(self, direction: Literal[-1, 1]) -> None:
+    def action_page_up(self) -> None:
+        """Move the highlight up by a page."""
         if self.scrollable_content_region.height > 0:
-            super()._move_page(direction)
+            super().action_page_up()  # type: ignore[no-untyped-call]
+
+    def action_page_down(self) -> None:
+        """Move the highlight down by a page."""
+        if self.scrollable_content_region.height > 0:
+            super().action_page_down()  # type: ignore[no-untyped-call]

@@ -13,6 +13,7 @@ from textual.widget import Widget
 
 from cbtui.looks.colour_themes import palette_of
 from cbtui.looks.theme import Ink, Run, style_of
+from cbtui.terminal.textual_internals import is_being_removed
 from cbtui.text.cells import BLANK
 
 
@@ -112,7 +113,7 @@ class Painted(Widget):
 
     def _paint(self) -> None:
         self._stale = False
-        if self._pruning:  # with its screen, whose other widgets, which it may tell of, can have gone before
+        if is_being_removed(self):
             return
         before, self._rows = self._rows, self.rows(self.size)
         same_size, self._rows_size = self._rows_size == self.size, self.size

@@ -226,10 +226,10 @@ class ProgramKeyboard(Input):
         if self.reads.takes_keys:
             self.value = ""
 
-    async def _on_key(self, event: Key) -> None:
+    def on_key(self, event: Key) -> None:
+        """Give the program the key if it takes keys; else Textual's own handler, called next, takes it."""
         text = _SEQUENCES.get(event.key) or event.character
         if not self.reads.takes_keys or text is None or event.key in self._ways_out:
-            await super()._on_key(event)
             return
         event.stop()
         event.prevent_default()

@@ -12,7 +12,7 @@ from cbtui.app import CbtuiApp
 from cbtui.keys.actions import ACTIONS, Scope
 from cbtui.keys.keymap import keys_of
 from cbtui.looks.theme import Charset
-from cbtui.runs.compared_runs import Contender, Progress, Side, Terms
+from cbtui.runs.compared_runs import ComparedRun, Progress, Side, Terms
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.lesson_setup import RunRequest
 from cbtui.screens import compare
@@ -328,13 +328,13 @@ async def test_a_lesson_offers_a_comparison_once_there_is_a_run_before() -> None
 # from the command line
 
 
-def contender(lesson: str, threads: int | None = None) -> Contender:
-    return Contender(lesson, RunRequest(lesson=find(lesson), changes=Changes(threads)))
+def compared_run(lesson: str, threads: int | None = None) -> ComparedRun:
+    return ComparedRun(lesson, RunRequest(lesson=find(lesson), changes=Changes(threads)))
 
 
 @asynccontextmanager
 async def gathering(
-    first: Contender, second: Contender, terms: Terms
+    first: ComparedRun, second: ComparedRun, terms: Terms
 ) -> AsyncIterator[tuple[CbtuiApp, Pilot[None]]]:
     app = CbtuiApp(start_comparison=(first, second, terms))
     app.animation_level = "none"
@@ -345,7 +345,7 @@ async def gathering(
 
 async def test_two_lessons_are_run_and_then_compared() -> None:
     terms = Terms(end=3.0, calls=(1.2,))
-    first, second = contender("exclusive-2-threads"), contender("reentrant-1-thread", threads=2)
+    first, second = compared_run("exclusive-2-threads"), compared_run("reentrant-1-thread", threads=2)
     async with gathering(first, second, terms) as (app, pilot):
         assert isinstance(app.screen, GatheringScreen | CompareScreen)
         while isinstance(app.screen, GatheringScreen):
@@ -360,7 +360,9 @@ async def test_two_lessons_are_run_and_then_compared() -> None:
 
 async def test_what_cannot_be_compared_is_said_and_ends_the_console_with_2(tmp_path: Path) -> None:
     terms = Terms()
-    async with gathering(Contender("x.mcap", tmp_path / "x.mcap"), contender("single-thread"), terms) as (
+    async with gathering(
+        ComparedRun("x.mcap", tmp_path / "x.mcap"), compared_run("single-thread"), terms
+    ) as (
         app,
         pilot,
     ):
@@ -373,7 +375,7 @@ async def test_what_cannot_be_compared_is_said_and_ends_the_console_with_2(tmp_p
 
 async def test_a_run_that_takes_long_can_be_given_up() -> None:
     terms = Terms(end=36_000)
-    async with gathering(contender("single-thread"), contender("split-groups"), terms) as (app, pilot):
+    async with gathering(compared_run("single-thread"), compared_run("split-groups"), terms) as (app, pilot):
         await pilot.press("q")
         assert isinstance(app.screen, MenuScreen)
 

@@ -11,7 +11,7 @@ from textual.pilot import Pilot
 from cbtui.app import CbtuiApp
 from cbtui.keys.keymap import STANDARD, Keymap
 from cbtui.looks.theme import Charset
-from cbtui.runs.live.findings import Told, Watch
+from cbtui.runs.live.findings import ExplainedFinding, FindingsMonitor
 from cbtui.screens.diagnoses import DiagnosesScreen, details_of, problems_note, row_of, title_of
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.replay import ReplayScreen
@@ -51,12 +51,12 @@ async def press(pilot: Pilot[None], *keys: str) -> None:
     await settle(pilot)
 
 
-def told_of(events: Sequence[AnyEvent]) -> tuple[Told, ...]:
+def told_of(events: Sequence[AnyEvent]) -> tuple[ExplainedFinding, ...]:
     timeline = Timeline()
     timeline.extend(events)
-    watch = Watch(timeline)
+    watch = FindingsMonitor(timeline)
     watch.look()
-    return watch.told
+    return watch.findings
 
 
 def status(app: CbtuiApp) -> str:

@@ -1,6 +1,6 @@
 import pytest
 
-from cbtui.runs.live.findings import Told, Watch
+from cbtui.runs.live.findings import ExplainedFinding, FindingsMonitor
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.live.playhead import Playhead
 from cbtui.widgets.diagnosis import Diagnosis, Weight, call_note, diagnose, verdict, with_worst
@@ -190,10 +190,10 @@ def test_a_sentence_of_the_moment_keeps_to_one_line() -> None:
     assert len(diagnosis_rows(Diagnosis("word " * 60, Weight.TROUBLE), "", "", 80)) == 1
 
 
-def told_of(run: Run, until: float) -> tuple[Told, ...]:
-    watch = Watch(timeline_of(run, until))
+def told_of(run: Run, until: float) -> tuple[ExplainedFinding, ...]:
+    watch = FindingsMonitor(timeline_of(run, until))
     watch.look()
-    return watch.told
+    return watch.findings
 
 
 def line(diagnosis: Diagnosis, width: int, note: str = "", problems: str = "7 problems · d") -> str:
@@ -228,7 +228,7 @@ def test_a_good_run_is_told_as_it_was() -> None:
 
 def test_a_problem_of_the_whole_run_is_told_without_a_time() -> None:
     rule = next(rule for rule in RULES if rule.id == "qos-mismatch")
-    found = Told(
+    found = ExplainedFinding(
         Finding(rule, 0, 1), RuleWeight.PROBLEM, Explanation("scan hears nothing", "why", "cure", None)
     )
     told = with_worst(Diagnosis("nothing waits", Weight.FINE), [found])

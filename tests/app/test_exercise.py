@@ -9,7 +9,7 @@ import pytest
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
-from cbtui.runs.judged.run_budget import Allowance
+from cbtui.runs.judged.run_budget import RunBudget
 from cbtui.screens.compare import CompareScreen
 from cbtui.screens.exercise import ExerciseScreen
 from cbtui.screens.lesson import LessonScreen
@@ -301,7 +301,7 @@ async def test_a_run_that_takes_too_much_is_ended_and_told_of() -> None:
     app = ExerciseConsole(engines)
     async with app.run_test(size=NARROW) as pilot:
         await settle(pilot)
-        app.exercise.allow(Allowance(limit=-1))
+        app.exercise.allow(RunBudget(limit=-1))
         await until(pilot, lambda: app.exercise.is_judged and engines.latest.stopped)
         await settle(pilot)
         assert "was given -1 s of real time" in text_of(app)
@@ -315,8 +315,8 @@ async def test_a_paused_run_may_stand_as_long_as_it_likes() -> None:
     async with app.run_test(size=NARROW) as pilot:
         await settle(pilot)
         app.exercise.live_run.pause()
-        app.exercise.allow(Allowance(limit=0))
-        app.exercise.look_at_allowance()
+        app.exercise.allow(RunBudget(limit=0))
+        app.exercise.look_at_budget()
         await settle(pilot)
         assert app.exercise.live_run.alive
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.runs.judged.run_budget import Allowance
+from cbtui.runs.judged.run_budget import RunBudget
 from lessons.progress import Progress
 from tests.app.pictures import text_of
 from tests.cli.exercise_files import A_GIGABYTE, ENDLESS_CALLBACK, LEAVES, SYNTAX_ERROR
@@ -61,7 +61,7 @@ async def test_a_file_that_goes_on_for_ever_is_ended(here: Path) -> None:
     app = ExerciseConsole()
     async with app.run_test(size=NARROW) as pilot:
         await until(pilot, lambda: app.exercise.live_run.timeline.started is not None)
-        app.exercise.allow(Allowance(limit=0.3))
+        app.exercise.allow(RunBudget(limit=0.3))
         await until(pilot, lambda: app.exercise.is_judged)
         await settle(pilot)
         assert f"{FILE} was given 0.3 s of real time" in text_of(app)

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from cbtui.runs.live.findings import Watch, counted
+from cbtui.runs.live.findings import FindingsMonitor, counted
 from sim.diagnosis import Diagnoses, Explanation, Finding, Look, Rule, Weight
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
@@ -36,20 +36,20 @@ class Clock:
         return self.now
 
 
-def watched(clock: Clock, takes: float = 0.0) -> tuple[Watch, Counting]:
+def watched(clock: Clock, takes: float = 0.0) -> tuple[FindingsMonitor, Counting]:
     rule = Counting(clock, takes)
-    return Watch(Timeline(), Diagnoses([rule]), clock), rule
+    return FindingsMonitor(Timeline(), Diagnoses([rule]), clock), rule
 
 
-def watch_of(run: Run, until: float) -> Watch:
+def watch_of(run: Run, until: float) -> FindingsMonitor:
     timeline = Timeline()
     timeline.extend(run.until(until))
-    watch = Watch(timeline)
+    watch = FindingsMonitor(timeline)
     watch.look()
     return watch
 
 
-def at_frames(watch: Watch, clock: Clock, seconds: Sequence[float]) -> list[bool]:
+def at_frames(watch: FindingsMonitor, clock: Clock, seconds: Sequence[float]) -> list[bool]:
     looked = []
     for second in seconds:
         clock.now = second
@@ -81,7 +81,7 @@ def test_what_is_read_of_a_recording_between_two_frames_is_looked_at_before_it_i
             return iter(())
 
     timeline = Timeline()
-    watch = Watch(timeline, Diagnoses([Noting(clock)]), clock)
+    watch = FindingsMonitor(timeline, Diagnoses([Noting(clock)]), clock)
     run = Run("long")
     for second in range(0, 600, 8):
         run.log("here", float(second))
@@ -103,12 +103,12 @@ def test_looking_now_waits_for_nothing_and_puts_off_the_next_look() -> None:
 
 def test_a_look_that_finds_the_same_has_nothing_new_to_tell() -> None:
     clock = Clock()
-    watch = Watch(Timeline(), clock=clock)
+    watch = FindingsMonitor(Timeline(), clock=clock)
     assert at_frames(watch, clock, [100.0, 102.0, 104.0]) == [False, False, False]
 
 
 def test_what_was_found_comes_with_weight_and_words_problems_first() -> None:
-    told = watch_of(shared_group_run(), 20.0).told
+    told = watch_of(shared_group_run(), 20.0).findings
     assert [each.weight for each in told] == sorted((each.weight for each in told), key=str)
     starved = next(each for each in told if each.name == "group starvation")
     assert starved.is_problem
@@ -117,15 +117,15 @@ def test_what_was_found_comes_with_weight_and_words_problems_first() -> None:
 
 
 def test_problems_are_counted_and_remarks_are_not() -> None:
-    told = watch_of(shared_group_run(), 20.0).told
+    told = watch_of(shared_group_run(), 20.0).findings
     problems = [each for each in told if each.weight is Weight.PROBLEM]
     assert counted(told) == f"{len(problems)} problems"
     assert counted(problems[:1]) == "1 problem"
-    assert counted(watch_of(split_groups_run(), 20.0).told) == ""
+    assert counted(watch_of(split_groups_run(), 20.0).findings) == ""
 
 
 def test_what_is_true_of_a_whole_run_leads_nowhere() -> None:
-    told = watch_of(split_groups_run(), 20.0).told
+    told = watch_of(split_groups_run(), 20.0).findings
     unused = next(each for each in told if each.name == "threads never used")
     assert unused.at is None
     assert not unused.leads_somewhere

@@ -14,11 +14,11 @@ from textual.pilot import Pilot
 from textual.widget import Widget
 
 from cbtui.keys.actions import Scope, actions_of, perform
-from cbtui.keys.command_palette import Palette
 from cbtui.screens.menu import MenuScreen
 from cbtui.screens.setup import SetupScreen
 from cbtui.terminal.ending import EndingApp
 from cbtui.terminal.pending_keys import LONGEST
+from cbtui.terminal.textual_internals import LeavablePalette
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.rows import MemberLane
@@ -186,7 +186,7 @@ async def test_a_palette_that_was_closed_looks_for_nothing_more() -> None:
     async with app.run_test(size=WIDE) as pilot:
         await pilot.press("ctrl+p")
         palette = app.screen
-        assert isinstance(palette, Palette)
+        assert isinstance(palette, LeavablePalette)
         palette.dismiss(None)
         looking = palette._gather_commands("pause")
         await pilot.pause()

@@ -10,6 +10,8 @@ from pathlib import Path
 from select import select
 from tempfile import TemporaryDirectory
 
+import psutil
+
 from tests.support.pseudo_terminal import start_in_terminal
 
 COLUMNS, ROWS = 140, 40
@@ -75,15 +77,11 @@ class Console:
     @property
     def resident(self) -> int:
         """The bytes of memory that the console has."""
-        pages = int(self._told("statm").split()[1])
-        return pages * os.sysconf("SC_PAGE_SIZE")
+        return psutil.Process(self.process).memory_info().rss
 
     def _spent(self) -> float:
-        behind_the_name = self._told("stat").rpartition(")")[2].split()
-        return (int(behind_the_name[11]) + int(behind_the_name[12])) / os.sysconf("SC_CLK_TCK")
-
-    def _told(self, file: str) -> str:
-        return Path(f"/proc/{self.process}/{file}").read_text(encoding="utf-8")
+        times = psutil.Process(self.process).cpu_times()
+        return times.user + times.system
 
     def _read(self, seconds: float) -> bytes:
         ready, _, _ = select([self._screen], [], [], seconds)

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from cbtui.runs.live.findings import Watch
+from cbtui.runs.live.findings import FindingsMonitor
 from cbtui.widgets.code.files import SourceFiles
 from cbtui.widgets.code.marks import marks_at
 from cbtui.widgets.diagnosis import diagnose
@@ -53,7 +53,7 @@ class Drawn:
         self._timeline.extend(timers(number, in_groups))
         self._lanes = Painter(looks=LOOKS_A_FRAME)
         self._factory = FactoryPainter()
-        self._watch = Watch(self._timeline)
+        self._watch = FindingsMonitor(self._timeline)
         self._concurrency = Concurrency(self._timeline)
         self._files = SourceFiles(_NODE, "def tick():\n    pass\n")
 

@@ -3,7 +3,7 @@
 import time
 from functools import lru_cache
 
-from cbtui.runs.live.findings import Watch
+from cbtui.runs.live.findings import FindingsMonitor
 from sim.trace.events import AnyEvent
 from sim.trace.timeline import Timeline
 from tests.benchmarks import seeking
@@ -15,7 +15,7 @@ _DELIVERED = 2000
 def longest_look(seconds: int) -> float:
     """The seconds of processor that the dearest look takes while so long a recording is read at once."""
     timeline = Timeline()
-    watch = Watch(timeline, clock=lambda: 0.0)
+    watch = FindingsMonitor(timeline, clock=lambda: 0.0)
     events = _events(seconds)
     took = []
     for start in range(0, len(events), _DELIVERED):
@@ -26,7 +26,7 @@ def longest_look(seconds: int) -> float:
     return max(*took, time.process_time() - began)
 
 
-def _timed(watch: Watch) -> float:
+def _timed(watch: FindingsMonitor) -> float:
     began = time.process_time()
     watch.look_when_due()
     return time.process_time() - began

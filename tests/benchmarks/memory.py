@@ -1,9 +1,9 @@
 """How the memory of a console grows with the run that it shows, measured in a process of its own."""
 
-import os
 import subprocess
 import sys
-from pathlib import Path
+
+import psutil
 
 from sim.trace.events import AnyEvent, decode, encode
 from sim.trace.timeline import Timeline
@@ -39,8 +39,7 @@ def _grown(seconds: int) -> float:
 
 def _resident() -> int:
     """The bytes of memory that this process has."""
-    pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[1])
-    return pages * os.sysconf("SC_PAGE_SIZE")
+    return psutil.Process().memory_info().rss
 
 
 if __name__ == "__main__":

@@ -13,13 +13,13 @@ import pytest
 
 from cbtui import cli
 from cbtui.commands import explore as command
-from cbtui.engines.process_tree import Family
 from cbtui.runs.judged import exploring
 from cbtui.runs.judged.exploration_text import exploration_text
 from cbtui.runs.judged.exploring import Exploration, Failure, Result
 from lessons.catalogue import find
 from sim.engine.setup import RunSetup
 from tests.cli.exploring_files import CHECK_THEN_ACT, IN_ONE_GROUP, LOCK_ORDER
+from tests.support.processes import descendants, wait_until_gone
 
 
 def cbtui(*words: str) -> subprocess.CompletedProcess[str]:
@@ -138,17 +138,15 @@ def test_ctrl_c_ends_it_and_every_process(file: Path) -> None:
         stderr=subprocess.PIPE,
         start_new_session=True,
     )
-    family = Family(explore.pid, "")
     give_up = time.monotonic() + 60
-    while len(children := family.descendants()) < 4:  # itself, what tracks resources, what forks, an engine
+    while len(children := descendants(explore.pid)) < 3:  # what tracks resources, what forks, an engine
         assert time.monotonic() < give_up
         time.sleep(0.05)
     os.killpg(explore.pid, signal.SIGINT)  # as a terminal does
     said, complained = explore.communicate(timeout=60)
     assert (explore.returncode, said) == (130, b"")
     assert complained == b"cbtui: interrupted: 0 of 100 schedules were tried\n"
-    for pid in children:
-        assert Family(pid, "").wait_for_end(60)
+    wait_until_gone(children)
 
 
 def test_who_has_read_enough_of_it_is_no_trouble(file: Path) -> None:

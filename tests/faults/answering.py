@@ -17,7 +17,7 @@ from tempfile import TemporaryDirectory
 
 import pytest
 
-from cbtui.engines.resource_guard import CEILING
+from cbtui.engines.memory_limit import MEMORY_LIMIT
 from tests.benchmarks.console import RUNS, opened
 from tests.faults.catalogue import FAULTS, Fault
 from tests.faults.support import ANSWERED, node_with, nothing_left
@@ -59,7 +59,7 @@ def waits(fault: Fault, presses: int) -> list[float]:
         TemporaryDirectory() as folder,
         chdir(folder),
     ):
-        patch.setenv(CEILING, _MEMORY)
+        patch.setenv(MEMORY_LIMIT, _MEMORY)
         # A full disk would leave the beginnings of what Python compiles, which no later console can read.
         patch.setenv("PYTHONDONTWRITEBYTECODE", "1")
         path = node_with(Path(folder), fault.code, again=fault.again)

@@ -12,6 +12,7 @@ from statistics import median
 from typing import TypeAlias
 from uuid import uuid4
 
+import psutil
 import pytest
 from textual.pilot import Pilot
 
@@ -163,26 +164,25 @@ def nothing_left() -> Iterator[None]:
 
     Whoever watches over an engine ends by itself a moment after it.
     """
-    mark = f"CBTUI_FAULT={uuid4().hex}"
-    name, _, value = mark.partition("=")
+    name, value = "CBTUI_FAULT", uuid4().hex
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv(name, value)
         yield
     deadline = time.monotonic() + PATIENCE
-    while (left := list(_marked(mark))) and time.monotonic() < deadline:
+    while (left := list(_marked(name, value))) and time.monotonic() < deadline:
         time.sleep(0.01)
     assert not left, f"left behind: {left}"
 
 
-def _marked(mark: str) -> Iterator[str]:
+def _marked(name: str, value: str) -> Iterator[str]:
     """The command lines of the processes that have an entry in their environment."""
-    for place in Path("/proc").iterdir():
-        if place.name.isdigit() and place.name != str(os.getpid()):
-            with suppress(OSError):
-                command = (place / "cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace")
-                # The tracker is the test's own, started with the first engine.
-                if mark.encode() in (place / "environ").read_bytes() and "resource_tracker" not in command:
-                    yield command
+    for process in psutil.process_iter():
+        with suppress(psutil.Error):
+            command = " ".join(process.cmdline())
+            marked = process.pid != os.getpid() and process.environ().get(name) == value
+            # The tracker is the test's own, started with the first engine.
+            if marked and "resource_tracker" not in command:
+                yield command
 
 
 @dataclass

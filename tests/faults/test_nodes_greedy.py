@@ -5,10 +5,11 @@ from pathlib import Path
 import pytest
 
 from cbtui import cli
-from cbtui.engines import resource_guard as warden
+from cbtui.engines import resource_guard
+from cbtui.engines.memory_limit import MEMORY_LIMIT, memory_limit
 from cbtui.runs.live.live_run import State
 from tests.faults.support import FIRST, node_with, provoked, still_here
-from tests.support.processes import alive
+from tests.support.processes import wait_until_gone
 
 LITTLE = "0.3"
 """GB that a node may use here: twice what an engine takes."""
@@ -23,7 +24,7 @@ LITTLE = "0.3"
 def test_a_node_that_takes_memory_without_end_is_ended_and_told_with_its_place(
     folder: Path, fault: str, clock: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv(warden.CEILING, LITTLE)
+    monkeypatch.setenv(MEMORY_LIMIT, LITTLE)
     with provoked(node_with(folder, fault), clock) as run:
         run.to_its_end()
         assert run.live.loss is not None
@@ -33,7 +34,7 @@ def test_a_node_that_takes_memory_without_end_is_ended_and_told_with_its_place(
 
 
 def test_the_memory_of_what_a_node_starts_counts(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(warden.CEILING, LITTLE)
+    monkeypatch.setenv(MEMORY_LIMIT, LITTLE)
     hog = "[sys.executable, '-c', 'import time; x = b\"x\" * 900_000_000; time.sleep(100)']"
     with provoked(node_with(folder, f"subprocess.Popen({hog})")) as run:
         run.to_its_end()
@@ -41,20 +42,20 @@ def test_the_memory_of_what_a_node_starts_counts(folder: Path, monkeypatch: pyte
         assert run.live.loss.startswith("the node used more than 0.3 GB of memory and was ended")
 
 
-def test_the_ceiling_is_what_the_environment_says_and_never_more_than_half_of_the_machine_else(
+def test_the_memory_limit_is_what_the_environment_says_and_never_more_than_half_of_the_machine_else(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setenv(warden.CEILING, "1.5")
-    assert warden.ceiling() == 1_500_000_000
-    monkeypatch.delenv(warden.CEILING)
-    assert 0 < warden.ceiling() <= 4_000_000_000
+    monkeypatch.setenv(MEMORY_LIMIT, "1.5")
+    assert memory_limit() == 1_500_000_000
+    monkeypatch.delenv(MEMORY_LIMIT)
+    assert 0 < memory_limit() <= 4_000_000_000
 
 
 @pytest.mark.parametrize("text", ["", "much", "0", "-1", "nan", "inf"])
-def test_a_ceiling_that_is_none_is_refused_in_a_sentence(
+def test_a_memory_limit_that_is_no_number_is_refused_in_a_sentence(
     text: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setenv(warden.CEILING, text)
+    monkeypatch.setenv(MEMORY_LIMIT, text)
     with pytest.raises(SystemExit) as ended:
         cli.main(["run", "hello"])
     assert ended.value.code == 2
@@ -79,7 +80,7 @@ def test_forking_does_not_live_on_virtual_time_and_says_so(folder: Path) -> None
 def test_a_node_that_forks_without_end_is_ended_with_all_that_came_of_it(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(warden, "_MOST_PROCESSES", 12)
+    monkeypatch.setattr(resource_guard, "_MOST_PROCESSES", 12)
     fault = """
 for _ in range(40):
     if os.fork() == 0:
@@ -118,7 +119,7 @@ rclpy.shutdown()
 """
     with provoked(node_with(folder, fault)) as run:
         run.to_its_end()
-    assert not alive(int(told.read_text()))
+    wait_until_gone([int(told.read_text())])
 
 
 def test_nothing_that_a_node_started_outlives_its_crash(folder: Path) -> None:

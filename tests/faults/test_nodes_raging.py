@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import pytest
 
-from cbtui.engines import resource_guard as warden
+from cbtui.engines.memory_limit import MEMORY_LIMIT
 from cbtui.runs.live.live_run import LiveRun, State
 from sim.recording import read
 from tests.app.pictures import text_of
@@ -120,7 +120,7 @@ async def test_time_goes_on_on_screen_and_in_the_recording_while_a_callback_does
 async def test_a_node_that_took_too_much_memory_can_be_run_again_with_the_key(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv(warden.CEILING, "0.4")
+    monkeypatch.setenv(MEMORY_LIMIT, "0.4")
     path = node_with(folder, "self.kept = b'x' * 3_000_000_000")
     async with console_on(path) as console:
         await console.until(lambda live: live.state is State.LOST)

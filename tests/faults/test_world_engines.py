@@ -112,16 +112,16 @@ async def test_an_engine_that_code_in_c_keeps_is_told_of(
 
 
 def test_a_machine_that_slept_says_nothing_of_the_engine() -> None:
-    silence = HangDetector()
-    silence.came([RunStarted(0, "", "real", 0), Printed(7, "last", error=False)])
-    assert [silence.nothing_came(lambda: "why") for _ in range(9)] == [[]] * 9
-    (notice,) = silence.nothing_came(lambda: "why")
+    hang_detector = HangDetector()
+    hang_detector.came([RunStarted(0, "", "real", 0), Printed(7, "last", error=False)])
+    assert [hang_detector.nothing_came(lambda: "why") for _ in range(9)] == [[]] * 9
+    (notice,) = hang_detector.nothing_came(lambda: "why")
     assert isinstance(notice, Notice)
     assert (notice.t, notice.severity) == (7, Severity.WARN)
     assert notice.kind is NoticeKind.ENGINE_SILENT
-    assert silence.nothing_came(lambda: "why") == []
-    assert silence.came([]) == [Notice(7, Severity.INFO, "the engine answers again")]
-    assert silence.came([]) == []
+    assert hang_detector.nothing_came(lambda: "why") == []
+    assert hang_detector.came([]) == [Notice(7, Severity.INFO, "the engine answers again")]
+    assert hang_detector.came([]) == []
 
 
 def test_a_pipe_that_breaks_in_the_middle_of_a_message_gives_what_came_whole(folder: Path) -> None:

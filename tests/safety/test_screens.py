@@ -8,7 +8,7 @@ from textual.app import App
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
-from cbtui.runs.compared_runs import Contender, Terms
+from cbtui.runs.compared_runs import ComparedRun, Terms
 from cbtui.runs.setup.recent import Kind, Opened, Recents
 from sim.recording import read
 from sim.trace.events import AnyEvent
@@ -67,7 +67,7 @@ async def test_a_hostile_recording_is_shown_whole(tmp_path: Path) -> None:
 
 async def test_a_comparison_of_hostile_recordings_is_shown(tmp_path: Path) -> None:
     sides = [
-        Contender(f"{name}{HOSTILE}", hostile.recording(tmp_path / f"{name}.mcap"))
+        ComparedRun(f"{name}{HOSTILE}", hostile.recording(tmp_path / f"{name}.mcap"))
         for name in ("before", "after")
     ]
     app = CbtuiApp(start_comparison=(sides[0], sides[1], Terms()))

@@ -6,7 +6,7 @@ from random import Random
 from typing import TypeAlias
 
 from cbtui.app import CbtuiApp
-from cbtui.runs.compared_runs import Contender, Terms
+from cbtui.runs.compared_runs import ComparedRun, Terms
 from lessons.catalogue import lessons
 from sim.recording import About, Recorder, Recording, read
 from tests.support.builder import ns
@@ -48,7 +48,7 @@ def _recording(chance: Random, folder: Path) -> CbtuiApp:
 
 def _comparison(chance: Random, folder: Path) -> CbtuiApp:
     first, second = (
-        Contender(name, recorded(chance, folder / f"{name}.mcap").path) for name in ("before", "after")
+        ComparedRun(name, recorded(chance, folder / f"{name}.mcap").path) for name in ("before", "after")
     )
     return CbtuiApp(start_comparison=(first, second, Terms()))
 

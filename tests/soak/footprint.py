@@ -1,11 +1,10 @@
 """What a process takes of the machine, and whether that grows."""
 
 from collections.abc import Sequence
-from pathlib import Path
 from statistics import median
 from typing import NamedTuple
 
-_PAGE = 4096
+import psutil
 
 
 class Footprint(NamedTuple):
@@ -16,15 +15,12 @@ class Footprint(NamedTuple):
     files: int
 
 
-def footprint(process: int | str = "self") -> Footprint | None:
-    """Look at a process (Linux only); None if it has ended."""
-    place = Path("/proc") / str(process)
+def footprint(process: int | None = None) -> Footprint | None:
+    """Look at a process, None for this one; None if it has ended."""
     try:
-        pages = int((place / "statm").read_text().split()[1])
-        return Footprint(
-            pages * _PAGE, len(list((place / "task").iterdir())), len(list((place / "fd").iterdir()))
-        )
-    except (OSError, IndexError):
+        seen = psutil.Process(process)
+        return Footprint(seen.memory_info().rss, seen.num_threads(), seen.num_fds())
+    except psutil.Error:
         return None
 
 

@@ -168,7 +168,7 @@ class _Run:
         self._lost = max([self._lost, *(event.count for event in events if isinstance(event, EventsLost))])
         if came.length >= self._next_look and not isinstance(events[-1], RunEnded):
             self._next_look = came.length + _LOOK
-            now = footprint(self._session._family.pid)
+            now = footprint(self._session._tree.pid)
             if now is not None and now.memory:  # one that has ended has none
                 came.footprints.append(now)
 

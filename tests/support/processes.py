@@ -1,7 +1,8 @@
-"""Processes that others started, looked up in Linux's ``/proc``."""
+"""Processes that others started."""
 
 import time
-from pathlib import Path
+
+import psutil
 
 _LIMIT = 60.0
 """Seconds after which a process that should have ended counts as left."""
@@ -9,22 +10,18 @@ _LIMIT = 60.0
 
 def descendants(process: int) -> list[int]:
     """Return the numbers of all processes that a process started, and that those started."""
-    found = [process]
-    for each in found:
-        for task in Path(f"/proc/{each}/task").glob("*/children"):
-            found += map(int, task.read_text().split())
-    return found[1:]
+    return [each.pid for each in psutil.Process(process).children(recursive=True)]
 
 
 def engines_of(console: int) -> list[int]:
     """Return the numbers of a console's engines, from their first moment on."""
-    children = Path(f"/proc/{console}/task/{console}/children").read_text(encoding="utf-8").split()
-    return [int(each) for each in children if b"spawn_main" in Path(f"/proc/{each}/cmdline").read_bytes()]
+    children = psutil.Process(console).children()
+    return [each.pid for each in children if "spawn_main" in " ".join(each.cmdline())]
 
 
 def alive(process: int) -> bool:
     """Tell whether a process still does something."""
-    return _state(process) not in "ZX"
+    return _state(process) not in {psutil.STATUS_ZOMBIE, psutil.STATUS_DEAD}
 
 
 def wait_until_gone(processes: list[int]) -> None:
@@ -37,12 +34,11 @@ def wait_until_gone(processes: list[int]) -> None:
 
 def is_stopped(process: int) -> bool:
     """Tell whether a process was stopped by a signal."""
-    return _state(process) == "T"
+    return _state(process) == psutil.STATUS_STOPPED
 
 
 def _state(process: int) -> str:
-    """The letter of its state in ``/proc``; X, which is dead, for one that is gone."""
     try:
-        return Path(f"/proc/{process}/stat").read_text(encoding="utf-8").rpartition(")")[2].split()[0]
-    except (FileNotFoundError, ProcessLookupError):
-        return "X"
+        return psutil.Process(process).status()
+    except psutil.NoSuchProcess:
+        return psutil.STATUS_DEAD

@@ -5,9 +5,9 @@ import os
 import signal
 import socket
 import sys
-from pathlib import Path
 
 import aiohttp
+import psutil
 import pytest
 
 from cbtui import cli
@@ -21,7 +21,7 @@ pytestmark = [
 
 Socket = aiohttp.ClientWebSocketResponse
 _NOT_OURS = "that is not what the page sends"
-ENGINE = b"multiprocessing.spawn"
+ENGINE = "multiprocessing.spawn"
 RUNNING = ("--", "split-groups", "--threads", "4")
 """A lesson that asks nothing before it runs, since it is not as it is written."""
 
@@ -47,7 +47,7 @@ async def until_an_engine_runs(server: Serving) -> int:
     async with asyncio.timeout(60):
         while True:
             for process in server.descendants():
-                if ENGINE in Path(f"/proc/{process}/cmdline").read_bytes():
+                if ENGINE in " ".join(psutil.Process(process).cmdline()):
                     return process
             await asyncio.sleep(0.05)
 

@@ -8,7 +8,7 @@ from sim.trace.events import AnyEvent
 from sim.trace.timeline import Timeline
 
 
-class Allowance:
+class RunBudget:
     """Counts what one run takes. ``limit`` is in real seconds, which ``clock`` tells."""
 
     def __init__(self, limit: float = LIMIT, clock: Callable[[], float] = monotonic) -> None:

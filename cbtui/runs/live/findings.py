@@ -18,7 +18,7 @@ up of that would keep keys waiting when it is all looked at together."""
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class ExplainedFinding:
     """A finding, how much it matters, and its explanation."""
 
     finding: Finding
@@ -46,7 +46,7 @@ class Told:
         return self.at is not None or self.explanation.place is not None
 
 
-class Watch:
+class FindingsMonitor:
     """Keeps what the rules find in a timeline. Not thread-safe, as the timeline.
 
     ``clock`` tells real time in seconds.
@@ -58,7 +58,7 @@ class Watch:
         diagnoses: Diagnoses | None = None,
         clock: Callable[[], float] = monotonic,
     ) -> None:
-        self.told: tuple[Told, ...] = ()
+        self.findings: tuple[ExplainedFinding, ...] = ()
         """What was found by the last look, problems first, the worst of them at the front."""
         self._timeline = timeline
         self._diagnoses = diagnoses or Diagnoses()
@@ -74,26 +74,26 @@ class Watch:
         grown = self._timeline.end - self._looked_to
         if self._clock() < self._due and grown < _MOST_AT_ONCE:
             return False
-        before = self.told
+        before = self.findings
         self.look()
-        return self.told != before
+        return self.findings != before
 
     def look(self) -> None:
         """Look now, whenever the last look was."""
         began = self._clock()
         timeline = self._timeline
         self._looked_to = timeline.end
-        self.told = tuple(_told(found, timeline) for found in self._diagnoses.update(timeline))
+        self.findings = tuple(_explained(found, timeline) for found in self._diagnoses.update(timeline))
         ended = self._clock()
         self._due = max(began + _EVERY, ended + (ended - began) / _SHARE)
 
 
-def _told(found: Finding, timeline: Timeline) -> Told:
+def _explained(found: Finding, timeline: Timeline) -> ExplainedFinding:
     weight = found.rule.weigh(found, timeline) or found.rule.weight
-    return Told(found, weight, found.rule.explain(found, timeline))
+    return ExplainedFinding(found, weight, found.rule.explain(found, timeline))
 
 
-def counted(told: Sequence[Told]) -> str:
+def counted(findings: Sequence[ExplainedFinding]) -> str:
     """How many problems there are: ``2 problems``; "" for none."""
-    count = sum(each.is_problem for each in told)
+    count = sum(each.is_problem for each in findings)
     return f"{count} problem{'s'[: count - 1]}" if count else ""

@@ -5,7 +5,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from cbtui.runs.judged.checking import Checked, Observed
-from cbtui.runs.judged.run_budget import Allowance
+from cbtui.runs.judged.run_budget import RunBudget
 from cbtui.runs.live.file_watch import content_of
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.widgets.checks import Sheet, Standing
@@ -23,7 +23,7 @@ class Judging:
 
     def __init__(self, lesson: Lesson, following: Lesson | None, file: Path) -> None:
         self.file = file
-        self.allowance = Allowance()
+        self.budget = RunBudget()
         """What the run may take, and has taken."""
         self.sheet: Sheet | None = None
         """What came of the run on screen; None as long as it is not judged."""
@@ -37,7 +37,7 @@ class Judging:
     def begin(self) -> None:
         """Note that the file is run as it is now."""
         self._content = content_of(self.file)
-        self.allowance = Allowance()
+        self.budget = RunBudget()
         self.sheet = None
 
     def is_changed_by(self, content: bytes | None) -> bool:
@@ -50,10 +50,10 @@ class Judging:
         if not run.alive:
             return None
         if run.paused or (run.virtual and run.speed is not None):
-            self.allowance.rest()
+            self.budget.rest()
         else:
-            self.allowance.pass_time()
-        return self.allowance.spent(run.timeline, self.file.name)
+            self.budget.pass_time()
+        return self.budget.spent(run.timeline, self.file.name)
 
     async def judge(self, observed: Observed) -> Checked:
         """Judge a run that is over, on the thread that draws it: others may not read it meanwhile."""

@@ -8,7 +8,7 @@ from typing import Generic, TypeAlias, TypeVar
 from textual.message import Message
 
 from cbtui.engines.session import Deliver, Ended
-from cbtui.runs.live.findings import Watch
+from cbtui.runs.live.findings import FindingsMonitor
 from cbtui.runs.live.live_run import ShownRun
 from cbtui.terminal.processor import not_computing, waited
 from sim.trace.events import AnyEvent
@@ -77,7 +77,7 @@ class RunController(Generic[RunT_co]):
             lambda trouble: self._post(self.Over(number, trouble)),
         )
         self.concurrency = Concurrency(self._run.timeline)
-        self.watch = Watch(self._run.timeline)
+        self.findings = FindingsMonitor(self._run.timeline)
 
     def disown(self) -> None:
         """Take nothing more that the run delivers."""

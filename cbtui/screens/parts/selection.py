@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 from textual.screen import Screen
 
-from cbtui.runs.live.findings import Told
+from cbtui.runs.live.findings import ExplainedFinding
 from cbtui.runs.live.live_run import ShownRun
 from cbtui.screens.diagnoses import DiagnosesScreen
 from cbtui.screens.parts.bars import BarSelection
@@ -87,12 +87,12 @@ class LaneSelection(Part):
 
     def action_diagnoses(self) -> None:
         """List what the rules found."""
-        watch = self.runs.watch
-        watch.look()
+        monitor = self.runs.findings
+        monitor.look()
         self.host.redraw()
-        self.host.ask(DiagnosesScreen(watch.told, self.host.charset), self._go_to_finding)
+        self.host.ask(DiagnosesScreen(monitor.findings, self.host.charset), self._go_to_finding)
 
-    def _go_to_finding(self, told: Told | None) -> None:
+    def _go_to_finding(self, told: ExplainedFinding | None) -> None:
         """Go to the moment and the code of a finding, and select the lane of what it happened to."""
         if told is None:
             return

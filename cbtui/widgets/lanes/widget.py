@@ -58,16 +58,16 @@ class Lanes(Painted, can_focus=True):
     class Picked(Message):
         """The person pointed at a moment ``at``, and at something on a lane if ``selection`` says so."""
 
-        def __init__(self, at: Nanoseconds, selection: Selection | None) -> None:
+        def __init__(self, lanes: "Lanes", at: Nanoseconds, selection: Selection | None) -> None:
             super().__init__()
+            self.lanes = lanes
             self.at = at
             self.selection = selection
 
         @property
         def control(self) -> "Lanes":
             """The lanes that were pointed at."""
-            assert isinstance(self._sender, Lanes)
-            return self._sender
+            return self.lanes
 
     class Turned(Message):
         """The person turned the wheel: ``steps`` > 0 asks for a longer stretch of time, < 0 for a shorter."""
@@ -134,12 +134,12 @@ class Lanes(Painted, can_focus=True):
         lane = picture.lanes[offset.y] if offset.y < len(picture.lanes) else None
         if not 0 <= place < scale.columns:
             if lane is not None:
-                self.post_message(self.Picked(self.now, self._last_on(lane)))
+                self.post_message(self.Picked(self, self.now, self._last_on(lane)))
             return
         column = Window(max(0, scale.time_at(place)), max(0, scale.time_at(place + 1)))
         bar = None if lane is None else bar_at(self.timeline, lane, column)
         at = column.start if bar is None else max(column.start, start_of(bar))
-        self.post_message(self.Picked(at, None if lane is None else Selection(lane, bar)))
+        self.post_message(self.Picked(self, at, None if lane is None else Selection(lane, bar)))
 
     def on_mouse_scroll_up(self, event: MouseScrollUp) -> None:
         """Ask for a shorter stretch of time."""

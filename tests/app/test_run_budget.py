@@ -1,7 +1,7 @@
 """What a run may take before it is ended."""
 
 from cbtui.runs.judged.checking import MOST_TEXT
-from cbtui.runs.judged.run_budget import Allowance
+from cbtui.runs.judged.run_budget import RunBudget
 from sim.trace.events import Printed
 from sim.trace.timeline import Timeline
 
@@ -15,31 +15,31 @@ class Clock:
 
 def test_a_run_that_takes_too_long_is_told_of() -> None:
     clock = Clock()
-    allowance = Allowance(limit=5, clock=clock)
+    budget = RunBudget(limit=5, clock=clock)
     clock.now += 5
-    allowance.pass_time()
-    assert allowance.spent(Timeline(), "mine.py") is None
+    budget.pass_time()
+    assert budget.spent(Timeline(), "mine.py") is None
     clock.now += 0.1
-    allowance.pass_time()
-    assert allowance.spent(Timeline(), "mine.py") == (
+    budget.pass_time()
+    assert budget.spent(Timeline(), "mine.py") == (
         "mine.py was given 5 s of real time, and had not come further than 0.000 s"
     )
 
 
 def test_time_in_which_the_run_stands_does_not_count() -> None:
     clock = Clock()
-    allowance = Allowance(limit=5, clock=clock)
+    budget = RunBudget(limit=5, clock=clock)
     clock.now += 60
-    allowance.rest()
+    budget.rest()
     clock.now += 4
-    allowance.pass_time()
-    assert allowance.spent(Timeline(), "mine.py") is None
+    budget.pass_time()
+    assert budget.spent(Timeline(), "mine.py") is None
 
 
 def test_a_run_that_writes_too_much_is_told_of() -> None:
-    allowance = Allowance(clock=Clock())
+    budget = RunBudget(clock=Clock())
     line = Printed(0, "x" * (MOST_TEXT // 2), error=False)
-    allowance.write([line, line])
-    assert allowance.spent(Timeline(), "mine.py") is None
-    allowance.write([Printed(0, "x", error=False)])
-    assert allowance.spent(Timeline(), "mine.py") == "mine.py wrote more than 32 MB of log by 0.000 s"
+    budget.write([line, line])
+    assert budget.spent(Timeline(), "mine.py") is None
+    budget.write([Printed(0, "x", error=False)])
+    assert budget.spent(Timeline(), "mine.py") == "mine.py wrote more than 32 MB of log by 0.000 s"
