@@ -7,6 +7,7 @@ names, and in packages that announce themselves under the entry-point group ``cb
 import os
 from collections.abc import Iterator
 from functools import cache
+from itertools import zip_longest
 from pathlib import Path
 
 from msgspec import structs
@@ -73,7 +74,16 @@ def _lessons(folders: str) -> tuple[Lesson, ...]:
             raise BadLesson(f"{source}: there is no lesson in {folder}")
         every += added
     _check_ids(every)
-    return tuple(structs.replace(lesson, number=place) for place, lesson in enumerate(every, start=1))
+    return tuple(
+        structs.replace(lesson, number=place, following=_announcement(following))
+        for place, (lesson, following) in enumerate(zip_longest(every, every[1:]), start=1)
+    )
+
+
+def _announcement(following: Lesson | None) -> str:
+    if following is None:
+        return ""
+    return f"*{following.title}*" if following.teaser is None else f"*{following.title}* {following.teaser}"
 
 
 def _elsewhere(folders: str) -> Iterator[tuple[str, Path]]:

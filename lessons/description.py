@@ -117,6 +117,8 @@ class Exercise(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The file that a learner begins with; at least one check fails on it."""
     solution: PythonFile = "solution.py"
     """A file that passes every check."""
+    beyond_node: Text | None = None
+    """What starter and solution have in common that the node lacks; without it they share its other lines."""
 
 
 class Declared(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
@@ -133,10 +135,12 @@ class Description(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     id: LessonId
     """Name of the lesson on the command line; the lesson's folder has the same name."""
     number: Number
-    """Place in the teaching order, among the lessons that lie together."""
+    """Orders the lessons that lie together, with gaps for more; on screen they are counted from 1."""
     unit: Text
     title: Text
     teaches: Text
+    teaser: Text | None = None
+    """What the lesson before says of this one, after its title: ``puts both callbacks in one open area.``"""
     executor: Text
     """The executor as the menu shows it."""
     groups: Text

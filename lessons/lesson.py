@@ -27,6 +27,8 @@ class Lesson(Description, frozen=True, kw_only=True, forbid_unknown_fields=True)
     """A lesson and the folder it lives in."""
 
     folder: Path
+    following: str = ""
+    """Title and teaser of the next lesson, in Markdown; the catalogue, which knows the order, fills it in."""
 
     @property
     def node_path(self) -> Path:

@@ -14,6 +14,7 @@ from lessons.checks import problems
 from lessons.description import Prediction
 from lessons.judge import Judge
 from lessons.lesson import DESCRIPTION_FILE, EXPLANATION_FILE, GUIDE_FILE, BadLesson, Lesson, read_lesson
+from sim import foreign_file
 from sim.diagnosis import RULES
 
 WIDTH = 79
@@ -56,11 +57,30 @@ def faults_in_texts(lesson: Lesson) -> Iterator[str]:
     for tried in lesson.tries:
         if tried.key not in _keys():
             yield f"{_in(lesson, DESCRIPTION_FILE)}: no key {tried.key!r} exists, which a [[try]] names"
+    yield from _drift(lesson)
     known = {rule.id for rule in RULES}
     declared = lesson.diagnoses
     for rule in (*declared.node, *declared.starter, *declared.solution):
         if rule not in known:
             yield f"{_in(lesson, DESCRIPTION_FILE)}: the diagnosis has no rule {rule!r}"
+
+
+def _drift(lesson: Lesson) -> Iterator[str]:
+    """Name the lines that starter and solution share and the node lacks: the exercise is not about them."""
+    if lesson.exercise is None or lesson.exercise.beyond_node is not None:
+        return
+    exercise = lesson.exercise
+    node, solution = (_lines(lesson, file) for file in (lesson.setup.node, exercise.solution))
+    for number, line in enumerate(_lines(lesson, exercise.starter), start=1):
+        if line and line in solution and line not in node:
+            yield (
+                f"{_in(lesson, exercise.starter)}:{number}: the line is in {exercise.solution} too, "
+                f"but not in {lesson.setup.node}: change all three, or say why in beyond_node"
+            )
+
+
+def _lines(lesson: Lesson, file: str) -> list[str]:
+    return [line.strip() for line in foreign_file.read_text(lesson.folder / file).splitlines()]
 
 
 def _spoken(lesson: Lesson) -> str:

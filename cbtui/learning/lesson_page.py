@@ -93,14 +93,12 @@ def page_of_exercise(lesson: Lesson, standing: Standing, signs: Signs, task: str
 _HEADING = re.compile(r"^(?=## )", re.MULTILINE)
 _SENTENCE = re.compile(r"(?<=[.?!]) ")
 _WHY = "## Why"
-_NEXT = "**Next:**"
 
 
 def _parts(lesson: Lesson, standing: Standing, signs: Signs) -> Iterator[tuple[Part, str]]:
     progress = standing.progress
     about, *sections = _HEADING.split(lesson.guide)
     why = "".join(section for section in sections if section.startswith(_WHY))
-    why, mark, following = why.partition(_NEXT)
     seen = progress.seen
     yield Part.ABOUT, about
     if lesson.task is not None:
@@ -117,7 +115,8 @@ def _parts(lesson: Lesson, standing: Standing, signs: Signs) -> Iterator[tuple[P
     if lesson.exercise is not None:
         yield Part.EXERCISE, _exercise(lesson.exercise, progress, signs)
         yield Part.HINTS, _hints(lesson.exercise, progress, signs)
-    yield Part.NEXT, mark + following
+    if lesson.following:
+        yield Part.NEXT, f"**Next:** {lesson.following}"
 
 
 def _predictions(lesson: Lesson, progress: LessonProgress, signs: Signs) -> str:

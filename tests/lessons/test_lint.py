@@ -175,3 +175,17 @@ def test_on_the_real_clock_a_fault_counts_only_if_longer_runs_have_it_too(
     enough = 50.0
     assert list(faults_in_runs(lesson, Judge(lesson), 60.0)) == ["the computer was busy"]
     assert lengths == [10, 30, 10, 30]
+
+
+def test_a_line_that_starter_and_solution_share_and_the_node_lacks_is_a_fault_unless_it_is_explained(
+    folder: Path,
+) -> None:
+    for file in ("starter.py", "solution.py"):
+        path = folder / file
+        path.write_text(path.read_text() + "\nSPARE = 1\n")
+    (fault,) = faults_in_texts(read_lesson(folder))
+    assert "the line is in solution.py too, but not in node.py" in fault
+    description = folder / "lesson.toml"
+    described = description.read_text().replace("[exercise]\n", '[exercise]\nbeyond_node = "A spare."\n')
+    description.write_text(described)
+    assert list(faults_in_texts(read_lesson(folder))) == []
