@@ -67,16 +67,17 @@ def faults_in_texts(lesson: Lesson) -> Iterator[str]:
 
 def _drift(lesson: Lesson) -> Iterator[str]:
     """Name the lines that starter and solution share and the node lacks: the exercise is not about them."""
-    if lesson.exercise is None or lesson.exercise.beyond_node is not None:
-        return
     exercise = lesson.exercise
-    node, solution = (_lines(lesson, file) for file in (lesson.setup.node, exercise.solution))
-    for number, line in enumerate(_lines(lesson, exercise.starter), start=1):
-        if line and line in solution and line not in node:
-            yield (
-                f"{_in(lesson, exercise.starter)}:{number}: the line is in {exercise.solution} too, "
-                f"but not in {lesson.setup.node}: change all three, or say why in beyond_node"
-            )
+    if exercise is None or exercise.beyond_node is not None:
+        return
+    files = (lesson.setup.node, exercise.starter, exercise.solution)
+    node, starter, solution = (_lines(lesson, file) for file in files)
+    drifted = [str(n) for n, line in enumerate(starter, 1) if line and line in solution and line not in node]
+    if drifted and starter != solution:
+        yield (
+            f"{_in(lesson, exercise.starter)}:{drifted[0]}: {exercise.solution} has this line too, and "
+            f"{lesson.setup.node} has not (lines {', '.join(drifted)}): change all three, or set beyond_node"
+        )
 
 
 def _lines(lesson: Lesson, file: str) -> list[str]:

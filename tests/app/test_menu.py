@@ -36,10 +36,15 @@ def opened(app: CbtuiApp) -> str | None:
     return None if lesson is None else lesson.id
 
 
+def high_enough(size: tuple[int, int]) -> tuple[int, int]:
+    """A screen of that width at least as high as a line for each lesson, each unit and all around needs."""
+    return size[0], max(size[1], 2 * len(lessons()))
+
+
 @pytest.mark.parametrize("size", first_daily(WIDE, TALL))
 async def test_the_menu_shows_every_lesson_under_its_unit(size: tuple[int, int]) -> None:
     app = menu()
-    async with app.run_test(size=size):
+    async with app.run_test(size=high_enough(size)):
         lines = lines_of(app)
         for lesson in lessons():
             assert len([line for line in lines if f" {lesson.number}  {lesson.title} " in f"{line} "]) == 1
@@ -48,7 +53,7 @@ async def test_the_menu_shows_every_lesson_under_its_unit(size: tuple[int, int])
 
 async def test_a_wide_menu_shows_in_its_list_what_every_lesson_is_made_of() -> None:
     app = menu()
-    async with app.run_test(size=WIDE):
+    async with app.run_test(size=high_enough(WIDE)):
         for lesson in lessons():
             (line,) = (line for line in lines_of(app) if f" {lesson.number}  {lesson.title} " in line)
             assert lesson.executor.replace("ThreadedExecutor", "Threaded") in line

@@ -141,7 +141,8 @@ def test_a_rule_that_does_not_exist_is_named(folder: Path) -> None:
 
 
 def test_a_node_that_ends_its_process_is_told_once(folder: Path) -> None:
-    (folder / "node.py").write_text("import os\nos._exit(3)\n")
+    node = folder / "node.py"
+    node.write_text("import os\nos._exit(3)\n" + node.read_text())
     assert list(faults_of(folder)) == [
         f"{folder}/node.py: node.py ended its whole process at 0.000 s: "
         "the engine ended with exit code 3 (node.py:2, in <module>)"
@@ -184,7 +185,7 @@ def test_a_line_that_starter_and_solution_share_and_the_node_lacks_is_a_fault_un
         path = folder / file
         path.write_text(path.read_text() + "\nSPARE = 1\n")
     (fault,) = faults_in_texts(read_lesson(folder))
-    assert "the line is in solution.py too, but not in node.py" in fault
+    assert "solution.py has this line too, and node.py has not" in fault
     description = folder / "lesson.toml"
     described = description.read_text().replace("[exercise]\n", '[exercise]\nbeyond_node = "A spare."\n')
     description.write_text(described)

@@ -53,7 +53,8 @@ def program_texts() -> Iterator[tuple[str, str]]:
 
 def readme_texts() -> Iterator[tuple[str, str]]:
     """The README."""
-    yield "README.md", (ROOT / "README.md").read_text(encoding="utf-8")
+    for name in ("README.md", *(f"{room}/README.md" for room in ("cbtui", "lessons", "sim", "tests"))):
+        yield name, (ROOT / name).read_text(encoding="utf-8")
 
 
 def _comments(path: Path) -> Iterator[tuple[str, str]]:
