@@ -1,4 +1,4 @@
-"""``python -m cbtui`` and the ``cbtui`` command: whatever moment Ctrl-C comes at, 130 and not a word."""
+"""``python -m cbtui`` and the ``cbtui`` command: Ctrl-C exits with status 130 and prints nothing, at any time."""
 
 import sys
 

@@ -1,4 +1,4 @@
-"""Detects an engine from which nothing comes, though it sends a heartbeat several times a second."""
+"""Detects an engine that has stopped sending its heartbeat, which comes several times a second."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -9,7 +9,7 @@ if TYPE_CHECKING:
     from sim.trace.model import Nanoseconds
 
 LOOK = 0.5
-"""Real seconds between two looks whether something has come."""
+"""Real seconds to wait for data before a look counts as empty."""
 
 _PATIENCE = 10
 """Looks without anything after which the person is told; a machine that slept makes one of them long."""
@@ -18,7 +18,7 @@ _PATIENCE_AT_FIRST = 60
 
 
 def why_silent(stands: str, stands_later: str) -> str:
-    """Why an engine does not answer whose program stood at these places in its code; "" for nowhere.
+    """Explain a hang from two samples of where the program stands in its code; "" is nowhere.
 
     Python code that computes moves on, and lets the engine's own threads in between.
     """
@@ -30,14 +30,14 @@ def why_silent(stands: str, stands_later: str) -> str:
 
 
 class HangDetector:
-    """Turns what comes from an engine, and what does not, into batches. It belongs to the reader's thread."""
+    """Adds notices on a silent engine to its batches. Used on the reader thread only."""
 
     def __init__(self) -> None:
         self._t: Nanoseconds = 0
         self._looks_left = _PATIENCE_AT_FIRST
 
     def nothing_came(self, why: Callable[[], str]) -> list[AnyEvent]:
-        """Return what is to be told when a look found nothing; ``why`` is asked for the reason then."""
+        """Return the notice that is due after a look without data; ``why`` gives its reason."""
         self._looks_left -= 1
         if self._looks_left != 0:
             return []
@@ -45,7 +45,7 @@ class HangDetector:
         return [Notice(self._t, Severity.WARN, text, kind=NoticeKind.ENGINE_SILENT)]
 
     def came(self, events: list[AnyEvent]) -> list[AnyEvent]:
-        """Return what is to be told when a batch came, which may be empty."""
+        """Return the batch that came, after a notice if the engine had been silent. It may be empty."""
         was_silent, self._looks_left = self._looks_left <= 0, _PATIENCE
         again: list[AnyEvent] = [Notice(self._t, Severity.INFO, "the engine answers again")]
         if events:

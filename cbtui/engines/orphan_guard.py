@@ -1,4 +1,4 @@
-"""Ends an engine, and all that came of it, when the console is killed and cannot do it any more.
+"""Ends an engine and its process tree when the console has been killed.
 
 An engine whose console is gone ends by itself, unless it is stopped or code in C keeps it, and it cannot end
 what its program started. So a small process stands beside each one, which does nothing but wait for that.

@@ -54,7 +54,7 @@ OpenSession: TypeAlias = Callable[[RunSetup, Deliver, Ended], EngineSession]
 """Makes the session of a run, and does not start it."""
 
 AFRESH: BaseContext = multiprocessing.get_context("spawn")
-"""What starts an engine that nothing is said about."""
+"""The context that starts an engine by default."""
 _GRACE = 0.4
 """Seconds that an engine without a program to end gets to end by itself before it is killed."""
 LONGEST_END = GRACE + TO_LEAVE
@@ -72,7 +72,7 @@ class Session:
 
     ``deliver`` gets every batch of events in order, ``ended`` is called once when no more will come, with
     None if the run ended as it should and with a sentence if the engine was lost. Both are called on the
-    session's reader thread. An engine from which nothing comes is told of by a notice among the events. One
+    session's reader thread. A notice among the events reports an engine that sends nothing. One
     that is stopped while it runs has ``LONGEST_END`` for its program's own ending. When
     the engine has ended, whatever processes it started are ended too; one that takes more memory than
     ``resource_guard`` allows is, and so are all when this process is killed. ``context`` starts the engine's
@@ -100,7 +100,7 @@ class Session:
         self._reader = threading.Thread(target=self._read, name="trace-reader", daemon=True)
 
     def start(self) -> None:
-        """Start the engine, who watches over it, and the reader."""
+        """Start the engine, its guards and the reader."""
         with whole():
             self._start()
 
@@ -192,7 +192,7 @@ class Session:
         return why_silent(self._place_in_program(), self._place_in_program())
 
     def _place_in_program(self) -> str:
-        """Where in the program the engine stands now; what it wrote down of that is forgotten."""
+        """Where in the program the engine stands now; its report is deleted after reading."""
         self._ask_where_it_stands()
         place = self._place_written()
         self._last_words.seek(0)  # for the engine too, as the two share the position
@@ -209,7 +209,7 @@ class Session:
         self._tree.wait_for_end(_TO_WRITE)
 
     def _epitaph(self) -> str:
-        """What became of the engine, and where in the program."""
+        """How the engine ended, and where in the program."""
         if not self._tree.wait_for_end(_GRACE):
             self._guard.stop()
             return "the engine closed its trace"

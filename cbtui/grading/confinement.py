@@ -29,7 +29,7 @@ _PROBE_SECONDS = 60
 _SCRIPT = """#!/bin/sh
 {bwrap} {python} "$@"
 code=$?
-# bwrap tells of a signal by an exit code; who waits for this process is to hear of it as a signal.
+# bwrap reports a signal as an exit code; the waiting process should see the signal itself.
 [ $code -gt 128 ] && kill -$((code - 128)) $$
 exit $code
 """

@@ -19,7 +19,7 @@ class BadSheetError(Exception):
 
 
 class MarkSheet:
-    """The rows, by their columns; ``checks`` is how many columns there are for what came of checks."""
+    """The rows, by their columns; ``checks`` is the number of columns for check results."""
 
     def __init__(self, checks: int) -> None:
         self._columns = [*_BEFORE, *(f"check {number}" for number in range(1, checks + 1)), *_AFTER]

@@ -1,6 +1,6 @@
 """The process between the grader and a submission: it runs the copy, judges the trace and hands on the marks.
 
-A submission that kills its parent ends this process, and whoever waits for the marks hears of that.
+A submission that kills its parent ends this process, which the grader notices.
 """
 
 import multiprocessing

@@ -60,7 +60,7 @@ def predicted(lesson: Lesson, progress: LessonProgress) -> bool:
 
 
 def introduction(guide: str) -> str:
-    """Return the beginning of a guide: what there is to see, and nothing of what it does."""
+    """Return the beginning of a guide, which describes the scene and gives no answers away."""
     return _HEADING.split(guide, maxsplit=1)[0]
 
 

@@ -68,7 +68,7 @@ class OutcomeRun:
 
 
 def observe_engine(setup: "RunSetup", name: str, given_up: Event) -> "Observed":
-    """Run a set-up in an engine of its own."""
+    """Run a set-up in a separate engine."""
     from cbtui.runs.judged.checking import observe
 
     return observe(setup, name, given_up=given_up)

@@ -69,7 +69,7 @@ class MomentScreen(SizedModal[Nanoseconds]):
 
 
 def seconds_in(text: str) -> float | None:
-    """The number of seconds that somebody typed, with or without an s; None if it is none, or below 0."""
+    """The seconds that were typed, with or without an s; None for a negative number or other text."""
     try:
         seconds = float(text.strip().removesuffix("s").strip().replace(",", "."))
     except ValueError:

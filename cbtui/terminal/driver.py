@@ -1,4 +1,4 @@
-"""What the console reads keys from and draws to in a terminal: it may be closed or stopped at any moment."""
+"""The terminal driver: it survives a terminal that is closed or a process that is stopped at any moment."""
 
 import os
 from collections.abc import Callable
@@ -8,7 +8,7 @@ from textual.drivers.linux_driver import LinuxDriver
 
 
 class TerminalDriver(LinuxDriver):
-    """Draws to nothing once the terminal is gone, so that the console comes to its end all the same."""
+    """Discards output once the terminal is gone, so that the console can still shut down."""
 
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)

@@ -1,4 +1,4 @@
-"""How the console ends: whoever tells it to, not before it is whole, and not without a word on a fault."""
+"""Ends the console in order: by exit, signal or fault, after pending mounts, with one sentence on a fault."""
 
 import asyncio
 import platform
@@ -21,15 +21,15 @@ from cbtui.version import own_version
 from lessons.personal import state_folder
 
 FAULT = "fault.txt"
-"""What a fault of the console's own is written to, in the folder for what cbtui remembers."""
+"""The file in the state folder that a fault of the console itself is written to."""
 _MISSED = (NoMatches, MountError)
-"""What widgets come to that begin while an app ends: Textual gives them no children any more."""
+"""Errors of widgets that start while an app ends: Textual no longer mounts their children."""
 _AGAIN = 0.02
-"""Seconds after which it is looked again whether everything is mounted."""
+"""Seconds between two checks whether everything is mounted."""
 
 
 class EndingApp(PatientApp):
-    """An app that ends in order, whoever tells it to and whatever it is at."""
+    """An app that ends in order on exit, signals and faults, even while widgets are being mounted."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -60,7 +60,7 @@ class EndingApp(PatientApp):
             return None if self._unheard.came else await super().run_async(*args, **options)
 
     def exit(self, result: None = None, return_code: int = 0, message: RenderableType | None = None) -> None:
-        """End, as soon as all widgets that are there have their children."""
+        """End as soon as all widgets have mounted their children."""
         self._told_at = self._told_at or monotonic()
         if self.is_mounting and monotonic() < self._told_at + LONGEST:
             again = partial(self.exit, result, return_code, message)

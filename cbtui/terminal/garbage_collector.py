@@ -17,7 +17,7 @@ _FULL = 2
 
 @contextmanager
 def survivors_set_aside() -> Iterator[None]:
-    """Set aside, from now to the end, what outlives a full collection, and what there is now."""
+    """Freeze all objects that exist now and, until the end, those that survive a full collection."""
     gc.callbacks.append(_set_survivors_aside)
     gc.freeze()
     try:

@@ -1,4 +1,4 @@
-"""Ctrl-C at any moment: what has to be whole is finished first, and nothing is said of it but the exit code.
+"""Ctrl-C at any moment: critical sections are finished first, and only the exit code tells of it.
 
 Python raises KeyboardInterrupt between any two steps of the main thread. In the middle of writing a chunk of
 a recording that would leave half a chunk. All of this is for the main thread; on others nothing is raised.
@@ -32,7 +32,7 @@ _Handler: TypeAlias = Callable[[int, FrameType | None], Any]
 
 
 class Interruption:
-    """Ctrl-C that waits: whether it came yet."""
+    """A deferred Ctrl-C: whether it has come."""
 
     def __init__(self) -> None:
         self.came = False
@@ -44,7 +44,7 @@ class Interruption:
 
 @contextmanager
 def whole() -> Iterator[Interruption]:
-    """Let Ctrl-C wait until what is done inside is done; which is soon, or looks whether it came."""
+    """Defer Ctrl-C to the end of the block, which is short or checks whether Ctrl-C came."""
     waiting = Interruption()
     if threading.current_thread() is not threading.main_thread():
         yield waiting
@@ -86,7 +86,7 @@ def ending_heard(tell: Callable[[signal.Signals], None]) -> Iterator[None]:
 def heard(tell: Callable[[signal.Signals], None]) -> Iterator[None]:
     """Have ``tell`` called, on the main thread, at the first of ``ENDING``; the next is KeyboardInterrupt.
 
-    Who has chosen to ignore one of them, as ``nohup`` does, does not hear it.
+    A signal that is ignored, as under ``nohup``, stays ignored.
     """
     first = True
 
@@ -159,7 +159,7 @@ def _try_again_soon() -> None:
 
 
 def ignore() -> None:
-    """Take no more notice of Ctrl-C: all that is left to do is to end."""
+    """Ignore Ctrl-C from now on, as the process is about to exit."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(signal, "setitimer"):
         signal.signal(signal.SIGALRM, signal.SIG_IGN)  # Python puts what ends a process there as it ends

@@ -1,4 +1,4 @@
-"""How long this process waits for a processor: one that wants them all the time gets them late."""
+"""Measures how long this process waited for a processor."""
 
 from time import monotonic, process_time
 

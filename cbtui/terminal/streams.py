@@ -1,4 +1,4 @@
-"""The standard streams, as whoever started the program left them: made fit to be written to."""
+"""Repairs standard streams that the parent process closed or that cannot encode every character."""
 
 import os
 import sys

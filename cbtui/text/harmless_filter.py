@@ -1,4 +1,4 @@
-"""Makes sure that no text on the screen is one that a terminal obeys, whoever wrote it."""
+"""Removes escape sequences from all text on the screen, so that no program can control the terminal."""
 
 import re
 from functools import lru_cache

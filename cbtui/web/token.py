@@ -1,6 +1,6 @@
 """The token that every request must show: once in the address, from then on in a cookie.
 
-Every user of a machine can reach its ports, and whoever has a console runs programs as the server's user.
+Every user of a machine can reach its ports, and a console can run programs as the server's user.
 """
 
 import hmac

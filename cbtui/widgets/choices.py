@@ -20,7 +20,7 @@ _KINDS = {Kind.PROGRAM: "program", Kind.RECORDING: "recording"}
 RECENT = "Recent"
 
 _TITLE, _EXECUTOR, _GROUPS = 24, 17, 24
-"""Columns of what is told of a lesson; together with mark and number as many as the wide list has."""
+"""Columns of a lesson's description; with mark and number they fill the wide list."""
 
 
 class Choices(OptionList, inherit_bindings=False):

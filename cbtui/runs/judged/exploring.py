@@ -1,4 +1,4 @@
-"""Runs a program in other orders of its threads, several runs at once, and tells what came of each."""
+"""Runs a program in other orders of its threads, several at once, and returns the result of each."""
 
 import os
 from collections.abc import Generator, Iterable, Iterator

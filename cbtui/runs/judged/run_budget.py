@@ -1,4 +1,4 @@
-"""What a run that is judged may take before it is ended as hopeless: real time, and room for text."""
+"""The budget of a judged run: real time, and the amount of text it may write."""
 
 from collections.abc import Callable, Iterable
 from time import monotonic
@@ -9,7 +9,7 @@ from sim.trace.timeline import Timeline
 
 
 class RunBudget:
-    """Counts what one run takes. ``limit`` is in real seconds, which ``clock`` tells."""
+    """Counts the real time and text of one run. ``limit`` and ``clock`` are in real seconds."""
 
     def __init__(self, limit: float = LIMIT, clock: Callable[[], float] = monotonic) -> None:
         self._limit = limit
@@ -19,21 +19,21 @@ class RunBudget:
         self._text = 0
 
     def write(self, events: Iterable[AnyEvent]) -> None:
-        """Count what was written."""
+        """Count the text of the events."""
         self._text += text_in(events)
 
     def pass_time(self) -> None:
-        """Count the time since one of the two was last told of."""
+        """Count the time since the last ``pass_time`` or ``rest``."""
         now = self._clock()
         self._taken += now - self._at
         self._at = now
 
     def rest(self) -> None:
-        """Do not count it: the run stands, or goes slowly because it is to be watched."""
+        """Leave that time out: the run is paused, or slowed down to be watched."""
         self._at = self._clock()
 
     def spent(self, timeline: Timeline, name: str) -> str | None:
-        """Say of what the run, with a file of that name, has taken too much; None if it has not."""
+        """Return a sentence on the exhausted limit, naming the file; None while both limits hold."""
         if self._text > MOST_TEXT:
             return wrote_too_much(timeline, name)
         return took_too_long(timeline, name, self._limit) if self._taken > self._limit else None

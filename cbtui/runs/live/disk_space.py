@@ -1,4 +1,4 @@
-"""The room on disks that a run takes: what a person is told of it while the run goes on, each thing once."""
+"""Warns once about each disk that fills up while a run goes on."""
 
 import shutil
 import tempfile

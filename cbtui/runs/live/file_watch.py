@@ -57,7 +57,7 @@ async def _settled(path: Path) -> bytes | None:
 
 
 def content_of(path: Path) -> bytes | None:
-    """Return what a file holds; None where there is none that can be read."""
+    """Return a file's content; None if it cannot be read."""
     try:
         return read_bytes(path, MOST_OF_A_PROGRAM)
     except OSError:

@@ -1,4 +1,4 @@
-"""What the rules find in a run that grows before one's eyes, in words, looked for again at little cost."""
+"""Findings of the diagnosis rules in a growing run, refreshed at a bounded cost."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from sim.trace.timeline import Timeline
 _EVERY = 1.0
 """Seconds between two looks, at least."""
 _SHARE = 0.01
-"""The part of all time that looking may take: after a dear look the next one comes later."""
+"""The share of all time that looks may take: the longer a look takes, the later the next one."""
 _MOST_AT_ONCE: Nanoseconds = 20_000_000_000
 """Growth after which a look is not put off: a recording grows by minutes while it is read, and what is saved
 up of that would keep keys waiting when it is all looked at together."""
@@ -47,7 +47,7 @@ class ExplainedFinding:
 
 
 class FindingsMonitor:
-    """Keeps what the rules find in a timeline. Not thread-safe, as the timeline.
+    """Keeps the findings of the rules in a timeline. Not thread-safe, like the timeline.
 
     ``clock`` tells real time in seconds.
     """
@@ -59,7 +59,7 @@ class FindingsMonitor:
         clock: Callable[[], float] = monotonic,
     ) -> None:
         self.findings: tuple[ExplainedFinding, ...] = ()
-        """What was found by the last look, problems first, the worst of them at the front."""
+        """The findings of the last look: problems first, the worst at the front."""
         self._timeline = timeline
         self._diagnoses = diagnoses or Diagnoses()
         self._clock = clock
@@ -69,7 +69,7 @@ class FindingsMonitor:
     def look_when_due(self) -> bool:
         """Look if enough time has passed since the last look, or the run has grown by much.
 
-        Tells whether that found something else.
+        Returns whether the findings have changed.
         """
         grown = self._timeline.end - self._looked_to
         if self._clock() < self._due and grown < _MOST_AT_ONCE:

@@ -47,7 +47,7 @@ class LiveExport:
         self._given_up.set()
 
     def write(self) -> str:
-        """Write the file to its end, and say where it is; or why there is none."""
+        """Write the file; returns a sentence on where it is, or on why it could not be written."""
         try:
             export(self._material.source, self._wish, self._reach)
         except _GivenUpError:

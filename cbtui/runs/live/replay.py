@@ -89,7 +89,7 @@ class RecordingReader:
 
 
 class _ReadAgain:
-    """The events of a recording, read anew by whoever asks for them."""
+    """The events of a recording, read anew for each caller."""
 
     def __init__(self, path: Path) -> None:
         self._path = path

@@ -1,4 +1,4 @@
-"""Tells how far the reading of a recording has come, to whoever waits for it in front of a terminal."""
+"""Shows the progress of reading a recording on a terminal."""
 
 import sys
 import time
@@ -13,7 +13,7 @@ _PERIOD = 0.2
 
 
 class ReadingProgress:
-    """The batches of a recording; going through them is told of on standard error, if that is a terminal."""
+    """The batches of a recording; progress goes to standard error if that is a terminal."""
 
     def __init__(self, recording: Recording) -> None:
         self._recording = recording

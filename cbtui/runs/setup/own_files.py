@@ -71,7 +71,7 @@ def read_recording(path: Path) -> "Recording":
     """Return a recording to be read.
 
     Raises:
-        CannotOpenError: it is none.
+        CannotOpenError: it is not such a file.
     """
     from sim.recording import RecordingError, read
 

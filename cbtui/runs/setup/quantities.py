@@ -1,4 +1,4 @@
-"""Numbers that a person can give a run: their bounds, and the sentence for a text that is none of them."""
+"""Numbers that a person can give a run: their bounds, and the message for invalid input."""
 
 import math
 from typing import NamedTuple
@@ -25,7 +25,7 @@ class Quantity(NamedTuple):
         """Return the number that somebody typed, with or without its unit.
 
         Raises:
-            BadQuantityError: it is none, or out of bounds.
+            BadQuantityError: the text is not a number, or out of bounds.
         """
         plain = text.strip().removesuffix(self.unit).strip()
         try:

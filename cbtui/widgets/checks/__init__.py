@@ -1,4 +1,4 @@
-"""The pane of an exercise: its checks with what came of them, and what is asked."""
+"""The pane of an exercise: its task, and its checks with their results."""
 
 from cbtui.widgets.checks.sheet import Row, Sheet, Standing
 from cbtui.widgets.checks.widget import ChecksView

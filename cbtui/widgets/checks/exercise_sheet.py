@@ -44,7 +44,7 @@ class ExerciseWords:
         return Sheet(news, Standing.OPEN, self._open, asks=self._asks)
 
     def judged(self, checked: Checked) -> Sheet:
-        """Tell what came of a run."""
+        """Show the results of a run."""
         if checked.run.trouble is not None:
             news = f"{checked.run.trouble.rstrip('.')}. {self._way_on}"
             return Sheet(news, Standing.FAILED, self._open, asks=self._asks)

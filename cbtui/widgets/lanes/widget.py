@@ -21,7 +21,7 @@ from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 _LEAST_LANES = 3
-"""Rows below which what is selected is not told of: the lanes would have no room left."""
+"""Rows below which the details of the selection are left out, to leave room for the lanes."""
 
 _A_FRAME = 1 / 30
 """Seconds until the lanes go on to fill."""
@@ -154,7 +154,7 @@ class Lanes(Painted, can_focus=True):
     # drawing
 
     def rows(self, size: Size) -> Sequence[Sequence[Run]]:
-        """Paint the lanes, and what there is to know of the selected bar."""
+        """Paint the lanes, and the details of the selected bar."""
         selection = None if self.selection is None else self.selection.renewed(self.timeline)
         told = self._rows_told(size) if selection is not None else 0
         height = size.height - told

@@ -109,7 +109,7 @@ class LogView(Vertical):
 
 
 def _understood(text: str) -> tuple[Filter, str]:
-    """Return the filter that was typed, and one sentence on why it is none if that is so."""
+    """Return the filter that was typed, and one sentence if it is invalid."""
     try:
         return filter_of(text), ""
     except FilterError as error:
