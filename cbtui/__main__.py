@@ -1,4 +1,4 @@
-"""``python -m cbtui`` and the ``cbtui`` command: Ctrl-C exits with status 130 and prints nothing, at any time."""
+"""``python -m cbtui`` and the ``cbtui`` command: Ctrl-C exits with status 130 and prints nothing."""
 
 import sys
 

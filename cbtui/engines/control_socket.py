@@ -1,4 +1,4 @@
-"""The way of ``ros2`` lines from other terminals into a run: a local socket, known by the process's number.
+"""Takes ``ros2`` lines from other terminals into a run, over a local socket named by the process's number.
 
 The socket lies in the user's own runtime folder, which nobody else may enter. One connection carries one
 line: the client sends its words and perhaps an interruption, and gets what the line writes and how it ends.
@@ -111,7 +111,7 @@ class ControlServer:
         return None
 
     def take(self, events: Iterable[AnyEvent]) -> None:
-        """Hand what lines wrote to those who gave them."""
+        """Forward the output of lines to the clients that sent them."""
         if not self._answers:
             return
         for event in events:

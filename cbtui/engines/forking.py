@@ -1,4 +1,4 @@
-"""Starts processes as copies of one that has imported all they need; what one changes stays in its copy."""
+"""Starts processes as forks of a server that has imported all they need."""
 
 import multiprocessing
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""The console of one visitor: a process that draws for a browser, and the end of all that it started."""
+"""The console of one visitor: a process that draws for a browser, ended with its process tree."""
 
 import asyncio
 import os

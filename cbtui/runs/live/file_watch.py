@@ -14,7 +14,7 @@ CANNOT_WATCH = (OSError, RuntimeError)
 _STEP = 50
 """Milliseconds without another change after which a save is over."""
 _LOOK = 1000
-"""Milliseconds after which the file is looked at in any case: not every file system tells of changes."""
+"""Milliseconds after which the file is looked at in any case: some file systems do not report changes."""
 _GRACE = 0.3
 """Seconds that a file may be gone or empty in the middle of a save."""
 
