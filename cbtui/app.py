@@ -12,7 +12,8 @@ from textual.screen import Screen
 from textual.theme import ThemeProvider
 from textual.types import CSSPathType
 
-from cbtui.keys.actions import Scope, bindings_of
+from cbtui.keys.action import Scope
+from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import Keymap
 from cbtui.learning.outcome import observe_engine
 from cbtui.looks.colour_themes import STANDARD, THEMES

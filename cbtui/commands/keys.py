@@ -9,7 +9,7 @@ from cbtui.commands.options import appearance
 from cbtui.text.output import complain, say
 
 if TYPE_CHECKING:
-    from cbtui.keys.actions import Action
+    from cbtui.keys.action import Action
 
 _HEAD = """\
 # The keys of cbtui, and how it looks. Keep what you change in
@@ -52,7 +52,7 @@ def _lines(path: str, now: appearance.Appearance) -> Iterator[str]:
 
 
 def _entry(action: "Action") -> str:
-    from cbtui.keys.actions import key_id
+    from cbtui.keys.action import key_id
     from cbtui.keys.keymap import keys_of
 
     keys = [json.dumps(key, ensure_ascii=False) for key in keys_of(action)]

@@ -6,8 +6,11 @@ from typing import Any
 
 from textual.command import DiscoveryHit, Hit, Hits, Provider
 
-from cbtui.keys.actions import Action, Scope, actions_of, method_of, perform, signs_of
+from cbtui.keys.action import Action, Scope, method_of
+from cbtui.keys.actions import actions_of
+from cbtui.keys.bindings import perform
 from cbtui.keys.keymap import keymap_of
+from cbtui.keys.signs import signs_of
 from cbtui.looks.theme import Charset
 
 

@@ -6,7 +6,8 @@ from itertools import combinations
 
 from textual.keys import Keys
 
-from cbtui.keys.actions import ACTIONS, Action, Scope, actions_of, key_id
+from cbtui.keys.action import Action, Scope, key_id
+from cbtui.keys.actions import ACTIONS, actions_of
 from cbtui.keys.keymap import Keymap, canonical, is_typed, keys_of
 
 Complain = Callable[[str, str], None]

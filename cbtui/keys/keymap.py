@@ -6,7 +6,9 @@ from typing import Any
 
 from textual.app import App
 
-from cbtui.keys.actions import ACTIONS, Action, Scope, character_of, key_id, signs_of
+from cbtui.keys.action import Action, Scope, key_id
+from cbtui.keys.actions import ACTIONS
+from cbtui.keys.signs import character_of, signs_of
 from cbtui.looks.theme import Charset
 
 

@@ -2,8 +2,10 @@
 
 import re
 
-from cbtui.keys.actions import ACTIONS, Action, Scope, signs_of
+from cbtui.keys.action import Action, Scope
+from cbtui.keys.actions import ACTIONS
 from cbtui.keys.keymap import STANDARD, Keymap
+from cbtui.keys.signs import signs_of
 from cbtui.looks.theme import Charset
 
 _FENCE = re.compile(r"^[ ]{0,3}(`{3,}|~{3,})")

@@ -6,7 +6,8 @@ from pathlib import Path
 
 from msgspec import structs
 
-from cbtui.keys.actions import ACTIONS, character_of
+from cbtui.keys.actions import ACTIONS
+from cbtui.keys.signs import character_of
 from cbtui.runs.judged.check_text import verdict_line
 from cbtui.runs.judged.checking import Observed, observe
 from cbtui.runs.setup.lesson_setup import setup_to_judge

@@ -9,7 +9,8 @@ from textual.app import ComposeResult
 from textual.binding import BindingType
 from textual.screen import Screen, ScreenResultCallbackType, ScreenResultType
 
-from cbtui.keys.actions import Scope, bindings_of
+from cbtui.keys.action import Scope
+from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import keymap_of
 from cbtui.looks.theme import Charset, Ink, Role, Run
 from cbtui.runs.compared_runs import Side

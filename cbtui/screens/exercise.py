@@ -11,7 +11,7 @@ from textual.message import Message
 from textual.widget import Widget
 
 from cbtui.engines.session import Deliver, Ended, OpenSession
-from cbtui.keys.actions import CHECKS, PANES, Scope
+from cbtui.keys.action import CHECKS, PANES, Scope
 from cbtui.keys.keymap import STANDARD, Keymap, keymap_of
 from cbtui.learning.lesson_page import page_of_exercise
 from cbtui.looks.theme import Charset

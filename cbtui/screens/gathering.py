@@ -12,7 +12,8 @@ from textual.message import Message
 from textual.widgets import Static
 
 from cbtui.engines.follow import GivenUpError
-from cbtui.keys.actions import Scope, bindings_of
+from cbtui.keys.action import Scope
+from cbtui.keys.bindings import bindings_of
 from cbtui.looks.theme import Charset
 from cbtui.runs.compared_runs import CannotCompareError, ComparedRun, Gathered, Progress, Terms, gather
 from cbtui.screens.compare import CompareScreen

@@ -9,8 +9,11 @@ from textual.containers import Container, VerticalScroll
 from textual.content import Content
 from textual.widgets import Static
 
-from cbtui.keys.actions import ACTIONS, Action, Scope, bindings_of, signs_of, together
+from cbtui.keys.action import Action, Scope, together
+from cbtui.keys.actions import ACTIONS
+from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import Keymap, keymap_of
+from cbtui.keys.signs import signs_of
 from cbtui.looks.theme import Charset
 from cbtui.screens.sized import SizedModal
 from cbtui.widgets.key_bar import KeyBar

@@ -16,7 +16,8 @@ from textual.timer import Timer
 from textual.widgets import Input, OptionList
 
 from cbtui.engines.follow import GivenUpError
-from cbtui.keys.actions import Scope, bindings_of
+from cbtui.keys.action import Scope
+from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import keymap_of
 from cbtui.learning.lesson_page import in_short
 from cbtui.learning.preview import CALLS, LENGTH, CannotPreviewError, PreviewRun, why_not

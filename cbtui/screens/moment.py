@@ -9,7 +9,8 @@ from textual.binding import BindingType
 from textual.containers import Container
 from textual.widgets import Input, Static
 
-from cbtui.keys.actions import Scope, bindings_of
+from cbtui.keys.action import Scope
+from cbtui.keys.bindings import bindings_of
 from cbtui.looks.theme import Charset
 from cbtui.screens.sized import SizedModal
 from cbtui.widgets.key_bar import KeyBar

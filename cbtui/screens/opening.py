@@ -9,7 +9,8 @@ from textual.binding import BindingType
 from textual.containers import Container
 from textual.widgets import Input, Static
 
-from cbtui.keys.actions import Scope, bindings_of
+from cbtui.keys.action import Scope
+from cbtui.keys.bindings import bindings_of
 from cbtui.looks.theme import Charset
 from cbtui.runs.setup.own_files import CannotOpenError, completed, entry_for
 from cbtui.screens.console import console_of

@@ -14,7 +14,8 @@ from textual.message import Message
 from textual.screen import Screen, ScreenResultCallbackType, ScreenResultType
 from textual.widget import Widget
 
-from cbtui.keys.actions import PANES, Scope, bindings_of
+from cbtui.keys.action import PANES, Scope
+from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import keymap_of
 from cbtui.looks.theme import Charset
 from cbtui.runs.live.live_recording import LiveRecording

@@ -10,7 +10,8 @@ from textual.containers import Container, VerticalScroll
 from textual.content import Content
 from textual.widgets import Static
 
-from cbtui.keys.actions import Scope, bindings_of
+from cbtui.keys.action import Scope
+from cbtui.keys.bindings import bindings_of
 from cbtui.looks.theme import Charset
 from cbtui.screens.sized import SizedModal
 from cbtui.text.cells import visible

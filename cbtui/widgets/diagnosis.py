@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from enum import Enum, auto
 
-from cbtui.keys.actions import Scope
+from cbtui.keys.action import Scope
 from cbtui.keys.keymap import STANDARD, Keymap
 from cbtui.looks.theme import Charset
 from cbtui.runs.live.findings import ExplainedFinding

@@ -6,8 +6,11 @@ from dataclasses import dataclass
 from textual.events import Click
 from textual.geometry import Size
 
-from cbtui.keys.actions import Action, Scope, actions_of, method_of, perform, signs_of, together
+from cbtui.keys.action import Action, Scope, method_of, together
+from cbtui.keys.actions import actions_of
+from cbtui.keys.bindings import perform
 from cbtui.keys.keymap import keymap_of
+from cbtui.keys.signs import signs_of
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, Run
 from cbtui.widgets.painted import Painted
 

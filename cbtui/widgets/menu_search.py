@@ -6,7 +6,8 @@ from textual.binding import BindingType
 from textual.message import Message
 from textual.widgets import Input
 
-from cbtui.keys.actions import Scope, bindings_of
+from cbtui.keys.action import Scope
+from cbtui.keys.bindings import bindings_of
 
 
 class MenuSearch(Input):

@@ -17,7 +17,9 @@ from textual.reactive import reactive
 from textual.strip import Strip
 from textual.widgets import Input, Label
 
-from cbtui.keys.actions import ACTIONS, Scope, bindings_of
+from cbtui.keys.action import Scope
+from cbtui.keys.actions import ACTIONS
+from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import Keymap, keymap_of
 from cbtui.looks.theme import Charset
 from cbtui.text.cells import visible, without_tabs

@@ -8,7 +8,7 @@ from textual.geometry import Size
 from textual.message import Message
 from textual.reactive import reactive
 
-from cbtui.keys.actions import CHECKS, PANES
+from cbtui.keys.action import CHECKS, PANES
 from cbtui.looks.theme import Charset, Ink, Role, Run
 from cbtui.text.cells import fit
 from cbtui.widgets.painted import Painted

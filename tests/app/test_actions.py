@@ -4,7 +4,10 @@ import pytest
 from textual.dom import DOMNode
 
 from cbtui.app import CbtuiApp
-from cbtui.keys.actions import ACTIONS, Action, Scope, actions_of, bindings_of, method_of, signs_of, together
+from cbtui.keys.action import Action, Scope, method_of, together
+from cbtui.keys.actions import ACTIONS, actions_of
+from cbtui.keys.bindings import bindings_of
+from cbtui.keys.signs import signs_of
 from cbtui.looks.theme import Charset
 from cbtui.screens.diagnoses import DiagnosesScreen
 from cbtui.screens.export import ExportScreen

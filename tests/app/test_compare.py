@@ -9,7 +9,8 @@ import pytest
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
-from cbtui.keys.actions import ACTIONS, Scope
+from cbtui.keys.action import Scope
+from cbtui.keys.actions import ACTIONS
 from cbtui.keys.keymap import keys_of
 from cbtui.looks.theme import Charset
 from cbtui.runs.compared_runs import ComparedRun, Progress, Side, Terms

@@ -5,7 +5,8 @@ import pytest
 from textual.pilot import Pilot
 from textual.widget import Widget
 
-from cbtui.keys.actions import ACTIONS, Scope
+from cbtui.keys.action import Scope
+from cbtui.keys.actions import ACTIONS
 from cbtui.runs.live.live_run import State
 from cbtui.screens.help import HelpScreen
 from cbtui.screens.lesson import LessonScreen

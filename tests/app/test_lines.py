@@ -2,7 +2,8 @@ from dataclasses import replace
 
 import pytest
 
-from cbtui.keys.actions import Scope, actions_of
+from cbtui.keys.action import Scope
+from cbtui.keys.actions import actions_of
 from cbtui.looks.theme import Charset, Run
 from cbtui.runs.live.live_run import State
 from cbtui.widgets.banner import banner

@@ -10,7 +10,7 @@ import pytest
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
-from cbtui.keys.actions import PANES
+from cbtui.keys.action import PANES
 from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.lanes import Lanes

@@ -13,7 +13,9 @@ from textual.geometry import Region
 from textual.pilot import Pilot
 from textual.widget import Widget
 
-from cbtui.keys.actions import Scope, actions_of, perform
+from cbtui.keys.action import Scope
+from cbtui.keys.actions import actions_of
+from cbtui.keys.bindings import perform
 from cbtui.screens.menu import MenuScreen
 from cbtui.screens.setup import SetupScreen
 from cbtui.terminal.ending import EndingApp

@@ -4,7 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.keys.actions import ACTIONS, key_id
+from cbtui.keys.action import key_id
+from cbtui.keys.actions import ACTIONS
 from cbtui.keys.config import read_file, read_text
 from cbtui.keys.keymap import Keymap, keys_of
 

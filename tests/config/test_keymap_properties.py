@@ -7,7 +7,9 @@ from hypothesis import strategies as st
 from textual.binding import BindingsMap
 
 from cbtui.app import CbtuiApp
-from cbtui.keys.actions import ACTIONS, Scope, actions_of, bindings_of, key_id
+from cbtui.keys.action import Scope, key_id
+from cbtui.keys.actions import ACTIONS, actions_of
+from cbtui.keys.bindings import bindings_of
 from cbtui.keys.config_keys import read_keys
 from cbtui.keys.keymap import Keymap, canonical, keys_of
 from tests.support.properties import examples

@@ -4,7 +4,8 @@ from pathlib import Path
 
 from textual.screen import Screen
 
-from cbtui.keys.actions import ACTIONS, Scope, method_of
+from cbtui.keys.action import Scope, method_of
+from cbtui.keys.actions import ACTIONS
 from cbtui.looks.theme import Charset
 from cbtui.runs.compared_runs import Side
 from cbtui.runs.setup.subject import of_file, of_lesson

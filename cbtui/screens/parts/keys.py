@@ -6,7 +6,7 @@ from typing import Any
 
 from textual.widget import Widget
 
-from cbtui.keys.actions import Action, Scope
+from cbtui.keys.action import Action, Scope
 from cbtui.looks.theme import Charset
 from cbtui.screens.layout import Layout
 from cbtui.screens.parts.part import Parts

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 from textual.screen import Screen
 
-from cbtui.keys.actions import Scope
+from cbtui.keys.action import Scope
 from cbtui.keys.keymap import STANDARD
 from cbtui.learning.lesson_page import Page, Signs, Standing
 from cbtui.learning.lesson_page import Part as PagePart

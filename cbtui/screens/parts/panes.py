@@ -7,7 +7,7 @@ from rich.text import Text
 from textual.screen import Screen
 from textual.widget import Widget
 
-from cbtui.keys.actions import Scope
+from cbtui.keys.action import Scope
 from cbtui.keys.keymap import keymap_of
 from cbtui.screens.parts.part import Host, Part
 from cbtui.terminal.editor import EditorError, edit

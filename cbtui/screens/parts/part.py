@@ -5,7 +5,8 @@ from typing import Any, Protocol
 
 from textual.screen import Screen, ScreenResultCallbackType, ScreenResultType
 
-from cbtui.keys.actions import ACTIONS, Scope, method_of
+from cbtui.keys.action import Scope, method_of
+from cbtui.keys.actions import ACTIONS
 from cbtui.looks.theme import Charset
 from cbtui.screens.console import Console
 

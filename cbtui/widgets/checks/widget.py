@@ -11,7 +11,8 @@ from textual.message import Message
 from textual.reactive import var
 from textual.strip import Strip
 
-from cbtui.keys.actions import Scope, bindings_of
+from cbtui.keys.action import Scope
+from cbtui.keys.bindings import bindings_of
 from cbtui.widgets.checks.sheet import Kind, Line, Sheet, Standing, lines_of
 from cbtui.widgets.inked import Inked
 from sim.trace.model import Nanoseconds

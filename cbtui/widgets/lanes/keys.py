@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from cbtui.keys.actions import Scope
+from cbtui.keys.action import Scope
 from cbtui.keys.keymap import STANDARD, Keymap
 from cbtui.looks.theme import Charset
 

@@ -10,7 +10,8 @@ from textual.message import Message
 from textual.reactive import var
 from textual.strip import Strip
 
-from cbtui.keys.actions import Scope, bindings_of
+from cbtui.keys.action import Scope
+from cbtui.keys.bindings import bindings_of
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role
 from cbtui.text.cells import fit
 from cbtui.widgets.following import Following

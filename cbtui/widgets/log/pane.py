@@ -9,7 +9,8 @@ from textual.containers import Vertical
 from textual.reactive import var
 from textual.widgets import Input, Label
 
-from cbtui.keys.actions import Scope, bindings_of
+from cbtui.keys.action import Scope
+from cbtui.keys.bindings import bindings_of
 from cbtui.widgets.log.filter import Filter, FilterError, filter_of
 from cbtui.widgets.log.lines import LogLines
 from sim.trace.model import Nanoseconds

@@ -1,0 +1,80 @@
+"""What an action is: something a person can do, by a key, on a screen or a pane."""
+
+import re
+from collections.abc import Iterable
+from enum import StrEnum
+from itertools import groupby
+from operator import attrgetter
+from typing import NamedTuple
+
+from textual.actions import parse
+
+PANES = ("guide", "code", "factory", "robot", "log", "shell")
+"""The panes of a lesson, in the order of their keys."""
+CHECKS = "checks"
+"""The pane that an exercise has beside them; its key comes after theirs."""
+
+
+class Scope(StrEnum):
+    """Where an action works."""
+
+    EVERYWHERE = "Everywhere"
+    MENU = "Menu"
+    SEARCH = "Search in the menu"
+    OPENING = "Opening a file"
+    LESSON = "Lesson"
+    COMPARE = "Comparison"
+    LOG = "Log"
+    FILTER = "Filter of the log"
+    CODE = "Code"
+    CHECKS = "Checks of an exercise"
+    PROMPT = "Prompt"
+    KEYBOARD = "Keyboard of the program"
+    THREADS = "Choice of threads"
+    GROUP = "Choice of a group"
+    EXPORT = "Choice of a format"
+    SETUP = "Set-up"
+    DIAGNOSES = "Diagnoses"
+    PREDICTION = "Prediction"
+    SOLUTION = "Solution"
+    ASKING = "Question"
+    NUMBER = "Choice of a number"
+    MOMENT = "Choice of a moment"
+    HELP = "Help"
+
+
+class Action(NamedTuple):
+    """Something a person can do. ``key`` is Textual's name of a key, ``help`` one sentence.
+
+    Neighbours with the same ``label`` share a place in the footer; those with the same ``series`` share a
+    line of the help, which says that instead.
+    """
+
+    id: str
+    key: str
+    label: str
+    help: str
+    scope: Scope
+    series: str = ""
+
+    @property
+    def line(self) -> str:
+        """What the help says."""
+        return self.series or self.help
+
+
+def key_id(action: Action) -> str:
+    """Return the name by which an action's keys are chosen: ``lesson.pause``, ``lesson.show_pane_guide``."""
+    words = re.findall(r"\w+", action.id)
+    return f"{action.scope.name.lower()}.{'_'.join(words)}"
+
+
+def method_of(action: Action) -> tuple[str, tuple[object, ...]]:
+    """Return the name and the arguments with which a screen is asked whether an action works now."""
+    _, name, arguments = parse(action.id)
+    return name, arguments
+
+
+def together(actions: Iterable[Action], field: str) -> list[tuple[Action, ...]]:
+    """Put neighbours together that agree in a field."""
+    return [tuple(group) for _, group in groupby(actions, key=attrgetter(field))]

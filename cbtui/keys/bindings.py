@@ -1,0 +1,49 @@
+"""Actions as Textual has them: bindings, and where each is carried out."""
+
+from typing import TYPE_CHECKING, Any
+
+from textual.binding import Binding
+
+from cbtui.keys.action import Action, Scope, key_id
+from cbtui.keys.actions import ACTIONS
+
+if TYPE_CHECKING:
+    from textual.app import App
+
+_KEYS_THAT_WIDGETS_WANT = {"left", "right", "tab", "ctrl+c"}
+"""Panes scroll with the arrows and pass the focus on with tab: the screen has to be asked first."""
+
+_PLACES = {
+    Scope.EVERYWHERE: "app",
+    Scope.SEARCH: "focused",
+    Scope.LOG: "focused",
+    Scope.FILTER: "focused",
+    Scope.CODE: "focused",
+    Scope.CHECKS: "focused",
+    Scope.PROMPT: "focused",
+    Scope.KEYBOARD: "focused",
+}
+"""What implements the actions of a scope, where it is not the screen."""
+
+
+def bindings_of(*scopes: Scope) -> list[Binding]:
+    """Return the key bindings of the actions that belong to exactly these scopes."""
+    return [_binding(action) for action in ACTIONS if action.scope in scopes]
+
+
+async def perform(app: "App[Any]", action: Action) -> None:
+    """Do an action for a click or the palette; one of the widget with the keys not, if none has them."""
+    place = _PLACES.get(action.scope, "screen")
+    if place != "focused" or app.focused is not None:
+        await app.run_action(f"{place}.{action.id}")
+
+
+def _binding(action: Action) -> Binding:
+    return Binding(
+        action.key,
+        action.id,
+        action.label,
+        tooltip=action.help,
+        id=key_id(action),
+        priority=action.key in _KEYS_THAT_WIDGETS_WANT,
+    )

@@ -1,0 +1,56 @@
+"""Keys as people write them."""
+
+from collections.abc import Iterable
+
+from textual.keys import format_key, key_to_character
+
+from cbtui.keys.action import Action
+from cbtui.looks.theme import Charset
+
+_SIGNS = {
+    "enter": "⏎",
+    "space": "␣",
+    "up": "↑",
+    "down": "↓",
+    "left": "←",
+    "right": "→",
+    "escape": "esc",
+    "delete": "del",
+}
+_PLAIN_SIGNS = _SIGNS | {
+    "enter": "enter",
+    "space": "space",
+    "up": "up",
+    "down": "down",
+    "left": "left",
+    "right": "right",
+}
+
+
+def signs_of(actions: Iterable[Action], charset: Charset) -> str:
+    """Return the keys of some actions as people write them."""
+    keys = [action.key.partition(",")[0] for action in actions]
+    digits = [key for key in keys if key.isdigit()]
+    if len(digits) > 2 and "".join(digits) in "0123456789":
+        keys = [key for key in keys if key not in digits] + [f"{digits[0]}-{digits[-1]}"]
+    return " ".join(_sign(key, charset) for key in keys)
+
+
+def character_of(key: str) -> str | None:
+    """Return what a key types, such as ``?`` for ``question_mark``; None for space and what types nothing."""
+    if len(key) == 1:
+        return key
+    character = key_to_character(key)
+    if character is None and len(format_key(key)) == 1 and format_key(key).isascii():
+        character = format_key(key)  # minus, slash and others that Textual has own names for
+    return character if character is not None and character.isprintable() and character != " " else None
+
+
+def _sign(key: str, charset: Charset) -> str:
+    signs = _PLAIN_SIGNS if charset is Charset.ASCII else _SIGNS
+    character = character_of(key)
+    if key in signs:
+        return signs[key]
+    if character is not None and (character.isascii() or charset is not Charset.ASCII):
+        return character
+    return f"^{_sign(key.removeprefix('ctrl+'), charset)}" if key.startswith("ctrl+") else key
