@@ -55,9 +55,6 @@ from cbtui.widgets.shell import ProgramKeyboard, Prompt, ShellView
 from cbtui.widgets.status_line import StatusLine, status_of
 from cbtui.widgets.tabs import Tabs, title_of
 
-_GLANCE = 150_000_000
-"""Nanoseconds of a person's time for which a worker is seen walking."""
-
 _TEXTS = (CodeView, LogView)
 """Panes that are lines of text."""
 
@@ -326,8 +323,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
                 if not run.alive and isinstance(self.focused, ProgramKeyboard):
                     self.focused.action_leave_keyboard()
             case FactoryView():
-                pane.now, pane.timeline = now, run.timeline
-                pane.glance = round(_GLANCE * (run.speed or 1.0))
+                pane.show(run.timeline, now, run.speed or 1.0)
             case RobotView():
                 pane.now, pane.timeline = now, run.timeline
 

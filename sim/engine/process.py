@@ -6,10 +6,11 @@ on the trace until it has; what takes longer than ``ending.GRACE`` does not keep
 
 import os
 import sys
+from collections.abc import Sequence
 from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 import msgspec
 
@@ -55,6 +56,9 @@ from sim.ros.middleware.host import Host, install
 from sim.ros.middleware.process import share_machine
 from sim.trace.events import Notice, Printed, RunStarted, Severity
 
+if TYPE_CHECKING:
+    from sim.shell import OnExit, Running
+
 # Kept from before the crash dump puts its own in its place.
 _leave = os._exit
 
@@ -93,7 +97,7 @@ class Engine:
         self._endless = None if virtual is None else EndlessWaits(virtual, self._host, record)
         self._descriptors = Descriptors(lambda text, error: record(Printed(clock.now(), text, error)))
         self._programs = Programs(self._host, record)
-        self._starter = Starter(self._programs, setup)
+        self._starter = Starter(self._programs, setup, _launch)
         self._lines = Lines(self._host, record, self._starter, self._programs.look)
         self._terminal = Terminal(clock, record, setup.keyboard, len(setup.typed))
         self._shutdown = Shutdown(
@@ -212,6 +216,14 @@ class Engine:
 
 def _ignore(_what: object) -> None:
     """Stand in for what a run that a person watches does not need."""
+
+
+def _launch(
+    programs: Programs, starter: Starter, path: Path, arguments: Sequence[str], on_exit: "OnExit"
+) -> "Running":
+    from sim.engine.programs.launching import Launching  # most runs launch nothing, and begin the sooner
+
+    return Launching(programs, starter, path, arguments, on_exit).start()
 
 
 def run(packed_setup: bytes, pipe: Connection, crash_dump: Connection) -> None:

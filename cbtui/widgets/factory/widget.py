@@ -31,6 +31,11 @@ class FactoryView(Painted):
         painter = FactoryPainter(self.charset)
         return painter.paint(self.timeline, self.now, size.width, size.height, self.glance)
 
+    def show(self, timeline: Timeline, now: Nanoseconds, speed: float) -> None:
+        """Show a moment of a run that goes ``speed`` times as fast as the person's time."""
+        self.now, self.timeline = now, timeline
+        self.glance = round(GLANCE * speed)
+
     def watch_timeline(self) -> None:
         """Paint what is known now."""
         self.changed()

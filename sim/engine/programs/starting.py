@@ -6,11 +6,11 @@ packages, and begin the sooner.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from itertools import count
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeAlias
 
 from sim.engine.programs.program import Outcome, Program
 from sim.engine.programs.programs import Programs
@@ -22,15 +22,22 @@ if TYPE_CHECKING:
     from sim.shell import OnExit, Running
 
 
+Launch: TypeAlias = "Callable[[Programs, Starter, Path, Sequence[str], OnExit], Running]"
+
+
 class StartError(Exception):
     """Something that cannot be started; the text is a sentence that says why, and where."""
 
 
 class Starter:
-    """Knows the packages around the run's programs, and starts what is in them. Thread-safe."""
+    """Knows the packages around the run's programs, and starts what is in them. Thread-safe.
 
-    def __init__(self, programs: Programs, setup: RunSetup) -> None:
+    ``launch`` carries out a launch file.
+    """
+
+    def __init__(self, programs: Programs, setup: RunSetup, launch: Launch) -> None:
         self._programs = programs
+        self._launch = launch
         self._folders = [*(Path(each.path) for each in setup.programs), *map(Path, setup.packages)]
         self._found: Packages | None = None
         self._numbers = count(1)
@@ -86,11 +93,9 @@ class Starter:
         Raises:
             StartError: there is no such file, or it cannot be carried out.
         """
-        from sim.engine.programs.launching import Launching
-
         with _told():
             path = self._launch_path(package, launch_file)
-            return Launching(self._programs, self, path, arguments, on_exit).start()
+            return self._launch(self._programs, self, path, arguments, on_exit)
 
     def describe_launch(self, package: str | None, launch_file: str) -> str:
         """What ``ros2 launch --show-args`` prints of a launch file.
