@@ -40,10 +40,6 @@ class RunningProgram:
     def interrupt(self) -> None:
         """Have it end as Ctrl-C would; nothing happens once it has ended."""
         deliver_sigint(self.process)
-        self.raise_interrupt()
-
-    def raise_interrupt(self) -> None:
-        """Have KeyboardInterrupt raised in its main thread, if it has begun and not ended."""
         if self.outcome is None and self.thread is not None:
             self.process.host.clock.interrupt(self.thread)
 
@@ -184,6 +180,9 @@ class Programs:
             running.interrupt()
 
     def end_contexts(self) -> None:
-        """End the contexts of every program as Ctrl-C does, so that what spins on their threads ends."""
-        for process in self.processes:
+        """End the contexts of an only program as Ctrl-C does, which is raised in the main thread after that.
+
+        Several programs are interrupted one by one, in their own main threads.
+        """
+        for process in self._only:
             deliver_sigint(process)

@@ -25,7 +25,7 @@ def run_programs(
             else:
                 label = f"{Path(program.path).stem}-{place}"
                 started = programs.start(script(program.path, program.arguments), label, _ignore_end)
-                interrupts.append(started.raise_interrupt)
+                interrupts.append(started.interrupt)
         programs.wait_until(lambda: not (programs.any_run or lines.any_left))
     except KeyboardInterrupt:
         lines.interrupt_all()
