@@ -38,7 +38,7 @@ class PreviewRun:
     """One such run. ``run`` blocks a thread of its own, ``give_up`` may be called from any other."""
 
     def __init__(self, lesson: Lesson, open_session: "OpenSession") -> None:
-        self._lesson = lesson
+        self.lesson = lesson
         self._open_session = open_session
         self._given_up = Event()
         self._ended = Event()
@@ -65,13 +65,13 @@ class PreviewRun:
             self._ended.set()
 
     def _run(self) -> "Timeline":
-        reason = why_not(self._lesson)
+        reason = why_not(self.lesson)
         if reason is not None:
             raise CannotPreviewError(reason)
         from sim.trace.timeline import Timeline  # numpy and all: on this thread, not on the screen's
 
         timeline = Timeline(until_ending=True)
-        with FollowedRun(preview_setup(self._lesson), self._open_session, self._given_up) as run:
+        with FollowedRun(preview_setup(self.lesson), self._open_session, self._given_up) as run:
             try:
                 run.start()
                 run.limit(_PATIENCE)

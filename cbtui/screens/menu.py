@@ -204,7 +204,8 @@ class MenuScreen(SizedScreen[None]):
         if not isinstance(chosen, Lesson) or chosen.id in self._subjects or not self.is_active:
             return
         if self._run is not None:
-            self._run.give_up()
+            if self._run.lesson is not chosen:
+                self._run.give_up()
             return
         run = self._run = PreviewRun(chosen, self._open_session)
         self.run_worker(lambda: self._draw_with(run, chosen), thread=True)

@@ -1,5 +1,6 @@
 """The picture of the lesson on which the menu's highlight rests."""
 
+import asyncio
 from collections.abc import Callable
 from multiprocessing import active_children
 from threading import Thread
@@ -45,8 +46,9 @@ def console() -> tuple[CbtuiApp, FakeEngines]:
 
 
 async def until(pilot: Pilot[None], condition: Callable[[], object]) -> None:
-    while not condition():
-        await pilot.pause(0.01)
+    async with asyncio.timeout(60):
+        while not condition():
+            await pilot.pause(0.01)
 
 
 def subject_of(app: CbtuiApp) -> Subject | None:
