@@ -1,6 +1,7 @@
 """Two runs in the console: one above the other, the same stretch and cursor, and a table of what differs."""
 
 import asyncio
+import re
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager
 from pathlib import Path
@@ -403,7 +404,7 @@ async def test_keys_are_answered_while_a_comparison_goes_on(monkeypatch: pytest.
         before = app.comparison.navigation.playhead
         await pilot.press("left_square_bracket")
         assert app.comparison.navigation.playhead != before
-        assert "Comparing, 0 s so far" in text_of(app)
+        assert re.search(r"Comparing, \d+ s so far", text_of(app))
         assert app.comparison._comparing
         monkeypatch.setattr(compare, "_SLICE", 10.0)
         await app.workers.wait_for_complete()

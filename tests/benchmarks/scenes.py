@@ -111,7 +111,7 @@ def subscriptions(number: int) -> Scene:
 
         def on_number(_: Any) -> None:
             stage.count()
-            if stage.counted % number == 0:
+            if stage.counted % number == 0 and stage.counted < calls:
                 publisher.publish(sent)
 
         for _ in range(number):

@@ -311,7 +311,7 @@ class Run:
 
     def over(self, at: float, reason: str = "its time was up", failed: bool = False) -> None:
         """End the run."""
-        self.add(RunEnded(ns(at), reason, failed))
+        self.add(RunEnded(ns(at), reason, failed, time_was_up=reason == "its time was up"))
 
     # the robot
 
