@@ -12,9 +12,10 @@ from cbtui.engines import session
 from tests.support import forked_engines, properties, style_sheets
 
 properties.register_profiles()
-if signal.getsignal(signal.SIGINT) == signal.SIG_IGN:
-    # As under nohup, whose children would not hear Ctrl-C either.
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+for number, handler in ((signal.SIGINT, signal.default_int_handler), (signal.SIGHUP, signal.SIG_DFL)):
+    if signal.getsignal(number) == signal.SIG_IGN:
+        # As under nohup, whose children would hear neither Ctrl-C nor the terminal's end.
+        signal.signal(number, handler)
 
 
 @pytest.fixture(scope="session", autouse=True)
