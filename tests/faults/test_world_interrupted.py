@@ -152,7 +152,7 @@ def test_ctrl_c_before_the_console_hears_it_ends_it_before_it_draws(function: st
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("function", ["MenuScreen.compose", "PanedScreen.compose", "LogView.on_mount"])
+@pytest.mark.parametrize("function", ["MenuScreen.compose", "RunScreen.compose", "LogView.on_mount"])
 def test_ctrl_c_while_the_console_puts_its_widgets_together_ends_it(function: str, tmp_path: Path) -> None:
     with opened(80, 24, tmp_path, "open", EXERCISE, "--exercise", program=[SCRIPT, function]) as console:
         assert console.ended() == INTERRUPTED
