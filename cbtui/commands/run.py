@@ -5,7 +5,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cbtui.commands.options import changes, inputs, values
+from cbtui.commands.options import changes, grounds, inputs, values
 from cbtui.commands.options.seeds import add_seed, check_seed
 from cbtui.commands.options.targets import Program, is_file_name, program_of, refuse, same_file
 from cbtui.text.output import complain
@@ -57,6 +57,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         default=math.inf,
         help="seconds of the run per real second, or max (max; on the real clock 1)",
     )
+    grounds.add_options(parser)
     parser.add_argument("--events", metavar="FILE.jsonl", help="write every event as a line of JSON")
     parser.add_argument(
         "--record",
@@ -135,6 +136,8 @@ def _request(options: argparse.Namespace, program: Program) -> "RunRequest":
         typed=options.typed,
         keyboard=Keyboard.NOBODY if options.typed else Keyboard.LIVE,
         contents=options.record is not None,
+        ground=options.on,
+        python=options.python,
     )
 
 

@@ -111,7 +111,7 @@ class Session:
         engine: Any = self._context
         self._process: BaseProcess = engine.Process(
             target=_engine,
-            args=(msgspec.msgpack.encode(self._setup), self._far_end, last_words, ours),
+            args=(self._setup.ground, msgspec.msgpack.encode(self._setup), self._far_end, last_words, ours),
             name="cbtui-engine",
             daemon=True,
         )
@@ -237,12 +237,16 @@ class Session:
         return f"the program crashed by {name}"
 
 
-def _engine(packed_setup: bytes, pipe: Connection, last_words: Connection, console: Connection) -> None:
+def _engine(
+    ground: str, packed_setup: bytes, pipe: Connection, last_words: Connection, console: Connection
+) -> None:
     """Be the engine; imported only over there, so that the console stays light."""
     watch_over(os.getpid(), console)
     ProcessTree(os.getpid(), os.environ.get(MARK, "")).leave_nothing()
-    from sim.engine.process import run
-
+    if ground == "ros2":
+        from sim.real.engine import run
+    else:
+        from sim.engine.process import run
     run(packed_setup, pipe, last_words)
 
 

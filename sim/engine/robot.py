@@ -31,11 +31,11 @@ def provide_robot(
 
 
 def _start_at_once(setup: RunSetup, host: Host, record: Callable[[AnyEvent], None]) -> None:
-    from sim.robot.driver import Driver
+    from sim.robot.model_port import start_robot
     from sim.robot.world import World
 
     world = World()
-    Driver(host, record, lambda: world, setup.sensor_rate).start()
+    start_robot(host, record, lambda: world, setup.sensor_rate)
 
 
 def _start_when_used(
@@ -57,8 +57,8 @@ def _start_when_used(
             raise
 
     def start() -> None:
-        from sim.robot.driver import Driver
+        from sim.robot.model_port import start_robot
 
-        Driver(host, record, build, setup.sensor_rate).start()
+        start_robot(host, record, build, setup.sensor_rate)
 
     host.network.when_wanted(NAMES, start)

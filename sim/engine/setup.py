@@ -106,6 +106,8 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     leaves the usual one. With ``contents`` the trace has what published messages hold. ``seed`` chooses,
     on the virtual clock, among the orders in which a machine could run threads; None and 0 are first come,
     first served. Tracebacks are without the frames of the model, unless they are to be ``whole_tracebacks``.
+    ``ground`` is what ``import rclpy`` means to the programs: ``model``, or ``ros2``, where they run on real
+    rclpy, the real clock and the interpreter ``python``, "" for the one that runs this.
     ``seal`` is the key that its trace is sealed with (``sim.trace.integrity.sealing``), b"" for none.
     """
 
@@ -129,4 +131,6 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     contents: bool = False
     seed: int | None = None
     whole_tracebacks: bool = False
+    ground: str = "model"
+    python: str = ""
     seal: bytes = b""

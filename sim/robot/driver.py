@@ -1,28 +1,20 @@
 """The robot's driver: a node of its own that puts the PyBullet world on topics and services.
 
-It runs on its own thread, in its own context, like the driver process of a real robot: its callbacks are
-not the learner's and do not show on the lanes. What it publishes does.
+It runs like the driver process of a real robot: its callbacks are not the learner's and do not show on the
+lanes. What it publishes does.
 """
 
 import array
 import math
 from collections.abc import Callable
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from sim.interfaces import message, service
-from sim.probes.probe import PublishingProbe
 from sim.robot.arena import ARENA, ROBOT_RADIUS
 from sim.robot.lidar import ANGLE_INCREMENT, ANGLE_MIN, RANGE_MAX, RANGE_MIN
-from sim.robot.velocity_commands import VelocityCommands
 from sim.robot.world import World
-from sim.ros.context.context import Context
-from sim.ros.middleware.host import Host
-from sim.ros.node.node import Node
-from sim.ros.qos.qos import QoSProfile, ReliabilityPolicy
-from sim.ros.scheduling.executors import SingleThreadedExecutor
 from sim.trace.events import AnyEvent, ArenaShown, RobotMoved, Scanned, VelocityCommanded
 
 SENSOR_RATE = 20.0
@@ -31,75 +23,84 @@ SENSOR_RATE = 20.0
 _LATENCY = 3_000_000
 """Nanoseconds from a tick to the odometry, and from there to the scan: reading a sensor takes time."""
 
-_SENSOR_QOS = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+class Port(Protocol):
+    """What a driver needs of rclpy: the model's, or the real one's."""
+
+    @property
+    def node(self) -> Any:
+        """The driver's node."""
+
+    def now(self) -> int:
+        """Nanoseconds of the run's time."""
+
+    def sleep(self, duration: int) -> None:
+        """Wait for so many nanoseconds of the run's time."""
+
+    def message(self, package: str, name: str) -> Any:
+        """A message class."""
+
+    def service(self, package: str, name: str) -> Any:
+        """A service class."""
+
+    def sensor_publisher(self, message: Any, topic: str) -> Any:
+        """A publisher that sends without making sure, and keeps five messages."""
+
+    def hear_velocities(self, message: Any, callback: Callable[[Any], None]) -> None:
+        """Subscribe to ``cmd_vel``."""
+
+    def publish(self, publisher: Any, message: Any) -> int:
+        """Publish a message; returns its id on the trace."""
+
+    def record(self, event: AnyEvent) -> None:
+        """Put something that the trace is to know of the robot on it."""
 
 
 class Driver:
-    """Drives a robot until the host's time ends. ``record`` takes what the trace is to know of the robot.
+    """Drives a robot. ``rate`` (Hz) is that of odometry and scans, None the usual one."""
 
-    ``world`` builds the robot's world once the driver runs, on its thread: that takes a while. ``rate`` (Hz)
-    is that of odometry and scans, None the usual one.
-    """
-
-    def __init__(
-        self,
-        host: Host,
-        record: Callable[[AnyEvent], None],
-        world: Callable[[], World],
-        rate: float | None = None,
-    ) -> None:
+    def __init__(self, port: Port, rate: float | None = None) -> None:
         self._tick = 1 / (rate or SENSOR_RATE)
-        self._host = host
-        self._record = record
-        self._build_world = world
-        self._context = Context(host=host, probe=PublishingProbe(host.clock, host.probe))
-        self._context.init([])
-        self._node = Node("robot_driver", context=self._context)
-        self._twist = message("geometry_msgs", "Twist")
-        self._odometry = message("nav_msgs", "Odometry")
-        self._laser_scan = message("sensor_msgs", "LaserScan")
+        self._port = port
+        self._record = port.record
+        self._node = port.node
+        self._odometry = port.message("nav_msgs", "Odometry")
+        self._laser_scan = port.message("sensor_msgs", "LaserScan")
         self._warned = False
 
-    def start(self) -> None:
-        """Offer the topics and services, and begin to drive on a thread of the host's clock."""
-        self._offer()
+    def offer(self) -> None:
+        """Offer the topics and services, and show what stands around the robot."""
+        node, port = self._node, self._port
+        self._odom = node.create_publisher(self._odometry, "odom", 10)
+        self._scan = port.sensor_publisher(self._laser_scan, "scan")
+        port.hear_velocities(port.message("geometry_msgs", "Twist"), self._on_velocity)
+        node.create_service(port.service("std_srvs", "Empty"), "reset_world", self._on_reset)
+        node.create_service(port.service("std_srvs", "SetBool"), "motor_power", self._on_motor_power)
         self._record(
             ArenaShown(
-                self._host.clock.now(),
+                port.now(),
                 tuple((wall.x0, wall.y0, wall.x1, wall.y1) for wall in ARENA.walls),
                 (ARENA.sphere.x, ARENA.sphere.y, ARENA.sphere.radius),
                 ROBOT_RADIUS,
             )
         )
-        self._context.process.start_thread(self._drive, "robot_driver")
 
-    def _offer(self) -> None:
-        node = self._node
-        self._odom = node.create_publisher(self._odometry, "odom", 10)
-        self._scan = node.create_publisher(self._laser_scan, "scan", _SENSOR_QOS)
-        VelocityCommands(node, self._twist, self._on_velocity, self._record).listen()
-        node.create_service(service("std_srvs", "Empty"), "reset_world", self._on_reset)
-        node.create_service(service("std_srvs", "SetBool"), "motor_power", self._on_motor_power)
-
-    def _drive(self) -> None:
-        clock = self._host.clock
-        self._world = self._build_world()
-        executor = SingleThreadedExecutor(context=self._context)
-        clock.sleep(_LATENCY)
+    def begin(self, world: World) -> None:
+        """Measure from now on, as soon as the node is spun."""
+        self._world = world
+        self._port.sleep(_LATENCY)
         self._node.create_timer(self._tick, self._publish_odometry)
-        clock.sleep(_LATENCY)
+        self._port.sleep(_LATENCY)
         self._node.create_timer(self._tick, self._publish_scan)
-        executor.add_node(self._node)
-        executor.spin()
 
     def _catch_up(self) -> World:
-        self._world.advance_to(self._host.clock.now())
+        self._world.advance_to(self._port.now())
         return self._world
 
     def _on_velocity(self, command: Any) -> None:
         world = self._catch_up()
         if world.command(command.linear.x, command.angular.z):
-            now = self._host.clock.now()
+            now = self._port.now()
             self._record(VelocityCommanded(now, world.commanded.linear, world.commanded.angular))
         elif not self._warned:
             self._warned = True
@@ -131,7 +132,7 @@ class Driver:
         odometry.pose.pose.orientation.w = math.cos(pose.yaw / 2)
         odometry.twist.twist.linear.x = velocity.linear
         odometry.twist.twist.angular.z = velocity.angular
-        self._odom.publish(odometry)
+        self._port.publish(self._odom, odometry)
 
     def _publish_scan(self) -> None:
         world = self._catch_up()
@@ -147,8 +148,8 @@ class Driver:
         )
         scan.header.stamp = self._node.get_clock().now().to_msg()
         scan.header.frame_id = "base_scan"
-        now = self._host.clock.now()
-        sent = self._scan.send(scan)
+        now = self._port.now()
+        sent = self._port.publish(self._scan, scan)
         self._record(Scanned(now, sent, _packed(ranges)))
         self._record(self._moved(now, world, float(ranges[len(ranges) // 2])))
 

@@ -1,0 +1,12 @@
+"""Shows a process of real ROS 2 to the console: what its rclpy does, as events of ``sim.trace``.
+
+It runs in the program's own Python, 3.10 or newer, where nothing else of cbtui need be installed, and uses
+the standard library alone. What is on the program's path is ``..``; ``CBTUI_PROBE`` names the folder of the
+sockets at which consoles find the processes.
+"""
+
+PROTOCOL = 1
+"""What a console and a probe have to agree on."""
+
+FOLDER = "CBTUI_PROBE"
+"""The environment variable that names the folder of the sockets; without it the probe does nothing."""

@@ -1,0 +1,221 @@
+"""Callbacks that tell when they start, fail, end, and leave and come back to their thread."""
+
+from __future__ import annotations
+
+import functools
+import inspect
+import sys
+import time
+from typing import TYPE_CHECKING, Any
+
+from .recorder import now
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Coroutine, Generator
+    from types import FrameType
+
+    from .entities import Entity
+    from .recorder import Recorder
+
+_WITH_INFO = inspect.Signature(
+    [inspect.Parameter(name, inspect.Parameter.POSITIONAL_ONLY) for name in ("data", "info")]
+)
+"""By this rclpy sees that a subscription's callback wants to know about its messages, too."""
+
+
+def is_own(frame: FrameType) -> bool:
+    """Whether a frame runs the program's code: not rclpy's, this package's or Python's."""
+    root = str(frame.f_globals.get("__name__", "")).partition(".")[0]
+    return root == "__main__" or root not in {"rclpy", "cbtui_probe", *sys.stdlib_module_names}
+
+
+def written_at(callback: Callable[..., Any] | None) -> tuple[str, str, int, int]:
+    """Name, file and first and last line of a callback; empty for none."""
+    if callback is None:
+        return "", "", 0, 0
+    while isinstance(callback, functools.partial):
+        callback = callback.func
+    callback = inspect.unwrap(callback)
+    name = str(getattr(callback, "__name__", type(callback).__name__))
+    code = getattr(callback, "__code__", None) or getattr(type(callback).__call__, "__code__", None)
+    if code is None:
+        return name, "", 0, 0
+    lines = [line for _, _, line in code.co_lines() if line is not None]
+    return name, code.co_filename, code.co_firstlineno, max(lines, default=code.co_firstlineno)
+
+
+class Calls:
+    """Tells of the calls of one entity's callback. ``recorder`` takes the events."""
+
+    def __init__(self, recorder: Recorder, entity: Entity) -> None:
+        self._recorder = recorder
+        self._entity = entity
+
+    def traced(self, callback: Callable[..., Any], start: Callable[..., None] | None = None) -> Any:
+        """A callback that does the same and is told of; ``start`` gets its arguments as it starts."""
+        return self._wrapped(callback, start or self.begin, None)
+
+    def traced_with_info(self, callback: Callable[..., Any]) -> Any:
+        """The callback of a subscription, which has rclpy hand it what is known of a message, too.
+
+        One that rclpy will refuse is left as it is.
+        """
+        takes = next((number for number in (1, 2) if _takes(callback, number)), None)
+        if takes is None:
+            return callback
+        traced = self._wrapped(callback, lambda _, info: self.begin_with(info["source_timestamp"]), takes)
+        traced.__signature__ = _WITH_INFO
+        return traced
+
+    def _wrapped(self, callback: Callable[..., Any], begin: Callable[..., None], takes: int | None) -> Any:
+        """A callback that is told of, and hands on so many of its arguments, None: all."""
+        if inspect.iscoroutinefunction(callback):
+
+            async def run_async(*args: Any, **kwargs: Any) -> Any:
+                steps = _Steps(self, callback(*args[:takes], **kwargs), self._enter())
+                begin(*args)
+                try:
+                    return await steps
+                except Exception as error:
+                    self._fail(error)
+                    raise
+                finally:
+                    self._leave(steps.outer)
+
+            return functools.wraps(callback)(run_async)
+
+        def run(*args: Any, **kwargs: Any) -> Any:
+            outer = self._enter()
+            begin(*args)
+            try:
+                return callback(*args[:takes], **kwargs)
+            except BaseException as error:
+                self._fail(error)
+                raise
+            finally:
+                self._leave(outer)
+
+        return functools.wraps(callback)(run)
+
+    def begin(self, *args: Any) -> None:
+        """Tell that the callback starts; a client's with the number of the call."""
+        recorder, call = self._recorder, args[0] if self._entity.kind == "client" else 0
+        recorder.put("callback_start", now(), self._entity.number, recorder.thread(), call, 0, 0)
+
+    def begin_service(self, *_args: Any) -> None:
+        """Tell that the callback starts with the request that its thread has taken."""
+        here = self._recorder.here
+        sent, here.sent = here.sent, 0
+        self.begin_with(sent) if sent else self.begin()
+
+    def begin_timer(self, *_args: Any) -> None:
+        """Tell that a timer's callback starts: its next call is one period after the one it was due at."""
+        recorder, start = self._recorder, now()
+        timer = self._entity.made()
+        late = 0 if timer is None else max(0, timer.timer_period_ns - timer.time_until_next_call())
+        recorder.put("callback_start", start, self._entity.number, recorder.thread(), 0, late, 0)
+
+    def begin_with(self, sent: int) -> None:
+        """Tell that the callback starts with a message sent at ``sent`` (nanoseconds since 1970)."""
+        recorder = self._recorder
+        age = max(0, time.time_ns() - sent)
+        recorder.put("taken", now(), self._entity.number, recorder.thread(), sent, age)
+
+    def suspend(self, outer: int) -> None:
+        """Tell that the callback leaves the calling thread, on which ``outer`` runs again."""
+        self._come_off(outer)
+        self._recorder.put("callback_suspend", now(), self._entity.number, self._recorder.thread())
+
+    def resume(self) -> int:
+        """Tell that it goes on on the calling thread; returns what ran there until now."""
+        outer = self._come_on()
+        self._recorder.put("callback_resume", now(), self._entity.number, self._recorder.thread())
+        return outer
+
+    def _enter(self) -> int:
+        self._entity.waits_no_more(self._recorder)
+        return self._come_on()
+
+    def _leave(self, outer: int) -> None:
+        self._come_off(outer)
+        self._recorder.put("callback_end", now(), self._entity.number, self._recorder.thread())
+
+    def _come_on(self) -> int:
+        """Be what runs on the calling thread; returns what ran there until now."""
+        here, thread = self._recorder.here, self._recorder.thread()
+        outer, here.entity = here.entity, self._entity.number
+        if outer == 0 and here.spinner is not None:
+            here.spinner.busy.add(thread)
+        return outer
+
+    def _come_off(self, outer: int) -> None:
+        here = self._recorder.here
+        here.entity = outer
+        if outer == 0 and here.spinner is not None:
+            here.spinner.busy.discard(here.thread)
+
+    def _fail(self, error: BaseException) -> None:
+        recorder = self._recorder
+        recorder.put("callback_error", now(), self._entity.number, recorder.thread(), *raised_at(error))
+
+
+def raised_at(error: BaseException) -> tuple[str, str, int]:
+    """An exception's class and text, and file and line of the innermost frame of the program's own code."""
+    place, trace = ("", 0), error.__traceback__
+    while trace is not None:
+        if is_own(trace.tb_frame) or not place[0]:
+            place = (trace.tb_frame.f_code.co_filename, trace.tb_lineno)
+        trace = trace.tb_next
+    text = f"{type(error).__name__}: {error}" if str(error) else type(error).__name__
+    return text, *place
+
+
+class _Steps:
+    """Awaits a coroutine, and tells whenever it leaves its thread and goes on.
+
+    ``outer`` is what runs on the thread around it.
+    """
+
+    def __init__(self, calls: Calls, coroutine: Coroutine[Any, Any, Any], outer: int) -> None:
+        self.outer = outer
+        self._calls = calls
+        self._coroutine = coroutine
+
+    def __await__(self) -> Generator[Any, Any, Any]:
+        coroutine, suspended = self._coroutine, False
+        try:
+            while True:
+                if suspended and not _is_polled(coroutine):
+                    suspended = False
+                    self.outer = self._calls.resume()
+                try:
+                    wanted = coroutine.send(None)
+                except StopIteration as stop:
+                    return stop.value
+                if not suspended:
+                    suspended = True
+                    self._calls.suspend(self.outer)
+                yield wanted
+        finally:
+            coroutine.close()
+
+
+def _is_polled(coroutine: Any) -> bool:
+    """Whether a coroutine waits for a future that is not done: it is asked, and will not go on.
+
+    Jazzy up to 7.1.6 asks again and again.
+    """
+    while getattr(coroutine, "cr_await", None) is not None:
+        coroutine = coroutine.cr_await
+    frame = getattr(coroutine, "gi_frame", None)
+    future = None if frame is None else frame.f_locals.get("self")
+    return future is not None and hasattr(future, "cancelled") and not (future.done() or future.cancelled())
+
+
+def _takes(callback: Callable[..., Any], arguments: int) -> bool:
+    """Whether a subscription's callback takes so many arguments, as rclpy finds out."""
+    try:
+        inspect.signature(callback).bind(*[object()] * arguments)
+    except TypeError:
+        return False
+    return True

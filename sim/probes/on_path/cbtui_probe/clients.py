@@ -1,0 +1,71 @@
+"""Service calls, as the process that makes them sees them: sent, answered, and blocked for."""
+
+from __future__ import annotations
+
+import time
+from functools import wraps
+from typing import TYPE_CHECKING, Any
+
+from .callbacks import Calls
+from .entities import state_of
+from .recorder import now
+
+if TYPE_CHECKING:
+    from .recorder import Recorder
+
+
+def watch_clients(recorder: Recorder, client_class: Any) -> None:
+    """Tell of the calls of all clients of this class that the program has made."""
+    send, block = client_class.call_async, client_class.call
+
+    @wraps(send)
+    def call_async(client: Any, request: Any) -> Any:
+        entity = state_of(client)
+        if entity is None:
+            return send(client, request)
+        here, service = recorder.here, client.service_name
+        call, began, before = recorder.new_id(), now(), time.time_ns()
+        future = send(client, request)
+        after = time.time_ns()
+        recorder.put("called", began, call, service, here.entity, repr(request), before, after)
+        if here.blocks:
+            here.blocks = call
+            recorder.put("blocked", now(), call, recorder.thread(), here.entity, service)
+        calls = Calls(recorder, entity)
+        take = calls.traced(future.set_result, lambda _response: calls.begin(call))
+
+        def set_result(response: Any) -> None:
+            recorder.put("service_reply", now(), call, service, repr(response))
+            take(response)
+
+        future.set_result = set_result
+        return future
+
+    @wraps(block)
+    def call(client: Any, *args: Any, **kwargs: Any) -> Any:
+        if state_of(client) is None:
+            return block(client, *args, **kwargs)
+        here = recorder.here
+        outer, here.blocks = here.blocks, -1
+        try:
+            return block(client, *args, **kwargs)
+        finally:
+            if here.blocks > 0:
+                recorder.put("unblocked", now(), here.blocks, recorder.thread())
+            here.blocks = outer
+
+    client_class.call_async = call_async
+    client_class.call = call
+
+
+def watch_requests(recorder: Recorder, rclpy_implementation: Any) -> None:
+    """Have it known, on the thread that takes a request, when that was sent."""
+    take = rclpy_implementation.Service.service_take_request
+
+    def take_known(service: Any, request_class: Any) -> Any:
+        taken = take(service, request_class)
+        header = taken[1]
+        recorder.here.sent = 0 if header is None else header.source_timestamp
+        return taken
+
+    rclpy_implementation.Service.service_take_request = take_known

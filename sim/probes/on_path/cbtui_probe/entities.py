@@ -1,0 +1,224 @@
+"""What the probe knows of nodes, callback groups and entities, and how it comes to know them."""
+
+from __future__ import annotations
+
+import inspect
+import sys
+import time
+import weakref
+from functools import wraps
+from typing import TYPE_CHECKING, Any
+
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+
+from .callbacks import Calls, is_own, written_at
+from .recorder import now
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .recorder import Recorder
+
+STATE = "_cbtui"
+"""The attribute in which an entity, node, publisher or group of rclpy's has what the probe knows of it."""
+
+
+class Entity:
+    """What the probe knows of something with a callback."""
+
+    def __init__(self, kind: str) -> None:
+        self.kind = kind
+        self.number = 0
+        self.wait: tuple[str, int, bool] | None = None
+        """Why it waits, by whom it is held up, and whether no worker was free; None: it does not."""
+        self._since = 0
+        self.made: Callable[[], Any] = _nothing
+        """rclpy's object, None before it is made and once it is gone."""
+
+    def waits(self, recorder: Recorder, since: int, wait: tuple[str, int, bool]) -> None:
+        """Tell why it does not run, if that is new; ``since`` is when it became ready, as far as is known."""
+        if self.wait is None:
+            self._since = since
+            recorder.put("ready", now(), self.number, 1, 0)
+        if self.wait != wait:
+            self.wait = wait
+            recorder.put("wait_start", now(), self.number, self._since, *wait)
+
+    def waits_no_more(self, recorder: Recorder) -> None:
+        """Tell that it got its thread, or that what it waited for is gone."""
+        if self.wait is not None:
+            self.wait = None
+            recorder.put("wait_end", now(), self.number)
+
+
+def _nothing() -> None:
+    return None
+
+
+def state_of(thing: object) -> Any:
+    """What the probe knows of one of rclpy's objects; None: nothing."""
+    return getattr(thing, STATE, None)
+
+
+class Entities:
+    """Puts itself into the ways in which nodes make and destroy things. ``nodes`` are those there are."""
+
+    def __init__(self, recorder: Recorder) -> None:
+        self._recorder = recorder
+        self.nodes: weakref.WeakSet[Any] = weakref.WeakSet()
+
+    def watch(self, node_class: Any) -> None:
+        """Come to know whatever nodes of this class make."""
+        make_node = node_class.__init__
+        entities = self
+
+        @wraps(make_node)
+        def init(node: Any, *args: Any, **kwargs: Any) -> None:
+            make_node(node, *args, **kwargs)
+            entities.node_made(node)
+
+        node_class.__init__ = init
+        for kind in ("timer", "subscription", "service", "client", "guard_condition"):
+            self._watch_making(node_class, kind)
+            self._watch_destroying(node_class, kind)
+        self._watch_publishers(node_class)
+        self._watch_waitables(node_class)
+
+    def node_made(self, node: Any) -> int:
+        """Know a node; returns its id."""
+        if state_of(node) is None:
+            number = self._recorder.new_id()
+            setattr(node, STATE, number)
+            self._recorder.put_appeared("node", number, node.get_fully_qualified_name())
+            self.nodes.add(node)
+        return int(state_of(node))
+
+    def _watch_making(self, node_class: Any, kind: str) -> None:
+        make = getattr(node_class, f"create_{kind}")
+        signature = inspect.signature(make)
+
+        @wraps(make)
+        def create(node: Any, *args: Any, **kwargs: Any) -> Any:
+            if not is_own(sys._getframe(1)):
+                return make(node, *args, **kwargs)
+            try:
+                bound = signature.bind(node, *args, **kwargs)
+            except TypeError:
+                return make(node, *args, **kwargs)  # which says so
+            entity = Entity("guard" if kind == "guard_condition" else kind)
+            callback = bound.arguments.get("callback")
+            if callable(callback):
+                bound.arguments["callback"] = self._traced(entity, callback)
+            made = make(*bound.args, **bound.kwargs)
+            self._know(node, made, entity, callback)
+            return made
+
+        setattr(node_class, f"create_{kind}", create)
+
+    def _traced(self, entity: Entity, callback: Callable[..., Any]) -> Any:
+        calls = Calls(self._recorder, entity)
+        if entity.kind == "subscription":
+            return calls.traced_with_info(callback)
+        begin = {"timer": calls.begin_timer, "service": calls.begin_service}.get(entity.kind)
+        return calls.traced(callback, begin)
+
+    def _know(self, node: Any, made: Any, entity: Entity, callback: Callable[..., Any] | None) -> None:
+        recorder = self._recorder
+        group = self._group_id(made.callback_group, self.node_made(node))
+        number = entity.number = recorder.new_id()
+        depth = getattr(getattr(made, "qos_profile", None), "depth", 0)
+        period = made.timer_period_ns if entity.kind == "timer" else 0
+        recorder.put_appeared(
+            "entity",
+            number,
+            state_of(node),
+            group,
+            entity.kind,
+            _name_of(entity.kind, made),
+            *written_at(callback),
+            0 if entity.kind == "timer" else depth,
+            period,
+        )
+        setattr(made, STATE, entity)
+        entity.made = weakref.ref(made)
+
+    def _group_id(self, group: Any, node: int) -> int:
+        if state_of(group) is None:
+            number = self._recorder.new_id()
+            setattr(group, STATE, number)
+            kind = "custom"
+            if type(group) is MutuallyExclusiveCallbackGroup:
+                kind = "exclusive"
+            elif type(group) is ReentrantCallbackGroup:
+                kind = "reentrant"
+            self._recorder.put_appeared("group", number, node, kind, type(group).__name__)
+        return int(state_of(group))
+
+    def _watch_destroying(self, node_class: Any, kind: str) -> None:
+        destroy = getattr(node_class, f"destroy_{kind}")
+        recorder = self._recorder
+
+        @wraps(destroy)
+        def destroy_known(node: Any, thing: Any) -> Any:
+            entity = state_of(thing)
+            if entity is not None and recorder.appeared.pop(entity.number, None) is not None:
+                entity.waits_no_more(recorder)
+                recorder.put("entity_gone", now(), entity.number)
+            return destroy(node, thing)
+
+        setattr(node_class, f"destroy_{kind}", destroy_known)
+
+    def _watch_publishers(self, node_class: Any) -> None:
+        make = node_class.create_publisher
+
+        @wraps(make)
+        def create_publisher(node: Any, *args: Any, **kwargs: Any) -> Any:
+            made = make(node, *args, **kwargs)
+            if is_own(sys._getframe(1)):
+                setattr(made, STATE, (self.node_made(node), made.topic_name))
+            return made
+
+        node_class.create_publisher = create_publisher
+
+    def watch_publishing(self, publisher_class: Any) -> None:
+        """Tell of whatever publishers of this class publish."""
+        publish, recorder = publisher_class.publish, self._recorder
+
+        @wraps(publish)
+        def publish_known(publisher: Any, msg: Any) -> None:
+            known = state_of(publisher)
+            if known is None:
+                publish(publisher, msg)
+                return
+            node, topic = known
+            began, before = now(), time.time_ns()
+            publish(publisher, msg)
+            entity = recorder.here.entity
+            recorder.put("sent", began, recorder.new_id(), topic, node, entity, before, time.time_ns())
+
+        publisher_class.publish = publish_known
+
+    def _watch_waitables(self, node_class: Any) -> None:
+        """Actions' servers and clients, and waitables of the program's own."""
+        add = node_class.add_waitable
+
+        @wraps(add)
+        def add_waitable(node: Any, waitable: Any) -> None:
+            module = type(waitable).__module__
+            if state_of(waitable) is None and (
+                module.startswith("rclpy.action.") or not module.startswith("rclpy")
+            ):
+                entity = Entity("waitable")
+                waitable.execute = Calls(self._recorder, entity).traced(waitable.execute)
+                self._know(node, waitable, entity, None)
+            add(node, waitable)
+
+        node_class.add_waitable = add_waitable
+
+
+def _name_of(kind: str, made: Any) -> str:
+    if kind == "subscription":
+        return str(made.topic_name)
+    if kind in ("service", "client"):
+        return str(made.service_name)
+    return str(getattr(made, "_action_name", ""))

@@ -1,0 +1,128 @@
+"""What the probe knows of executors: their threads, whether they wait, and whether they are spun."""
+
+from __future__ import annotations
+
+import weakref
+from functools import wraps
+from typing import TYPE_CHECKING, Any
+
+from .recorder import now
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .recorder import Recorder
+
+_IDLE = 200_000_000
+"""Nanoseconds without a sign of being spun after which nobody spins an executor."""
+
+
+class Spinner:
+    """What the probe knows of one executor: its id, and how many callbacks it can run at once."""
+
+    def __init__(self, number: int, threads: int) -> None:
+        self.number = number
+        self.threads = threads
+        self.waits = False
+        """Whether a thread waits in it for something to become ready."""
+        self.busy: set[int] = set()
+        """The threads that run its callbacks, by their ids on the trace."""
+        self._spun_at = -_IDLE
+
+    def is_spun(self) -> bool:
+        """Whether it waits or runs a callback, or did just now."""
+        return self.waits or bool(self.busy) or now() - self._spun_at < _IDLE
+
+    def spun(self) -> None:
+        """It is being spun now."""
+        self._spun_at = now()
+
+    def is_full(self) -> bool:
+        """Whether every thread of it runs a callback."""
+        return len(self.busy) >= self.threads
+
+
+class Executors:
+    """Puts itself into the ways in which executors are made and wait."""
+
+    def __init__(self, recorder: Recorder) -> None:
+        self._recorder = recorder
+        self._spinners: weakref.WeakKeyDictionary[Any, Spinner] = weakref.WeakKeyDictionary()
+
+    def spinner_of(self, executor: Any) -> Spinner | None:
+        """What is known of an executor."""
+        return None if executor is None else self._spinners.get(executor)
+
+    def watch(self, executors: Any, rclpy_implementation: Any) -> None:
+        """Come to know the executors of the module ``rclpy.executors``, and those made of C++."""
+        base, pool_class = executors.Executor, executors.MultiThreadedExecutor
+        make, make_pool, wait = base.__init__, pool_class.__init__, base.wait_for_ready_callbacks
+
+        @wraps(make)
+        def init(executor: Any, *args: Any, **kwargs: Any) -> None:
+            make(executor, *args, **kwargs)
+            if not isinstance(executor, pool_class):
+                self._know(executor, 1)
+
+        @wraps(make_pool)
+        def init_pool(executor: Any, *args: Any, **kwargs: Any) -> None:
+            make_pool(executor, *args, **kwargs)
+            pool = executor._executor
+            pool._initializer = self._work_for(self._know(executor, pool._max_workers))
+
+        @wraps(wait)
+        def wait_for_ready_callbacks(executor: Any, *args: Any, **kwargs: Any) -> Any:
+            spinner, here = self._spinners[executor], self._recorder.here
+            outer, here.spinner = here.spinner, spinner
+            spinner.waits = True
+            spinner.spun()
+            try:
+                return wait(executor, *args, **kwargs)
+            finally:
+                spinner.waits = False
+                spinner.spun()
+                if outer is not None:
+                    here.spinner = outer
+
+        base.__init__ = init
+        pool_class.__init__ = init_pool
+        base.wait_for_ready_callbacks = wait_for_ready_callbacks
+        if hasattr(rclpy_implementation, "EventsExecutor"):
+            for name in (
+                "spin",
+                "spin_once",
+                "spin_until_future_complete",
+                "spin_once_until_future_complete",
+            ):
+                self._watch_spinning(rclpy_implementation.EventsExecutor, name)
+
+    def _watch_spinning(self, executor_class: Any, name: str) -> None:
+        """Of an executor made of C++ only who spins it can be known, and when."""
+        spin = getattr(executor_class, name)
+
+        def spin_known(executor: Any, *args: Any, **kwargs: Any) -> Any:
+            here = self._recorder.here
+            spinner = self._spinners.get(executor) or self._know(executor, 1)
+            outer, here.spinner = here.spinner, spinner
+            spinner.waits = True
+            try:
+                return spin(executor, *args, **kwargs)
+            finally:
+                spinner.waits = False
+                spinner.spun()
+                here.spinner = outer
+
+        setattr(executor_class, name, spin_known)
+
+    def _know(self, executor: Any, threads: int) -> Spinner:
+        spinner = Spinner(self._recorder.new_id(), threads)
+        self._recorder.put_appeared("executor", spinner.number, type(executor).__name__, threads)
+        self._spinners[executor] = spinner
+        return spinner
+
+    def _work_for(self, spinner: Spinner) -> Callable[[], None]:
+        def begin() -> None:
+            here = self._recorder.here
+            here.spinner, here.executor = spinner, spinner.number
+
+        return begin

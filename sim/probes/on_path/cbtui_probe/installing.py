@@ -1,0 +1,63 @@
+"""Puts the parts of the probe into rclpy, once it is imported."""
+
+from __future__ import annotations
+
+import sys
+from typing import Any
+
+from .callbacks import raised_at
+from .clients import watch_clients, watch_requests
+from .entities import Entities
+from .executors import Executors
+from .recorder import Recorder, now
+from .sockets import Server
+from .waits import Waits
+
+_SEVERITIES = {10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL"}
+
+
+def install(folder: str) -> None:
+    """Watch everything that this process does with rclpy, and tell it at a socket in ``folder``.
+
+    Raises:
+        Exception: this rclpy is made in another way than those that the probe knows.
+    """
+    import rclpy.client
+    import rclpy.executors
+    import rclpy.node
+    import rclpy.publisher
+    from rclpy.impl.implementation_singleton import rclpy_implementation
+
+    recorder = Recorder()
+    executors, entities = Executors(recorder), Entities(recorder)
+    server = Server(recorder, Waits(recorder, entities, executors, rclpy_implementation).look)
+    server.start(folder)
+    executors.watch(rclpy.executors, rclpy_implementation)
+    entities.watch(rclpy.node.Node)
+    entities.watch_publishing(rclpy.publisher.Publisher)
+    watch_clients(recorder, rclpy.client.Client)
+    watch_requests(recorder, rclpy_implementation)
+    _watch_log(recorder, rclpy_implementation)
+    _watch_end(recorder)
+
+
+def _watch_log(recorder: Recorder, rclpy_implementation: Any) -> None:
+    write = rclpy_implementation.rclpy_logging_rcutils_log
+
+    def write_known(severity: Any, name: str, message: str, *place: Any) -> None:
+        thread, entity = recorder.thread(), recorder.here.entity
+        recorder.put("log", now(), _SEVERITIES.get(int(severity), "INFO"), name, message, thread, entity)
+        write(severity, name, message, *place)
+
+    rclpy_implementation.rclpy_logging_rcutils_log = write_known
+
+
+def _watch_end(recorder: Recorder) -> None:
+    report = sys.excepthook
+
+    def report_known(kind: Any, error: Any, trace: Any) -> None:
+        if not issubclass(kind, KeyboardInterrupt):
+            recorder.put("uncaught", now(), *raised_at(error))
+        report(kind, error, trace)
+
+    sys.excepthook = report_known

@@ -1,0 +1,78 @@
+"""Keeps what happens in this process as events until they are sent: bounded, and never blocking."""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from collections import deque
+from itertools import count
+from typing import Any
+
+_BOUND = 200_000
+"""Events that are kept; the oldest are given up, and counted."""
+_ROOM = 30
+"""Bits for the ids of one process, so that those of several processes differ."""
+
+now = time.monotonic_ns
+
+
+class Here(threading.local):
+    """What runs on the calling thread."""
+
+    thread = 0
+    entity = 0
+    """The entity whose callback runs, 0 for none."""
+    executor = 0
+    """The executor whose worker the thread is, 0 for a thread of the program's own."""
+    spinner: Any = None
+    """What is known of the executor that the thread spins or works for."""
+    sent = 0
+    """When the request was sent that the thread has taken, in nanoseconds since 1970; 0: not known."""
+    blocks = 0
+    """The service call that the thread waits for; -1: the one that it is about to make, 0: none."""
+
+
+class Recorder:
+    """Gives out ids and takes events, as arrays of a kind's tag and its fields. Thread-safe.
+
+    What has appeared and is still there is told to every console that comes, whenever it comes.
+    """
+
+    def __init__(self) -> None:
+        self.here = Here()
+        self.lost = 0
+        self.appeared: dict[int, tuple[Any, ...]] = {}
+        self._events: deque[tuple[Any, ...]] = deque(maxlen=_BOUND)
+        self._ids = count((os.getpid() << _ROOM) + 1)
+
+    def new_id(self) -> int:
+        """An id that nothing else has."""
+        return next(self._ids)
+
+    def put(self, *event: Any) -> None:
+        """Take an event: its tag, its time in nanoseconds of the monotonic clock, and its other fields."""
+        if len(self._events) == _BOUND:
+            self.lost += 1
+        self._events.append(event)
+
+    def put_appeared(self, tag: str, number: int, *fields: Any) -> None:
+        """Take an event that introduces an id."""
+        event = (tag, now(), number, *fields)
+        self.appeared[number] = event
+        self.put(*event)
+
+    def take(self) -> list[tuple[Any, ...]]:
+        """Take all events out, in order."""
+        events = []
+        while self._events:
+            events.append(self._events.popleft())
+        return events
+
+    def thread(self) -> int:
+        """The id of the calling thread, which appears when it is first asked for."""
+        here = self.here
+        if here.thread == 0:
+            here.thread = self.new_id()
+            self.put_appeared("thread", here.thread, threading.current_thread().name, 0, here.executor)
+        return here.thread

@@ -1,0 +1,148 @@
+"""The socket at which a console finds this process, and the thread that looks and sends."""
+
+from __future__ import annotations
+
+import atexit
+import json
+import os
+import platform
+import select
+import socket
+import struct
+import sys
+import threading
+import time
+from contextlib import suppress
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import PROTOCOL
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from .recorder import Recorder
+
+_PERIOD = 0.01
+"""Seconds between two looks."""
+_UNSENT = 1 << 20
+"""Bytes that wait for a slow console before more is encoded; until then events wait as they are."""
+_FAREWELL = 0.5
+"""Seconds for which the process's end waits for a console to take the last events."""
+
+
+class Server:
+    """Sends the events of ``recorder`` to one console at a time, and has ``look`` called in between.
+
+    The thread is a daemon, and nothing it does can hold up or end the program.
+    """
+
+    def __init__(self, recorder: Recorder, look: Callable[[], None]) -> None:
+        self._recorder = recorder
+        self._look = look
+        self._console: socket.socket | None = None
+        self._unsent = b""
+        self._lost_told = 0
+        self._ends = threading.Event()
+        self._thread = threading.Thread(target=self._serve, name="cbtui-probe", daemon=True)
+
+    def start(self, folder: str) -> None:
+        """Listen in ``folder``, as ``<process id>.sock``."""
+        self._path = Path(folder) / f"{os.getpid()}.sock"
+        self._path.unlink(missing_ok=True)
+        self._listener = socket.socket(socket.AF_UNIX)
+        self._listener.bind(str(self._path))
+        self._path.chmod(0o600)
+        self._listener.listen(1)
+        self._listener.setblocking(False)
+        self._pid = os.getpid()
+        atexit.register(self._say_farewell)
+        self._thread.start()
+
+    def _serve(self) -> None:
+        looks = True
+        while not self._ends.is_set():
+            with suppress(OSError):
+                select.select([self._listener], [], [], _PERIOD)
+                self._meet()
+            if looks:
+                try:
+                    self._look()
+                except Exception as error:  # noqa: BLE001 - the program must not suffer from being watched
+                    looks = self._goes_on_after(error)
+            self._send()
+
+    def _goes_on_after(self, error: Exception) -> bool:
+        """Whether to look again: rclpy may just have been shut down, which shows as an error of any kind."""
+        import rclpy
+
+        if rclpy.ok():
+            text = f"cbtui's probe cannot tell what waits in this process any more: {error!r}"
+            self._recorder.put("notice", time.monotonic_ns(), "WARN", text)
+            return False
+        return True
+
+    def _meet(self) -> None:
+        """Take a console that comes; one at a time, and only the same user's."""
+        try:
+            console, _ = self._listener.accept()
+        except BlockingIOError:
+            return
+        _, user, _ = struct.unpack("3i", console.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, 12))
+        if self._console is not None or user not in (0, os.getuid()):
+            console.close()
+            return
+        console.setblocking(False)
+        self._console = console
+        waiting = self._recorder.take()
+        known = [event for event in self._recorder.appeared.values() if event not in set(waiting)]
+        self._unsent = _lines([self._hello(), *known, *waiting])
+
+    def _hello(self) -> tuple[Any, ...]:
+        return (
+            "hello",
+            time.monotonic_ns(),
+            PROTOCOL,
+            os.getpid(),
+            platform.python_version(),
+            os.environ.get("ROS_DISTRO", ""),
+            [sys.executable, *sys.argv],
+            time.time_ns(),
+        )
+
+    def _send(self) -> None:
+        console = self._console
+        if console is None:
+            return
+        if len(self._unsent) < _UNSENT:
+            events = self._recorder.take()
+            if self._recorder.lost > self._lost_told:
+                self._lost_told = self._recorder.lost
+                events.append(("lost", time.monotonic_ns(), self._lost_told))
+            self._unsent += _lines(events)
+        try:
+            while self._unsent:
+                self._unsent = self._unsent[console.send(self._unsent) :]
+        except BlockingIOError:
+            return
+        except OSError:  # it has gone, and the program goes on
+            console.close()
+            self._console, self._unsent = None, b""
+
+    def _say_farewell(self) -> None:
+        """Hand on what is left when the program ends; a child made by fork has nothing to hand on."""
+        if os.getpid() != self._pid:
+            return
+        self._ends.set()
+        self._thread.join(_FAREWELL)
+        ends_at = time.monotonic() + _FAREWELL
+        while self._console is not None and time.monotonic() < ends_at:
+            self._send()
+            if not self._unsent:
+                break
+            time.sleep(_PERIOD)
+        self._path.unlink(missing_ok=True)
+
+
+def _lines(events: list[tuple[Any, ...]]) -> bytes:
+    return b"".join(json.dumps(event, separators=(",", ":")).encode() + b"\n" for event in events)

@@ -1,0 +1,127 @@
+"""Finds out what is ready but waits, while it waits, and why.
+
+rclpy leaves the entities of a busy callback group out of its wait set, so its executor does not know that
+they are ready. A second wait set can tell: nothing is taken with it, and nothing is disturbed. rcl forbids
+two waits at one time that share an entity, so it gets only those for which no executor waits now.
+"""
+
+from __future__ import annotations
+
+from contextlib import ExitStack
+from typing import TYPE_CHECKING, Any
+
+from .entities import state_of
+from .recorder import now
+
+if TYPE_CHECKING:
+    from .entities import Entities, Entity
+    from .executors import Executors, Spinner
+    from .recorder import Recorder
+
+GROUP_HELD, NO_FREE_WORKER, NOBODY_SPINS = "group held", "no free worker", "nobody spins"
+
+_KINDS = ("subscription", "client", "service")
+"""What a wait set tells of; timers tell themselves."""
+
+
+class Waits:
+    """Looks for callbacks that wait. For one thread."""
+
+    def __init__(
+        self, recorder: Recorder, entities: Entities, executors: Executors, rclpy_implementation: Any
+    ) -> None:
+        self._recorder = recorder
+        self._entities = entities
+        self._executors = executors
+        self._rclpy = rclpy_implementation
+        self._waiting: set[Entity] = set()
+
+    def look(self) -> None:
+        """Tell of all callbacks that wait now, and of those that wait no longer without having run."""
+        waiting = set()
+        for node in list(self._entities.nodes):
+            if node.context.ok():
+                waiting |= self._look_at(node)
+        for entity in self._waiting - waiting:
+            entity.waits_no_more(self._recorder)
+        self._waiting = waiting
+
+    def _look_at(self, node: Any) -> set[Entity]:
+        spinner = self._executors.spinner_of(node.executor)
+        found: dict[Entity, int] = {}
+        reasons: dict[Entity, tuple[str, int, bool]] = {}
+        unsure: list[tuple[str, Any, Entity]] = []
+        for kind in ("timer", *_KINDS):
+            for made in list(getattr(node, f"{kind}s")):
+                entity = state_of(made)
+                if entity is None or entity.number == 0:
+                    continue
+                reason = _reason(made, spinner)
+                if reason is None:
+                    continue
+                reasons[entity] = reason
+                if kind == "timer":
+                    late = _lateness(made)
+                    if late is not None:
+                        found[entity] = now() - late
+                elif made._executor_event:
+                    found[entity] = now()
+                elif spinner is None or not spinner.waits or reason[0] == GROUP_HELD:
+                    unsure.append((kind, made, entity))
+        for entity in self._ready_of(node, unsure):
+            found[entity] = now()
+        for entity, since in found.items():
+            entity.waits(self._recorder, since, reasons[entity])
+        return set(found)
+
+    def _ready_of(self, node: Any, unsure: list[tuple[str, Any, Entity]]) -> list[Entity]:
+        """Those for which something has arrived."""
+        if not unsure:
+            return []
+        with ExitStack() as held:
+            handles: list[tuple[str, Any, Entity]] = []
+            for kind, made, entity in unsure:
+                try:
+                    held.enter_context(made.handle)
+                except self._rclpy.InvalidHandle:
+                    continue  # it was destroyed just now
+                handles.append((kind, made.handle, entity))
+            held.enter_context(node.context.handle)
+            subscriptions, clients, services = (
+                [each[1] for each in handles if each[0] == kind] for kind in _KINDS
+            )
+            wait_set = self._rclpy.WaitSet(
+                len(subscriptions), 0, 0, len(clients), len(services), 0, node.context.handle
+            )
+            wait_set.clear_entities()
+            for handle in subscriptions:
+                wait_set.add_subscription(handle)
+            for handle in clients:
+                wait_set.add_client(handle)
+            for handle in services:
+                wait_set.add_service(handle)
+            wait_set.wait(0)
+            ready = {kind: set(wait_set.get_ready_entities(kind)) for kind in _KINDS}
+            return [entity for kind, handle, entity in handles if handle.pointer in ready[kind]]
+
+
+def _reason(made: Any, spinner: Spinner | None) -> tuple[str, int, bool] | None:
+    """Why an entity would have to wait: the reason, who holds its group, and whether all workers are busy."""
+    full = spinner is not None and spinner.is_full()
+    if not made.callback_group.can_execute(made):
+        holder = state_of(getattr(made.callback_group, "_active_entity", None))
+        return GROUP_HELD, 0 if holder is None else holder.number, full
+    if spinner is None or not spinner.is_spun():
+        return NOBODY_SPINS, 0, False
+    return (NO_FREE_WORKER, 0, True) if full else None
+
+
+def _lateness(timer: Any) -> int | None:
+    """How long ago a timer fell due, in nanoseconds; None: it is not due."""
+    try:
+        if timer.is_canceled():
+            return None
+        left = timer.time_until_next_call()
+    except Exception:  # noqa: BLE001 - destroyed or cancelled between the two, which rclpy tells in several ways
+        return None
+    return None if left is None or left > 0 else -left

@@ -1,0 +1,1 @@
+"""Runs programs on real rclpy, each in a process of its own, and makes a trace of what their probes tell."""

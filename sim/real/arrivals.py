@@ -1,0 +1,145 @@
+"""Which messages, requests and replies lie in whose queue, as far as that can be told from outside.
+
+rclpy tells what was sent, and what was taken; that something lies in a queue shows while a callback waits.
+So what an entity that waits has in its queue are the last messages of its topic that it has not taken. Those
+that do not fit, and those that it passes over, are lost: what one publisher sends comes in order.
+"""
+
+from collections import defaultdict, deque
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from sim.trace.events import AnyEvent, EntityAppeared, EntityKind, EntityReady, MessageDropped
+
+_REMEMBERED = 2_000
+"""Messages that are remembered of one queue."""
+
+
+class Sending(NamedTuple):
+    """A message or request that was sent, from ``before`` to ``after`` (nanoseconds since 1970)."""
+
+    number: int
+    sender: int
+    before: int
+    after: int
+
+
+@dataclass
+class _Queue:
+    entity: int
+    kind: EntityKind
+    depth: int
+    untaken: deque[Sending] = field(default_factory=lambda: deque(maxlen=_REMEMBERED))
+    told: list[int] = field(default_factory=list)
+    """What was told to lie in it."""
+    waits: bool = False
+
+
+class Arrivals:
+    """Follows the queues of subscriptions, services and clients."""
+
+    def __init__(self) -> None:
+        self._queues: dict[int, _Queue] = {}
+        self._readers: defaultdict[str, list[_Queue]] = defaultdict(list)
+        self._pending: defaultdict[str, dict[int, None]] = defaultdict(dict)
+        """The calls of each service to which no reply was taken, in the order of their sending."""
+        self._names: dict[int, str] = {}
+
+    def appeared(self, entity: EntityAppeared) -> None:
+        """An entity was made."""
+        self._names[entity.entity] = entity.name
+        queue = _Queue(entity.entity, entity.kind, max(1, entity.depth))
+        self._queues[entity.entity] = queue
+        if entity.kind in (EntityKind.SUBSCRIPTION, EntityKind.SERVICE):
+            self._readers[entity.name].append(queue)
+
+    def gone(self, entity: int) -> None:
+        """An entity was destroyed."""
+        queue = self._queues.pop(entity, None)
+        readers = self._readers[self._names.pop(entity, "")]
+        if queue in readers:
+            readers.remove(queue)
+
+    def sent(self, t: int, name: str, sending: Sending) -> Iterator[AnyEvent]:
+        """Something was sent to a topic or service."""
+        for queue in self._readers[name]:
+            queue.untaken.append(sending)
+            if queue.waits:
+                yield from self._arrived(t, queue, sending.number)
+
+    def called(self, service: str, call: int) -> None:
+        """A call was made."""
+        self._pending[service][call] = None
+
+    def replied(self, service: str, call: int) -> None:
+        """The reply of a call was taken."""
+        self._pending[service].pop(call, None)
+
+    def ready(self, t: int, entity: int) -> Iterator[AnyEvent]:
+        """Something lies in the queue of an entity that waits."""
+        queue = self._queues.get(entity)
+        if queue is None or queue.kind not in _QUEUED:
+            yield EntityReady(t, entity, 0, 0)
+            return
+        queue.waits = True
+        if queue.kind is EntityKind.CLIENT:
+            oldest = next(iter(self._pending[self._names[entity]]), 0)
+            yield from self._arrived(t, queue, oldest)
+            return
+        for sending in list(queue.untaken)[-queue.depth :]:
+            if sending.number not in queue.told:
+                yield from self._arrived(t, queue, sending.number)
+        if not queue.told:  # by somebody whom no probe watches
+            yield EntityReady(t, entity, 1, 0)
+
+    def waits_no_more(self, entity: int) -> None:
+        """An entity got its thread, or its queue is empty."""
+        if entity in self._queues:
+            self._queues[entity].waits = False
+
+    def taken(self, t: int, entity: int, sent: int) -> tuple[int, int, list[AnyEvent]]:
+        """What was sent at ``sent`` (nanoseconds since 1970) was taken from a queue.
+
+        Returns its number, 0 if nobody who is watched sent it, how much is left, and what was lost before it.
+        """
+        queue = self._queues.get(entity)
+        if queue is None:
+            return 0, 0, []
+        for place, sending in enumerate(queue.untaken):
+            if sending.before <= sent <= sending.after:
+                passed = [each for each in list(queue.untaken)[:place] if each.sender == sending.sender]
+                lost: list[AnyEvent] = []
+                if queue.kind is EntityKind.SUBSCRIPTION:
+                    lost = [event for each in passed for event in self._lost(t, queue, each)]
+                queue.untaken.remove(sending)
+                self._leaves(queue, sending.number)
+                return sending.number, len(queue.told), lost
+        return 0, len(queue.told), []
+
+    def reply_taken(self, entity: int, call: int) -> tuple[int, int]:
+        """A client took the reply of a call; returns its number, and how many are left."""
+        queue = self._queues.get(entity)
+        if queue is None:
+            return call, 0
+        self._leaves(queue, call)
+        return call, len(queue.told)
+
+    def _lost(self, t: int, queue: _Queue, sending: Sending) -> Iterator[AnyEvent]:
+        queue.untaken.remove(sending)
+        self._leaves(queue, sending.number)
+        yield MessageDropped(t, queue.entity, len(queue.told), sending.number)
+
+    def _arrived(self, t: int, queue: _Queue, number: int) -> Iterator[AnyEvent]:
+        if queue.kind is EntityKind.SUBSCRIPTION and len(queue.told) == queue.depth:
+            oldest = next(each for each in queue.untaken if each.number == queue.told[0])
+            yield from self._lost(t, queue, oldest)
+        queue.told.append(number)
+        yield EntityReady(t, queue.entity, len(queue.told), number)
+
+    def _leaves(self, queue: _Queue, number: int) -> None:
+        if number in queue.told:
+            queue.told.remove(number)
+
+
+_QUEUED = (EntityKind.SUBSCRIPTION, EntityKind.SERVICE, EntityKind.CLIENT)

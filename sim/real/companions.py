@@ -1,0 +1,64 @@
+"""What takes part in a run's ROS graph beside its programs: the caller of services, and the robot.
+
+Each is a process of its own that tells on standard output, line by line, what a probe would tell of it.
+"""
+
+import json
+import subprocess
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from selectors import BaseSelector
+
+from sim.real.programs import LineReader
+from sim.real.wire import ProbeLine, decode_lines
+
+
+class Companion:
+    """A process that is started with its first use, or before. ``take`` gets what it tells."""
+
+    def __init__(
+        self,
+        selector: BaseSelector,
+        command: Sequence[str],
+        environment: Mapping[str, str],
+        take: Callable[[list[ProbeLine]], None],
+    ) -> None:
+        self._selector = selector
+        self._command = command
+        self._environment = environment
+        self._take = take
+        self._process: subprocess.Popen[bytes] | None = None
+        self.has_spoken = False
+
+    def start(self) -> None:
+        """Start it, unless it runs."""
+        if self._process is None:
+            self._process = subprocess.Popen(
+                self._command,
+                env=self._environment,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.DEVNULL,
+                start_new_session=True,
+                bufsize=0,
+            )
+            assert self._process.stdout is not None
+            LineReader(self._selector, self._process.stdout, self._told, lambda: None)
+
+    def say(self, line: object) -> None:
+        """Have it read a line, as JSON."""
+        self.start()
+        assert self._process is not None
+        assert self._process.stdin is not None
+        with suppress(OSError):
+            self._process.stdin.write(json.dumps(line).encode() + b"\n")
+
+    def stop(self) -> None:
+        """End it."""
+        if self._process is not None:
+            self._process.kill()
+            self._process.wait()
+
+    def _told(self, data: bytes) -> None:
+        self.has_spoken = True
+        self._take(decode_lines(data))

@@ -1,0 +1,131 @@
+"""Makes events of the trace of what probes send: in the run's time, in order, and with messages linked."""
+
+import heapq
+from collections.abc import Callable, Iterable, Iterator
+from itertools import count
+
+import msgspec
+
+from sim.real.arrivals import Arrivals, Sending
+from sim.real.wire import Called, Hello, ProbeLine, Sent, Taken, Uncaught, infinite
+from sim.trace.events import (
+    AnyEvent,
+    CallbackStarted,
+    CallBlocked,
+    CallUnblocked,
+    EntityAppeared,
+    EntityGone,
+    EntityReady,
+    Event,
+    EventsLost,
+    NodeAppeared,
+    Published,
+    RequestLost,
+    ServiceCalled,
+    ServiceReplied,
+    ThreadAppeared,
+    WaitEnded,
+    WaitStarted,
+)
+
+HOLD = 30_000_000
+"""Nanoseconds for which events are held back: those of several threads and processes then come in order."""
+
+
+class Translation:
+    """Takes what the probes of a run send, and hands on events in the order in which they happened.
+
+    The run begins with the first node: what a program imports before that takes as long as it does.
+    ``begin`` is told when that was, in monotonic nanoseconds. Messages and calls get numbers in the order of
+    their sending.
+    """
+
+    def __init__(self, record: Callable[[AnyEvent], None], begin: Callable[[int], None]) -> None:
+        self._record = record
+        self._begin = begin
+        self._start: int | None = None
+        self._held: list[tuple[int, int, ProbeLine]] = []
+        self._order = count()
+        self._arrivals = Arrivals()
+        self._messages = count(1)
+        self._calls: dict[int, int] = {}
+        """The number of each call, by the one that its probe gave it."""
+        self._lost: dict[int, int] = {}
+
+    def begin_at(self, moment: int) -> None:
+        """Have the run begin, if it has not yet."""
+        if self._start is None:
+            self._start = moment
+            self._begin(moment)
+
+    def take(self, lines: Iterable[ProbeLine], process: int = 0) -> None:
+        """Take what a program's probe sent; ``process`` is its number on the trace, 0 for an only one."""
+        for line in lines:
+            match line:
+                case Hello() | Uncaught():
+                    continue
+                case NodeAppeared(t=t):
+                    self.begin_at(t)
+                case ThreadAppeared():
+                    line = msgspec.structs.replace(line, process=process)  # noqa: PLW2901
+                case EventsLost(t=t, count=lost):
+                    self._lost[process] = lost
+                    line = EventsLost(t, sum(self._lost.values()))  # noqa: PLW2901
+                case _:
+                    pass
+            heapq.heappush(self._held, (line.t, next(self._order), line))
+
+    def release(self, until: int) -> None:
+        """Hand on what happened up to a moment, in monotonic nanoseconds; nothing before the run begins."""
+        if self._start is None:
+            return
+        while self._held and self._held[0][0] <= until:
+            t, _, line = heapq.heappop(self._held)
+            for event in self._translated(line, max(0, t - self._start)):
+                self._record(event)
+
+    def _translated(self, line: ProbeLine, t: int) -> Iterator[AnyEvent]:
+        arrivals = self._arrivals
+        match line:
+            case Sent():
+                message = next(self._messages)
+                yield Published(t, message, line.topic, line.node, line.entity)
+                yield from arrivals.sent(t, line.topic, Sending(message, line.node, line.before, line.after))
+            case Called():
+                call = self._calls[line.call] = next(self._messages)
+                yield ServiceCalled(t, call, line.service, line.entity, line.request)
+                arrivals.called(line.service, call)
+                yield from arrivals.sent(t, line.service, Sending(call, 0, line.before, line.after))
+            case Taken():
+                number, left, lost = arrivals.taken(t, line.entity, line.sent)
+                yield from lost
+                yield CallbackStarted(t, line.entity, line.thread, number, line.age, left)
+            case EntityReady():
+                yield from arrivals.ready(t, line.entity)
+            case WaitStarted(since=since):
+                assert self._start is not None
+                yield msgspec.structs.replace(line, t=t, since=max(0, since - self._start))
+            case _:
+                yield from self._with_number(line, t)
+
+    def _with_number(self, line: ProbeLine, t: int) -> Iterator[AnyEvent]:
+        """An event of the trace, with the number of the call that it is about."""
+        arrivals = self._arrivals
+        match line:
+            case ServiceReplied() | RequestLost():
+                call = self._calls.get(line.call, 0)
+                arrivals.replied(line.service, call)
+                yield msgspec.structs.replace(line, t=t, call=call)
+            case CallBlocked() | CallUnblocked():
+                yield msgspec.structs.replace(line, t=t, call=self._calls.get(line.call, 0))
+            case CallbackStarted(message=call) if call:
+                number, left = arrivals.reply_taken(line.entity, self._calls.get(call, 0))
+                yield msgspec.structs.replace(line, t=t, message=number, depth=left)
+            case Event():
+                if isinstance(line, EntityAppeared):
+                    arrivals.appeared(line)
+                elif isinstance(line, EntityGone):
+                    arrivals.gone(line.entity)
+                elif isinstance(line, WaitEnded):
+                    arrivals.waits_no_more(line.entity)
+                yield infinite(msgspec.structs.replace(line, t=t))

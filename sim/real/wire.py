@@ -1,0 +1,117 @@
+"""What a probe sends: lines of JSON, most of them events of the trace, some that are yet to be made such.
+
+Times are nanoseconds of the machine's monotonic clock; ids differ between all processes of the machine.
+"""
+
+import math
+import sys
+from functools import cache, reduce
+from operator import or_
+from typing import Any, TypeAlias
+
+import msgspec
+
+from sim.trace.events import AnyEvent, RobotMoved
+from sim.trace.events.event import kinds
+
+
+class Hello(msgspec.Struct, frozen=True, array_like=True, tag="hello"):
+    """The first line: which process it is."""
+
+    t: int
+    protocol: int
+    process: int
+    """Its number in the operating system."""
+    python: str
+    """Version of its Python."""
+    distribution: str
+    """Name of the ROS distribution, where its environment tells."""
+    command: list[str]
+    epoch: int
+    """Nanoseconds since 1970 at ``t``."""
+
+
+class Sent(msgspec.Struct, frozen=True, array_like=True, tag="sent"):
+    """A message was published."""
+
+    t: int
+    message: int
+    topic: str
+    node: int
+    entity: int
+    before: int
+    """Nanoseconds since 1970 before the middleware had it."""
+    after: int
+    """Nanoseconds since 1970 once the middleware had it."""
+
+
+class Called(msgspec.Struct, frozen=True, array_like=True, tag="called"):
+    """A request was sent to a service."""
+
+    t: int
+    call: int
+    service: str
+    entity: int
+    request: str
+    before: int
+    """Nanoseconds since 1970 before the middleware had it."""
+    after: int
+    """Nanoseconds since 1970 once the middleware had it."""
+
+
+class Taken(msgspec.Struct, frozen=True, array_like=True, tag="taken"):
+    """A callback started with a message or a request."""
+
+    t: int
+    entity: int
+    thread: int
+    sent: int
+    """Nanoseconds since 1970 at which the middleware sent it."""
+    age: int
+    """Nanoseconds since then."""
+
+
+class Uncaught(msgspec.Struct, frozen=True, array_like=True, tag="uncaught"):
+    """An exception ended the program."""
+
+    t: int
+    error: str
+    """Its class and text."""
+    file: str
+    """Innermost file of the program's own code."""
+    line: int
+
+
+ProbeLine: TypeAlias = Hello | Sent | Called | Taken | Uncaught | AnyEvent
+
+
+@cache
+def _decoder() -> msgspec.json.Decoder[ProbeLine]:
+    line: Any = reduce(or_, kinds(), Hello | Sent | Called | Taken | Uncaught)
+    return msgspec.json.Decoder(line)
+
+
+def decode_lines(data: bytes) -> list[ProbeLine]:
+    """Return what whole lines tell.
+
+    Raises:
+        msgspec.DecodeError: they are not what a probe sends.
+    """
+    try:
+        return _decoder().decode_lines(data)
+    except (UnicodeDecodeError, RecursionError) as error:
+        raise msgspec.DecodeError(str(error)) from None
+
+
+def finite(event: AnyEvent) -> AnyEvent:
+    """The event as JSON can have it, which knows no infinite numbers: those of a robot with a free way."""
+    if isinstance(event, RobotMoved) and math.isinf(event.front):
+        return msgspec.structs.replace(event, front=sys.float_info.max)
+    return event
+
+
+def infinite(event: AnyEvent) -> AnyEvent:
+    """The event of which ``finite`` made this one."""
+    if isinstance(event, RobotMoved) and event.front == sys.float_info.max:
+        return msgspec.structs.replace(event, front=math.inf)
+    return event

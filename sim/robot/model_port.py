@@ -1,0 +1,69 @@
+"""The robot's driver on the model of rclpy: in a context and on a thread of its own."""
+
+from collections.abc import Callable
+from typing import Any
+
+from sim.interfaces import message, service
+from sim.probes.probe import PublishingProbe
+from sim.robot.driver import Driver
+from sim.robot.velocity_commands import VelocityCommands
+from sim.robot.world import World
+from sim.ros.context.context import Context
+from sim.ros.middleware.host import Host
+from sim.ros.node.node import Node
+from sim.ros.qos.qos import QoSProfile, ReliabilityPolicy
+from sim.ros.scheduling.executors import SingleThreadedExecutor
+from sim.trace.events import AnyEvent
+
+_SENSOR_QOS = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+
+
+class ModelPort:
+    """What the driver needs of the model. ``record`` takes what the trace is to know of the robot."""
+
+    message = staticmethod(message)
+    service = staticmethod(service)
+
+    def __init__(self, host: Host, record: Callable[[AnyEvent], None]) -> None:
+        self.record = record
+        self.now = host.clock.now
+        self.sleep = host.clock.sleep
+        self.context = Context(host=host, probe=PublishingProbe(host.clock, host.probe))
+        self.context.init([])
+        self.node = Node("robot_driver", context=self.context)
+
+    def sensor_publisher(self, message: Any, topic: str) -> Any:
+        """A publisher that sends without making sure, and keeps five messages."""
+        return self.node.create_publisher(message, topic, _SENSOR_QOS)
+
+    def hear_velocities(self, message: Any, callback: Callable[[Any], None]) -> None:
+        """Subscribe to ``cmd_vel``."""
+        VelocityCommands(self.node, message, callback, self.record).listen()
+
+    def publish(self, publisher: Any, message: Any) -> int:
+        """Publish a message; returns its id on the trace."""
+        return int(publisher.send(message))
+
+
+def start_robot(
+    host: Host,
+    record: Callable[[AnyEvent], None],
+    world: Callable[[], World],
+    rate: float | None = None,
+) -> None:
+    """Have a robot driven until the host's time ends.
+
+    ``world`` builds the robot's world once the driver runs, on its thread: that takes a while. ``rate`` (Hz)
+    is that of odometry and scans, None the usual one.
+    """
+    port = ModelPort(host, record)
+    driver = Driver(port, rate)
+
+    def drive() -> None:
+        driver.begin(world())
+        executor = SingleThreadedExecutor(context=port.context)
+        executor.add_node(port.node)
+        executor.spin()
+
+    driver.offer()
+    port.context.process.start_thread(drive, "robot_driver")

@@ -1,0 +1,134 @@
+"""Programs that run on both grounds."""
+
+import importlib.util
+from pathlib import Path
+
+import msgspec
+import pytest
+
+from sim.engine.setup import TimedCall
+from sim.trace.model import Window
+from sim.trace.timeline import Timeline
+from sim.units import SECOND
+from tests.support.engine_runs import Run, program_setup, run_to_end
+
+needs_ros = pytest.mark.skipif(
+    importlib.util.find_spec("rclpy") is None, reason="no real rclpy: there are no wheels for this Python"
+)
+
+HEAD = """
+import time
+import rclpy
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from rclpy.executors import MultiThreadedExecutor, SingleThreadedExecutor
+from rclpy.node import Node
+from std_msgs.msg import String
+from std_srvs.srv import SetBool
+"""
+TAIL = """
+def main():
+    rclpy.init()
+    node = Tried()
+    executor = {executor}
+    executor.add_node(node)
+    try:
+        executor.spin()
+    except KeyboardInterrupt:
+        pass
+
+if __name__ == "__main__":
+    main()
+"""
+
+STARVED = """
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.publisher = self.create_publisher(String, "news", 10)
+        self.create_timer(0.1, self.tell, callback_group=MutuallyExclusiveCallbackGroup())
+        self.create_timer(1.0, self.work)
+        self.create_subscription(String, "news", self.hear, 2)
+
+    def tell(self):
+        self.publisher.publish(String(data="x"))
+
+    def work(self):
+        self.get_logger().info("works")
+        time.sleep(0.7)
+        print("worked")
+
+    def hear(self, message):
+        pass
+"""
+CALLS_ITSELF = """
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.create_service(SetBool, "switch", self.serve)
+        self.client = self.create_client(SetBool, "switch")
+        self.create_timer(0.5, self.tick)
+
+    def tick(self):
+        self.client.call(SetBool.Request(data=True))
+
+    def serve(self, request, response):
+        response.success = True
+        return response
+"""
+AWAITS = """
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        group = ReentrantCallbackGroup()
+        self.create_service(SetBool, "switch", self.serve, callback_group=group)
+        self.client = self.create_client(SetBool, "switch", callback_group=group)
+        self.create_timer(0.5, self.tick, callback_group=group)
+
+    async def tick(self):
+        answer = await self.client.call_async(SetBool.Request(data=True))
+        self.get_logger().info("answered " + answer.message)
+
+    def serve(self, request, response):
+        time.sleep(0.1)
+        response.message = "well"
+        return response
+"""
+RAISES = """
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.create_timer(0.5, self.tick)
+
+    def tick(self):
+        raise ValueError("no more")
+"""
+
+
+def run(
+    folder: Path,
+    body: str,
+    executor: str = "SingleThreadedExecutor()",
+    *calls: float,
+    ground: str = "ros2",
+    seconds: float = 3.3,
+) -> Run:
+    """Run a program on a ground for some of its seconds; its service is called at the times given."""
+    path = folder / "tried.py"
+    path.write_text(HEAD + body + TAIL.format(executor=executor))
+    return run_to_end(
+        msgspec.structs.replace(
+            program_setup(path, seconds, clock="real" if ground == "ros2" else "virtual"),
+            ground=ground,
+            calls=tuple(TimedCall(round(at * SECOND), data=True) for at in calls),
+        )
+    )
+
+
+def entity_named(name: str, timeline: Timeline) -> int:
+    """The entity of a callback of that name, or of a topic or service where it has none."""
+    return next(each.id for each in timeline.entities.values() if name in (each.callback, each.name))
+
+
+def whole(timeline: Timeline) -> Window:
+    """From the beginning of a run to its end."""
+    return Window(0, timeline.end)

@@ -1,0 +1,121 @@
+"""Programs on real rclpy show what the model shows."""
+
+from pathlib import Path
+
+import pytest
+
+from sim.diagnosis import diagnose
+from sim.trace.events import (
+    CallbackFailed,
+    CallbackResumed,
+    CallbackStarted,
+    CallbackSuspended,
+    Logged,
+    MessageDropped,
+    Notice,
+    Printed,
+    Published,
+    Reason,
+    ServiceCalled,
+    ServiceReplied,
+    WaitStarted,
+)
+from sim.units import SECOND
+from tests.real import programs
+from tests.real.programs import entity_named, needs_ros, whole
+from tests.support.engine_runs import Run
+
+pytestmark = [needs_ros, pytest.mark.slow]
+
+
+@pytest.fixture(scope="module")
+def starved(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    return programs.run(
+        tmp_path_factory.mktemp("starved"), programs.STARVED, "MultiThreadedExecutor(num_threads=2)"
+    )
+
+
+def test_a_wait_is_told_of_while_it_lasts_and_with_its_reason(starved: Run) -> None:
+    timeline = starved.timeline
+    work, hear = entity_named("work", timeline), entity_named("hear", timeline)
+    spans = timeline.spans_of(work, whole(timeline))
+    assert len(spans) >= 2
+    waits = [event for event in starved.events if isinstance(event, WaitStarted) and event.entity == hear]
+    for span in spans[:2]:
+        assert span.end is not None
+        told = next(wait for wait in waits if span.start < wait.t < span.end)
+        assert (told.reason, told.holder) == (Reason.GROUP_HELD, work)
+        assert told.t < span.start + 0.3 * SECOND
+
+
+def test_what_a_full_queue_loses_is_counted(starved: Run) -> None:
+    timeline = starved.timeline
+    hear = entity_named("hear", timeline)
+    lost = {event.message for event in starved.events if isinstance(event, MessageDropped)}
+    taken = [e.message for e in starved.events if isinstance(e, CallbackStarted) and e.entity == hear]
+    sent = [event.message for event in starved.events if isinstance(event, Published)]
+    assert len(lost) >= 4  # of seven sent in 0.7 s, two are kept, twice over
+    assert not lost & set(taken)
+    assert 0 not in taken
+    assert taken == sorted(taken)
+    assert {message for message in sent if message <= taken[-1]} <= lost | set(taken) <= set(sent)
+
+
+def test_log_and_output_are_told_of_once(starved: Run) -> None:
+    logs = [event.text for event in starved.events if isinstance(event, Logged)]
+    prints = [event.text for event in starved.events if isinstance(event, Printed)]
+    assert set(logs) == {"works"}
+    assert set(prints) == {"worked"}
+    assert abs(len(logs) - len(prints)) <= 1
+
+
+def test_the_run_ends_when_its_time_is_up_and_nothing_had_to_be_forced(starved: Run) -> None:
+    assert starved.ending.time_was_up
+    assert not starved.ending.failed
+    assert [event.text for event in starved.events if isinstance(event, Notice)] == []
+    assert starved.loss is None
+
+
+@pytest.mark.parametrize("executor", ["SingleThreadedExecutor()", "MultiThreadedExecutor(num_threads=2)"])
+def test_a_deadlock_is_the_same_on_both_grounds(tmp_path: Path, executor: str) -> None:
+    found = {}
+    for ground in ("ros2", "model"):
+        timeline = programs.run(
+            tmp_path, programs.CALLS_ITSELF, executor, ground=ground, seconds=2.0
+        ).timeline
+        told = [each for each in diagnose(timeline) if each.rule.id == "self-made-deadlock"]
+        found[ground] = [each.rule.explain(each, timeline).what for each in told]
+    assert found["ros2"] == found["model"]
+    assert len(found["ros2"]) == 1
+
+
+def test_a_coroutine_leaves_its_thread_and_comes_back(tmp_path: Path) -> None:
+    run = programs.run(tmp_path, programs.AWAITS, seconds=2.3)
+    tick = entity_named("tick", run.timeline)
+    steps = [
+        type(event)
+        for event in run.events
+        if isinstance(event, CallbackSuspended | CallbackResumed) and event.entity == tick
+    ]
+    assert steps[:4] == [CallbackSuspended, CallbackResumed] * 2
+    said = next(event for event in run.events if isinstance(event, Logged))
+    assert (said.text, said.entity) == ("answered well", tick)
+
+
+def test_calls_from_outside_come_in_and_are_answered(tmp_path: Path) -> None:
+    run = programs.run(tmp_path, programs.AWAITS, "SingleThreadedExecutor()", 1.2, seconds=2.3)
+    outside = next(event for event in run.events if isinstance(event, ServiceCalled) and event.entity == 0)
+    assert outside.service == "/switch"
+    assert outside.t == pytest.approx(1.2 * SECOND, abs=0.8 * SECOND)
+    assert outside.call in {event.call for event in run.events if isinstance(event, ServiceReplied)}
+    serve = entity_named("serve", run.timeline)
+    served = {e.message for e in run.events if isinstance(e, CallbackStarted) and e.entity == serve}
+    assert outside.call in served
+
+
+def test_an_exception_ends_the_program_and_is_placed(tmp_path: Path) -> None:
+    run = programs.run(tmp_path, programs.RAISES)
+    failed = next(event for event in run.events if isinstance(event, CallbackFailed))
+    assert (failed.error, Path(failed.file).name) == ("ValueError: no more", "tried.py")
+    assert run.ending.failed
+    assert run.ending.reason == f"tried.py:{failed.line}: the program raised ValueError: no more"
