@@ -16,7 +16,7 @@ from sim.trace.events import (
     WaitStarted,
 )
 from sim.trace.timeline import Timeline
-from tests.ros.systems import System, play, systems
+from tests.ros.scheduling.systems import System, play, systems
 from tests.support.builder import Run, ns
 from tests.support.properties import examples
 from tests.support.runs import shared_group_run

@@ -47,7 +47,7 @@ from sim.trace.events import (
 )
 from tests.engine.test_pausing import Console, console
 from tests.engine.test_time_control import Given, orders
-from tests.ros.systems import SECONDS, System, program_of, systems
+from tests.ros.scheduling.systems import SECONDS, System, program_of, systems
 from tests.support.builder import ns
 from tests.support.engine_runs import SECOND, program_setup, run_to_end
 from tests.support.properties import examples

@@ -21,7 +21,7 @@ from sim.trace.events import (
     Notice,
     TimeHalted,
 )
-from tests.ros.systems import SECONDS, System, play, program_of, systems
+from tests.ros.scheduling.systems import SECONDS, System, play, program_of, systems
 from tests.support.builder import ns
 from tests.support.properties import examples
 from tests.support.simulation import Simulation

@@ -10,7 +10,7 @@ import sys
 import time
 from multiprocessing import get_context
 
-from tests.ros.schedules import Trouble, trouble_of
+from tests.ros.scheduling.schedules import Trouble, trouble_of
 from tests.soak.results import FILE, record, today
 
 _CHUNK = 25

@@ -18,7 +18,7 @@ from sim.trace.events import (
     RunEnded,
 )
 from sim.trace.integrity.message_counts import MessageCounts
-from tests.ros.schedules import Trouble, random_system
+from tests.ros.scheduling.schedules import Trouble, random_system
 from tests.soak import keys, lessons, schedules, stdlib_calls
 from tests.soak.footprint import footprint, growth
 from tests.soak.lesson_runs import SECOND, Came, choose, run_twice

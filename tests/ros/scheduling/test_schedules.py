@@ -11,8 +11,8 @@ from sim.ros.middleware.host import current_host
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
 from sim.ros.scheduling.executor import Executor
 from sim.ros.scheduling.running import Runner
-from tests.ros.schedules import broken_rules, first_trouble, play_seeded
-from tests.ros.systems import System, play, systems
+from tests.ros.scheduling.schedules import broken_rules, first_trouble, play_seeded
+from tests.ros.scheduling.systems import System, play, systems
 from tests.support.properties import examples
 
 pytestmark = pytest.mark.filterwarnings("ignore:MultiThreadedExecutor is used with a single thread")

@@ -7,7 +7,7 @@ import pytest
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
 from sim.ros.scheduling.executors import MultiThreadedExecutor
 from sim.trace.events import ServiceReplied
-from tests.ros.measured_nodes import DummyServer, Groups, SetBool, default, reentrant
+from tests.ros.measured.nodes import DummyServer, Groups, SetBool, default, reentrant
 from tests.support.simulation import Simulation, Trace, simulate
 
 

@@ -13,8 +13,8 @@ from sim.trace.events import (
     WaitEnded,
     WaitStarted,
 )
-from tests.ros.replay import Replay
-from tests.ros.systems import System, play, systems
+from tests.ros.scheduling.replay import Replay
+from tests.ros.scheduling.systems import System, play, systems
 from tests.support.properties import examples
 
 pytestmark = pytest.mark.filterwarnings("ignore:MultiThreadedExecutor is used with a single thread")

@@ -8,7 +8,7 @@ import pytest
 import sim.ros.rclpy as rclpy
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
 from sim.ros.scheduling.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
-from tests.ros.measured_nodes import Groups, SubNode, default, shared
+from tests.ros.measured.nodes import Groups, SubNode, default, shared
 from tests.support.simulation import Simulation, Trace, simulate
 
 BEGIN, END = 0.5, 10.5

@@ -9,8 +9,8 @@ from random import Random
 from sim.clock.schedule import schedule_of
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
 from sim.trace.events import CallbackStarted, EntityKind, Published
-from tests.ros.replay import Replay
-from tests.ros.systems import (
+from tests.ros.scheduling.replay import Replay
+from tests.ros.scheduling.systems import (
     GRAIN,
     SECONDS,
     TOPICS,

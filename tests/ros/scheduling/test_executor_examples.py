@@ -6,7 +6,7 @@ import pytest
 
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
 from sim.trace.events import GroupAppeared, GroupKind, Logged, ThreadAppeared
-from tests.ros import executor_programs as programs
+from tests.ros.scheduling import executor_programs as programs
 from tests.support.engine_runs import SECOND, Run, run_to_end
 
 

@@ -9,7 +9,7 @@ from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
 from sim.ros.scheduling.executors import Executor, MultiThreadedExecutor
 from sim.trace.events import MessageDropped, ServiceReplied
-from tests.ros.measured_nodes import DummyServer, Groups, SetBool, SubNode, default, reentrant, shared
+from tests.ros.measured.nodes import DummyServer, Groups, SetBool, SubNode, default, reentrant, shared
 from tests.support.real_threads import on_parallel_time, spin
 from tests.support.simulation import Simulation, Trace
 

@@ -4,7 +4,7 @@ from pathlib import Path
 
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
 from sim.trace.events import CallbackStarted, EntityAppeared, EntityKind, Logged
-from tests.ros import action_programs as programs
+from tests.ros.actions import action_programs as programs
 from tests.support.engine_runs import SECOND, Run, run_to_end
 
 SEQUENCES = ["[0, 1, 1]", "[0, 1, 1, 2]", "[0, 1, 1, 2, 3]"]
