@@ -70,5 +70,5 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
         "--accept-pictures",
         action="store_true",
-        help="draw tests/app/goldens and tests/widgets/goldens anew; look at them",
+        help="draw the pictures in tests/**/goldens anew; look at them",
     )

@@ -12,10 +12,12 @@ from pathlib import Path
 import pytest
 
 _TESTS = Path(__file__).parents[1]
-SCREENS = _TESTS / "app" / "goldens"
+SCREENS = _TESTS / "screens" / "pictures" / "goldens"
 """Where whole screens are that are agreed upon, with their colours."""
 WIDGETS = _TESTS / "widgets" / "goldens"
 """Where single widgets are, as plain text."""
+LANES = _TESTS / "widgets" / "lanes" / "goldens"
+"""Where lanes without a console are, as plain text."""
 DRAWN = _TESTS.parent / "new_pictures"
 """Where those land that differ; nothing there is kept in the repository."""
 

@@ -8,8 +8,8 @@ from cbtui.widgets.code import CodeView
 from cbtui.widgets.code.files import SourceFiles
 from cbtui.widgets.code.marks import marks_at
 from sim.trace.timeline import Timeline
-from tests.app.pictures import lines_of
 from tests.support.builder import Run, ns
+from tests.support.pictures import lines_of
 
 
 def numbered(name: str) -> str:

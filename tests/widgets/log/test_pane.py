@@ -8,8 +8,8 @@ from cbtui.widgets.log.filter import LogEvent
 from cbtui.widgets.log.line import width_of
 from sim.trace.events import Logged, Severity
 from sim.trace.timeline import Timeline
-from tests.app.pictures import lines_of
 from tests.support.builder import Run, ns
+from tests.support.pictures import lines_of
 
 
 class PaneOnly(App[None]):

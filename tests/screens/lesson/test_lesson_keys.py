@@ -1,0 +1,342 @@
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+
+import pytest
+from textual.pilot import Pilot
+from textual.widget import Widget
+
+from cbtui.keys.action import Scope
+from cbtui.keys.actions import ACTIONS
+from cbtui.runs.live.live_run import State
+from cbtui.screens.help import HelpScreen
+from cbtui.screens.lesson import LessonScreen
+from cbtui.screens.menu import MenuScreen
+from cbtui.screens.threads import ThreadsScreen
+from cbtui.widgets.code import CodeView
+from cbtui.widgets.factory import FactoryView
+from cbtui.widgets.guide import Guide
+from cbtui.widgets.lanes import Lanes
+from cbtui.widgets.log import LogView
+from cbtui.widgets.log.lines import LogLines
+from cbtui.widgets.robot import RobotView
+from cbtui.widgets.shell import ShellOutput, ShellView
+from lessons.catalogue import lessons
+from sim.engine.commands import CallService, Pause, ResetWorld, Resume, SetSpeed
+from tests.support.builder import ns
+from tests.support.console import NARROW, WIDE, RecordedConsole, predict, settle
+from tests.support.daily import first_daily
+from tests.support.fake_session import FakeSession
+from tests.support.pictures import lines_of, text_of
+from tests.support.runs import dummy_server_run, shared_group_run
+
+EVENTS = shared_group_run().events
+SHOWN = (Scope.LESSON, Scope.PROMPT, Scope.COMPARE, Scope.MENU, Scope.EVERYWHERE)
+PANES: dict[str, type[Widget]] = {
+    "1": Guide,
+    "2": CodeView,
+    "3": FactoryView,
+    "4": RobotView,
+    "5": LogView,
+    "6": ShellView,
+}
+
+
+@asynccontextmanager
+async def console(
+    size: tuple[int, int] = NARROW, lesson: str = "shared-group"
+) -> AsyncIterator[tuple[RecordedConsole, Pilot[None]]]:
+    """A console on the lesson, 13.15 s into its run."""
+    app = RecordedConsole(lesson, EVENTS, 13.15)
+    async with app.run_test(size=size) as pilot:
+        await settle(pilot)
+        yield app, pilot
+
+
+async def press(pilot: Pilot[None], *keys: str) -> None:
+    await pilot.press(*keys)
+    await settle(pilot)
+
+
+def on_top(app: RecordedConsole) -> type[object]:
+    """What kind of screen takes the keys."""
+    return type(app.screen)
+
+
+def status(app: RecordedConsole) -> str:
+    return lines_of(app)[0]
+
+
+def diagnosis(app: RecordedConsole) -> str:
+    return lines_of(app)[-2]
+
+
+async def test_a_run_that_other_terminals_do_not_reach_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(FakeSession, "start", lambda _session: "lines do not reach this run")
+    async with console() as (app, _):
+        assert "lines do not reach this run" in [each.message for each in app._notifications]
+
+
+async def test_keys_reach_the_engine_as_commands() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "s", "S", "r", "plus", "minus", "minus", "space")
+        assert app.engines.latest.commands == [
+            CallService("/motor_power", True),
+            CallService("/motor_power", False),
+            ResetWorld(),
+            SetSpeed(2.0),
+            SetSpeed(1.0),
+            SetSpeed(0.5),
+            Pause(),
+        ]
+
+
+async def test_s_calls_the_service_of_the_lesson() -> None:
+    app = RecordedConsole("reentrant-2-threads", dummy_server_run().events, 2.0)
+    async with app.run_test(size=NARROW) as pilot:
+        await press(pilot, "s")
+        assert app.engines.latest.commands == [CallService("/dummy_server_srv", True)]
+
+
+async def test_space_goes_on_after_a_pause() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "space")
+        assert "‖ PAUSED" in status(app)
+        assert "space" in text_of(app) or "␣ go on" in text_of(app)
+        await press(pilot, "space")
+        assert "● LIVE" in status(app)
+        assert app.engines.latest.commands == [Pause(), Resume()]
+
+
+async def test_speed_is_shown_and_ends_where_it_cannot_be_changed_further() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, *["plus"] * 7)
+        assert "virtual max" in status(app)
+        assert len(app.engines.latest.commands) == 5
+
+
+async def test_r_runs_again_after_the_engine_was_lost() -> None:
+    async with console() as (app, pilot):
+        app.engines.latest.end("the engine was killed by signal 9")
+        await settle(pilot)
+        assert "✗ LOST" in status(app)
+        assert "engine lost: killed by signal 9; r runs again" in text_of(app)
+        await press(pilot, "r")
+        assert len(app.engines.sessions) == 2
+        assert app.engines.sessions[0].stopped
+        assert "● LIVE" in status(app)
+
+
+@pytest.mark.slow
+async def test_r_runs_again_after_the_run_has_ended() -> None:
+    async with console() as (app, pilot):
+        app.engines.latest.play(ns(100))
+        app.engines.latest.end(None)
+        await settle(pilot)
+        assert "■ ENDED" in status(app)
+        await press(pilot, "r")
+        assert "● LIVE" in status(app)
+        assert "t 13.1" in status(app)
+
+
+@pytest.mark.slow
+async def test_what_an_engine_sends_after_its_run_was_replaced_does_not_count() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "t", "2")
+        old, new = app.engines.sessions
+        old.play(ns(100))
+        old.end("the engine was killed by signal 9")
+        await settle(pilot)
+        assert app.lesson_screen.live_run.state is State.LIVE
+        assert app.lesson_screen.live_run.timeline.end == ns(13.15)
+        assert not new.stopped
+
+
+@pytest.mark.parametrize(("key", "threads"), [("1", 1), ("8", 8), ("o", None)])
+async def test_t_runs_again_with_other_threads(key: str, threads: int | None) -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "t")
+        assert on_top(app) is ThreadsScreen
+        await press(pilot, key)
+        assert on_top(app) is LessonScreen
+        assert [session.stopped for session in app.engines.sessions] == [True, False]
+        assert app.engines.latest.started
+        assert app.engines.latest.setup.threads == threads
+
+
+@pytest.mark.slow
+async def test_the_chosen_threads_stay_for_the_next_run() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "t", "3")
+        app.engines.latest.end("gone")
+        await settle(pilot)
+        await press(pilot, "r")
+        assert app.engines.latest.setup.threads == 3
+        await press(pilot, "t", "enter")
+        assert app.engines.latest.setup.threads == 3
+
+
+@pytest.mark.slow
+async def test_thinking_better_of_the_threads_leaves_the_run_alone() -> None:
+    async with console() as (app, pilot):
+        for key in ("escape", "q"):
+            await press(pilot, "t", key)
+            assert isinstance(app.screen, LessonScreen)
+            assert len(app.engines.sessions) == 1
+
+
+async def test_n_opens_the_next_lesson_and_ends_this_run() -> None:
+    async with console() as (app, pilot):
+        predict(app, lessons()[2].id)
+        await press(pilot, "n")
+        assert app.lesson_screen.subject.lesson == lessons()[2]
+        assert app.engines.sessions[0].stopped
+        assert not app.engines.latest.stopped
+
+
+@pytest.mark.slow
+async def test_the_last_lesson_has_no_next_one() -> None:
+    async with console(size=WIDE, lesson=lessons()[-1].id) as (app, pilot):
+        assert "n next" not in lines_of(app)[-1]
+        await press(pilot, "n")
+        assert app.lesson_screen.subject.lesson == lessons()[-1]
+
+
+async def test_q_ends_the_run_and_goes_back_to_the_menu() -> None:
+    async with console() as (app, pilot):
+        engine = app.engines.latest
+        await press(pilot, "q")
+        assert isinstance(app.screen, MenuScreen)
+        assert engine.stopped
+
+
+@pytest.mark.slow
+async def test_leaving_the_console_ends_the_run() -> None:
+    async with console() as (app, pilot):
+        await pilot.press("ctrl+q")
+    assert app.engines.latest.stopped
+
+
+async def test_the_help_lists_every_key_and_closes_again() -> None:
+    async with console(size=(140, 160)) as (app, pilot):
+        for key in ("question_mark", "escape", "q"):
+            await press(pilot, "question_mark")
+            assert on_top(app) is HelpScreen
+            text = text_of(app)
+            missing = {action.line for action in ACTIONS if action.scope in SHOWN and action.line not in text}
+            assert not missing
+            await press(pilot, key)
+            assert isinstance(app.screen, LessonScreen)
+        assert not app.engines.latest.stopped
+
+
+async def test_a_narrow_screen_shows_the_pane_of_a_number() -> None:
+    async with console() as (app, pilot):
+        panes = [app.screen.query_one(pane) for pane in PANES.values()]
+        for key, shown in zip(PANES, panes, strict=True):
+            await press(pilot, key)
+            assert [pane for pane in panes if pane.display] == [shown]
+            assert shown.has_focus_within
+
+
+@pytest.mark.slow
+async def test_tab_goes_round_the_panes() -> None:
+    async with console() as (app, pilot):
+        for pane in (CodeView, FactoryView, RobotView, LogLines, ShellOutput, Guide):
+            await press(pilot, "tab")
+            assert app.screen.query_one(pane).has_focus
+
+
+@pytest.mark.slow
+async def test_a_click_on_a_name_shows_its_pane() -> None:
+    async with console() as (app, pilot):
+        line = next(y for y, text in enumerate(lines_of(app)) if "4 Robot" in text)
+        await pilot.click(offset=(lines_of(app)[line].index("4 Robot"), line))
+        await settle(pilot)
+        assert app.screen.query_one(RobotView).display
+
+
+async def test_a_wide_screen_shows_every_pane_but_the_shell_which_takes_the_place_of_the_log() -> None:
+    async with console(size=WIDE) as (app, pilot):
+        shell, log = app.screen.query_one(ShellView), app.screen.query_one(LogView)
+        others = [app.screen.query_one(pane) for pane in PANES.values() if pane not in {ShellView, LogView}]
+        assert all(pane.display for pane in others)
+        assert (log.display, shell.display) == (True, False)
+        await press(pilot, "colon")
+        assert all(pane.display for pane in others)
+        assert (log.display, shell.display) == (False, True)
+        await press(pilot, "escape", "5")
+        assert (log.display, shell.display) == (True, False)
+
+
+@pytest.mark.parametrize("size", first_daily(WIDE, NARROW))
+async def test_z_gives_the_screen_to_one_pane_and_back(size: tuple[int, int]) -> None:
+    async with console(size) as (app, pilot):
+        await press(pilot, "5", "z")
+        log = app.screen.query_one(LogView)
+        assert log.outer_size == (size[0], size[1] - (3 if size == WIDE else 4))
+        assert not app.screen.query_one(Lanes).display
+        await press(pilot, "z")
+        assert app.screen.query_one(Lanes).display
+
+
+async def test_brackets_look_back_in_time_on_every_pane_at_once() -> None:
+    async with console(WIDE) as (app, pilot):
+        assert "SLEEPING==9" in text_of(app)
+        await press(pilot, *["left_square_bracket"] * 10)
+        assert "◂ BACK 10.0 s" in status(app)
+        assert "t 3.150 s" in status(app)
+        assert "SLEEPING" not in text_of(app)
+        assert "waits" not in diagnosis(app)
+        assert "at 4.0 s: timer_callback slept" in diagnosis(app)
+        await press(pilot, "right_square_bracket")
+        assert "t 4.150 s" in status(app)
+        await press(pilot, "0")
+        assert "● LIVE" in status(app)
+
+
+@pytest.mark.slow
+async def test_looking_back_stands_still_while_the_run_goes_on() -> None:
+    async with console(WIDE) as (app, pilot):
+        await press(pilot, "left_square_bracket")
+        app.engines.latest.play(ns(20.0))
+        await settle(pilot)
+        assert "t 12.150 s" in status(app)
+        assert "◂ BACK 7.8 s" in status(app)
+
+
+async def test_zooming_changes_the_stretch_of_time() -> None:
+    async with console() as (app, pilot):
+        lanes = app.screen.query_one(Lanes)
+        assert lanes.window.length == ns(10)
+        await press(pilot, "greater_than_sign")
+        assert lanes.window.length == ns(5)
+        await press(pilot, "less_than_sign", "less_than_sign")
+        assert lanes.window.length == ns(20)
+
+
+async def test_keys_that_mean_nothing_now_are_not_offered() -> None:
+    async with console(WIDE) as (app, pilot):
+        assert "0 live" not in lines_of(app)[-1]
+        await press(pilot, "left_square_bracket")
+        assert "0 live" in lines_of(app)[-1]
+        app.engines.latest.end("gone")
+        await settle(pilot)
+        assert "service" not in lines_of(app)[-1]
+        assert "r run again" in lines_of(app)[-1]
+
+
+async def test_nothing_is_drawn_while_nothing_happens(monkeypatch: pytest.MonkeyPatch) -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "space")
+        drawn: list[LessonScreen] = []
+
+        def draw(screen: LessonScreen) -> None:
+            drawn.append(screen)
+
+        monkeypatch.setattr(LessonScreen, "draw", draw)
+        await pilot.pause(0.2)
+        assert drawn == []
+        app.engines.latest.play(ns(14.0))
+        app.engines.latest.play(ns(14.1))
+        while not drawn:
+            await pilot.pause(0.02)

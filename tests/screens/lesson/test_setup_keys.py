@@ -1,0 +1,277 @@
+"""Changing the set-up at the keyboard: threads, groups, periods and numbers, and what becomes of the runs."""
+
+import asyncio
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import pytest
+from textual.pilot import Pilot
+
+from cbtui.app import CbtuiApp
+from cbtui.runs.setup.changes import Changes
+from cbtui.screens.group import GroupScreen
+from cbtui.screens.lesson import LessonScreen
+from cbtui.screens.number import NumberScreen
+from cbtui.screens.setup import SetupScreen
+from sim.engine.setup import GroupChange, PeriodChange
+from sim.trace.events import AnyEvent
+from tests.support.console import NARROW, WIDE, RecordedConsole, predict, settle
+from tests.support.fake_session import FakeEngines, FakeSession
+from tests.support.pictures import lines_of, text_of
+from tests.support.runs import dummy_server_run, ns, shared_group_run
+
+ODOM_OWN = GroupChange("/sub_node", "odom_callback", "own")
+TO_ODOM = ("enter", "down", "down")
+"""Keys that select odom_callback on the lanes."""
+_PATIENCE = 60.0
+
+
+@asynccontextmanager
+async def console(
+    size: tuple[int, int] = NARROW,
+    lesson: str = "shared-group",
+    events: list[AnyEvent] | None = None,
+    seconds: float = 12.9,
+) -> AsyncIterator[tuple[RecordedConsole, Pilot[None]]]:
+    """A console on a lesson, in its run."""
+    app = RecordedConsole(lesson, shared_group_run().events if events is None else events, seconds)
+    async with app.run_test(size=size, notifications=True) as pilot:
+        await settle(pilot)
+        yield app, pilot
+
+
+async def press(pilot: Pilot[None], *keys: str) -> None:
+    await pilot.press(*keys)
+    await pilot.pause()
+    await settle(pilot)
+
+
+def sessions(app: RecordedConsole) -> list[FakeSession]:
+    """Those of the lesson on screen; the menu may have one of its own."""
+    title = app.lesson_screen.live_run.setup.title
+    return [session for session in app.engines.sessions if session.setup.title == title]
+
+
+def notes(app: CbtuiApp) -> list[str]:
+    return [note.message for note in app._notifications]
+
+
+# groups
+
+
+async def test_g_gives_the_selected_callback_another_group_and_keeps_the_run_before() -> None:
+    async with console() as (app, pilot):
+        before = app.lesson_screen.live_run
+        await press(pilot, *TO_ODOM, "g")
+        assert isinstance(app.screen, GroupScreen)
+        assert "Which callback group does odom_callback get?" in text_of(app)
+        assert "In this run: group A exclusive, with scan, timer." in text_of(app)
+        await press(pilot, "o")
+        assert app.lesson_screen.live_run.setup.groups == (ODOM_OWN,)
+        assert [session.stopped for session in sessions(app)] == [True, False]
+        kept = app.lesson_screen.restarts.before
+        assert kept is not None
+        assert kept.timeline is before.timeline
+        assert kept.name == "shared-group, as written"
+        assert notes(app) == [
+            "self.odom_group = MutuallyExclusiveCallbackGroup()\n"
+            "self.create_subscription(…, self.odom_callback, …,\n    callback_group=self.odom_group)"
+        ]
+
+
+@pytest.mark.parametrize(
+    ("key", "code"),
+    [
+        ("o", "self.odom_group = MutuallyExclusiveCallbackGroup()"),
+        ("s", "self.shared_group = MutuallyExclusiveCallbackGroup()"),
+        ("r", "self.reentrant_group = ReentrantCallbackGroup()"),
+        ("d", "self.odom_callback, …)  # no group named"),
+    ],
+)
+async def test_each_group_shows_its_code_and_has_its_key(key: str, code: str) -> None:
+    wishes = {"o": "own", "s": "shared", "r": "reentrant", "d": "default"}
+    async with console() as (app, pilot):
+        await press(pilot, *TO_ODOM, "g", "home", *["down"] * list(wishes).index(key))
+        assert code in text_of(app)
+        await press(pilot, key)
+        (change,) = app.lesson_screen.live_run.setup.groups
+        assert change.wish == wishes[key]
+
+
+@pytest.mark.slow
+async def test_the_group_in_force_is_highlighted_and_p_gives_the_program_s_again() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, *TO_ODOM, "g", "s")
+        await press(pilot, *TO_ODOM, "g")
+        assert "self.shared_group" in text_of(app)
+        await press(pilot, "p")
+        assert app.lesson_screen.live_run.setup.groups == ()
+        assert notes(app)[-1] == "everything as it is written"
+
+
+@pytest.mark.slow
+async def test_g_without_a_selected_callback_lets_one_be_chosen_first() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "g")
+        assert isinstance(app.screen, SetupScreen)
+        await press(pilot, "down", "enter")
+        assert "Which callback group does scan_callback get?" in text_of(app)
+        await press(pilot, "r", "r")
+        assert app.lesson_screen.live_run.setup.groups == (
+            GroupChange("/sub_node", "scan_callback", "reentrant"),
+        )
+
+
+# numbers
+
+
+async def test_p_begins_with_the_period_of_a_timer() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "p", "enter")
+        assert isinstance(app.screen, NumberScreen)
+        assert "self.create_timer(0.5, self.timer_callback, …)" in text_of(app)
+        await press(pilot, *"0.2", "enter", "r")
+        assert app.lesson_screen.live_run.setup.periods == (
+            PeriodChange("/sub_node", "timer_callback", 200_000_000),
+        )
+
+
+@pytest.mark.slow
+async def test_what_is_no_period_is_asked_for_again() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "p", "enter", "0", "enter")
+        assert "0 is no period; give 0.001 to 3600 s." in text_of(app)
+        assert isinstance(app.screen, NumberScreen)
+        await press(pilot, "escape", "escape")
+        assert len(sessions(app)) == 1
+
+
+@pytest.mark.slow
+async def test_nothing_typed_is_the_program_s_own_number() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "p", "enter", *"0.7", "enter")
+        assert "0.7 s" in text_of(app)
+        await press(pilot, "enter", "backspace", "enter", "r")
+        assert app.lesson_screen.live_run.setup.periods == ()
+
+
+async def test_a_lesson_s_own_number_and_the_sensors_rate_can_be_changed() -> None:
+    async with console(WIDE, "exclusive-2-threads", dummy_server_run().events, 5.2) as (app, pilot):
+        await press(pilot, "p", "down", "enter", *"2.5", "enter")
+        assert "node.py … -service_wait_time 2.5" in text_of(app)
+        await press(pilot, "down", "enter", "5", "enter", "r")
+        setup = app.lesson_screen.live_run.setup
+        assert "-service_wait_time 2.5" in " ".join(setup.programs[0].arguments)
+        assert setup.sensor_rate == 5
+        assert "changed: -service_wait_time 2.5, sensors 5 Hz" in text_of(app)
+
+
+# several at once
+
+
+async def test_several_changes_make_one_run_that_is_compared_with_the_one_before_all() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "g", "enter", "o", "up", "enter", "4", "r")
+        setup = app.lesson_screen.live_run.setup
+        assert (setup.groups, setup.threads) == ((ODOM_OWN,), 4)
+        assert len(sessions(app)) == 2
+        assert app.lesson_screen.restarts.before is not None
+        assert app.lesson_screen.restarts.before.name == "shared-group, as written"
+        assert notes(app) == ["changed: odom own group, 4 threads"]
+
+
+@pytest.mark.slow
+async def test_undoing_all_has_everything_as_the_program_says() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "t", "4")
+        await press(pilot, "p")
+        assert "executor = MultiThreadedExecutor(num_threads=4)" in text_of(app)
+        await press(pilot, "u")
+        assert "# nothing is changed" in text_of(app)
+        assert "u undo all" not in text_of(app)
+        await press(pilot, "r")
+        assert app.lesson_screen.live_run.setup.threads is None
+
+
+@pytest.mark.slow
+async def test_thinking_better_of_the_set_up_leaves_the_run_alone() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "g", "enter", "o", "escape")
+        assert len(sessions(app)) == 1
+        await press(pilot, "p")
+        assert "# nothing is changed" in text_of(app)
+
+
+# what stays
+
+
+@pytest.mark.slow
+async def test_running_again_keeps_the_changes_and_another_lesson_drops_them() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, *TO_ODOM, "g", "o")
+        sessions(app)[-1].end("gone")
+        await settle(pilot)
+        await press(pilot, "r")
+        assert app.lesson_screen.live_run.setup.groups == (ODOM_OWN,)
+        predict(app, "split-groups")
+        await press(pilot, "n")
+        assert not app.lesson_screen.live_run.setup.groups
+
+
+@pytest.mark.parametrize(("size", "row"), [(NARROW, 8), (WIDE, 1)])
+async def test_the_screen_says_what_is_changed(size: tuple[int, int], row: int) -> None:
+    async with console(size) as (app, pilot):
+        assert "changed:" not in text_of(app)
+        await press(pilot, *TO_ODOM, "g", "o")
+        assert "changed: odom own group" in lines_of(app)[row]
+
+
+@pytest.mark.slow
+async def test_a_run_before_any_callback_offers_what_can_be_changed_all_the_same() -> None:
+    async with console(seconds=-1) as (app, pilot):
+        await press(pilot, "g")
+        assert "executor" in text_of(app)
+        assert "robot's sensors" in text_of(app)
+        await press(pilot, "enter", "2", "r")
+        assert app.lesson_screen.live_run.setup.threads == 2
+
+
+async def test_the_console_can_be_opened_with_changes(tmp_path: Path) -> None:
+    file = tmp_path / "my_node.py"
+    file.write_text("")
+    engines = FakeEngines(shared_group_run().events, ns(12.9))
+    changes = Changes(groups={("", "odom_callback"): "own"})
+    app = CbtuiApp(start_file=(file, [], "virtual"), start_changes=changes, open_session=engines)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        screen = app.screen
+        assert isinstance(screen, LessonScreen)
+        assert screen.live_run.setup.groups == (GroupChange("", "odom_callback", "own"),)
+        assert "changed: odom own group" in text_of(app)
+
+
+@pytest.mark.slow
+async def test_a_real_run_has_the_group_that_was_chosen() -> None:
+    app = CbtuiApp(start_lesson="shared-group")
+    predict(app, "shared-group")
+    async with app.run_test(size=WIDE) as pilot:
+
+        async def groups() -> dict[str, int]:
+            """The group of each callback once the run has all three."""
+            async with asyncio.timeout(_PATIENCE):
+                while True:
+                    await settle(pilot)
+                    screen = app.screen
+                    assert isinstance(screen, LessonScreen)
+                    entities = screen.live_run.timeline.entities.values()
+                    found = {each.callback: each.group for each in entities}
+                    if "timer_callback" in found:
+                        return found
+                    await asyncio.sleep(0.02)
+
+        before = await groups()
+        assert before["odom_callback"] == before["timer_callback"]
+        await press(pilot, "g", "enter", "o", "r")
+        after = await groups()
+        assert after["odom_callback"] != after["timer_callback"] == after["scan_callback"]

@@ -1,0 +1,126 @@
+"""The keys that stop time, step it, and go to a moment."""
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import pytest
+from textual.pilot import Pilot
+from textual.widgets import Static
+
+from cbtui.app import CbtuiApp
+from cbtui.screens.moment import MomentScreen, seconds_in
+from sim.engine.commands import Pause, RunUntil, SetSpeed, Step
+from sim.trace.events import TimeHalted
+from tests.support.builder import ns
+from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.fake_session import FakeEngines
+from tests.support.pictures import lines_of, text_of
+from tests.support.runs import dummy_server_run, shared_group_run
+
+
+@asynccontextmanager
+async def console() -> AsyncIterator[tuple[RecordedConsole, Pilot[None]]]:
+    """A console on a lesson, 13.15 s into its run."""
+    app = RecordedConsole("shared-group", shared_group_run().events, 13.15)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        yield app, pilot
+
+
+async def press(pilot: Pilot[None], *keys: str) -> None:
+    await pilot.press(*keys)
+    await settle(pilot)
+
+
+def status(app: CbtuiApp) -> str:
+    return lines_of(app)[0]
+
+
+async def test_a_step_is_offered_in_a_pause_and_reaches_the_engine() -> None:
+    async with console() as (app, pilot):
+        assert ". step" not in lines_of(app)[-1]
+        await press(pilot, "full_stop")
+        assert app.engines.latest.commands == []
+        await press(pilot, "space")
+        assert ". step" in lines_of(app)[-1]
+        await press(pilot, "full_stop", "full_stop")
+        assert app.engines.latest.commands == [Pause(), Step(), Step()]
+        assert "PAUSED" in status(app)
+
+
+async def test_a_comma_looks_back_by_one_event_and_a_full_stop_forward_until_live_again() -> None:
+    async with console() as (app, pilot):
+        timeline = app.lesson_screen.live_run.timeline
+        before = timeline.neighbour(timeline.end, None, -1)
+        assert before is not None
+        await press(pilot, "comma")
+        assert f"t {before / 1e9:.3f} s" in status(app)
+        assert "BACK" in status(app)
+        await press(pilot, "comma", "full_stop")
+        assert f"t {before / 1e9:.3f} s" in status(app)
+        await press(pilot, "full_stop")
+        assert "LIVE" in status(app)
+        assert app.engines.latest.commands == []
+
+
+async def test_going_to_a_moment_that_has_passed_looks_back() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "G")
+        assert isinstance(app.screen, MomentScreen)
+        await press(pilot, *"3,5", "enter")
+        assert "t 3.500 s" in status(app)
+        assert app.engines.latest.commands == []
+
+
+async def test_going_to_a_moment_to_come_lets_the_run_go_on_until_then() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "space", "left_square_bracket", "G", *"14.5", "enter")
+        assert app.engines.latest.commands == [Pause(), RunUntil(ns(14.5))]
+        assert "LIVE" in status(app)
+        app.lesson_screen.live_run.take([TimeHalted(ns(14.5), "run until 14.5 s")])
+        app.lesson_screen.draw()
+        await settle(pilot)
+        assert "PAUSED" in status(app)
+        assert "t 14.500 s" in status(app)
+
+
+async def test_what_is_no_moment_is_asked_for_again_and_escape_stays() -> None:
+    async with console() as (app, pilot):
+        await press(pilot, "G", *"soon", "enter")
+        assert isinstance(app.screen, MomentScreen)
+        assert "Give the seconds as a number" in str(app.screen.query_one("#wrong", Static).render())
+        await press(pilot, "escape")
+        assert "LIVE" in status(app)
+        assert app.lesson_screen.live_run.alive
+
+
+async def test_a_moment_past_the_end_of_a_run_that_is_over_is_its_end() -> None:
+    async with console() as (app, pilot):
+        app.engines.latest.end("gone")
+        await settle(pilot)
+        await press(pilot, "left_square_bracket", "G", *"99", "enter")
+        assert app.engines.latest.commands == []
+        assert "t 13.150 s" in status(app)
+
+
+@pytest.mark.parametrize(
+    ("text", "seconds"),
+    [("12.5", 12.5), (" 3 s ", 3.0), ("0,25", 0.25), ("-1", None), ("nan", None), ("x", None)],
+)
+def test_seconds_are_read_as_people_type_them(text: str, seconds: float | None) -> None:
+    assert seconds_in(text) == seconds
+
+
+async def test_on_the_real_clock_a_pause_says_that_computing_goes_on(tmp_path: Path) -> None:
+    file = tmp_path / "my_node.py"
+    file.write_text("")
+    engines = FakeEngines(dummy_server_run().events, ns(2.0))
+    app = CbtuiApp(start_file=(file, [], "real"), open_session=engines)
+    async with app.run_test(size=NARROW) as pilot:
+        await settle(pilot)
+        assert "real ×1.0" in status(app)
+        await press(pilot, "plus", "space")
+        assert "PAUSED  real: computing goes on" in status(app)
+        assert engines.latest.commands == [SetSpeed(2.0), Pause()]
+        assert ". step" not in text_of(app)

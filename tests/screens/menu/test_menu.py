@@ -1,0 +1,277 @@
+import subprocess
+import sys
+from functools import partial
+from pathlib import Path
+
+import msgspec
+import pytest
+from textual.command import CommandList, CommandPalette
+
+from cbtui.app import CbtuiApp
+from cbtui.screens.help import HelpScreen
+from cbtui.screens.lesson import LessonScreen
+from cbtui.screens.menu import MenuScreen
+from cbtui.widgets.choices import Choices
+from cbtui.widgets.key_bar import KeyBar
+from lessons.catalogue import lessons
+from lessons.lesson import Lesson
+from lessons.progress import Progress
+from tests.support.console import NARROW, TALL, WIDE
+from tests.support.daily import first_daily
+from tests.support.exercises import until
+from tests.support.fake_session import FakeEngines
+from tests.support.pictures import lines_of, text_of
+
+HEAVY = {"numpy", "pybullet", "rosbags", "pygments", "markdown_it", "multiprocessing", "cbtui.screens.lesson"}
+
+
+def menu() -> CbtuiApp:
+    return CbtuiApp(open_session=FakeEngines([], 0))
+
+
+def opened(app: CbtuiApp) -> str | None:
+    """The lesson that lies over the menu, whatever lies over that."""
+    screens = [screen for screen in app.screen_stack if isinstance(screen, LessonScreen)]
+    lesson = screens[0].subject.lesson if screens else None
+    return None if lesson is None else lesson.id
+
+
+def high_enough(size: tuple[int, int]) -> tuple[int, int]:
+    """A screen of that width at least as high as a line for each lesson, each unit and all around needs."""
+    return size[0], max(size[1], 2 * len(lessons()))
+
+
+@pytest.mark.parametrize("size", first_daily(WIDE, TALL))
+async def test_the_menu_shows_every_lesson_under_its_unit(size: tuple[int, int]) -> None:
+    app = menu()
+    async with app.run_test(size=high_enough(size)):
+        lines = lines_of(app)
+        for lesson in lessons():
+            assert len([line for line in lines if f" {lesson.number}  {lesson.title} " in f"{line} "]) == 1
+            assert all(word in text_of(app) for word in f"Unit {lesson.unit}".split())
+
+
+async def test_a_wide_menu_shows_in_its_list_what_every_lesson_is_made_of() -> None:
+    app = menu()
+    async with app.run_test(size=high_enough(WIDE)):
+        for lesson in lessons():
+            (line,) = (line for line in lines_of(app) if f" {lesson.number}  {lesson.title} " in line)
+            assert lesson.executor.replace("ThreadedExecutor", "Threaded") in line
+            assert lesson.groups in line
+
+
+@pytest.mark.parametrize("size", first_daily(WIDE, NARROW))
+async def test_the_menu_tells_what_the_highlighted_lesson_teaches_and_is_made_of(
+    size: tuple[int, int],
+) -> None:
+    for lesson in lessons():
+        Progress().see(lesson.id)
+    app = menu()
+    async with app.run_test(size=size) as pilot:
+        for lesson in lessons():
+            await pilot.pause()
+            text = text_of(app)
+            assert all(word in text for word in lesson.teaches.replace("-", " ").split())
+            assert lesson.executor in text
+            assert lesson.groups in text
+            await pilot.press("down")
+
+
+async def test_what_a_lesson_teaches_is_not_told_before_it_was_watched() -> None:
+    app = menu()
+    async with app.run_test(size=WIDE):
+        text = text_of(app)
+        assert "The robot drives straight on." in text
+        assert "One long callback" not in text
+
+
+async def test_enter_opens_the_highlighted_lesson() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("down", "down", "up", "enter")
+        assert opened(app) == lessons()[1].id
+
+
+async def test_a_number_opens_its_lesson() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        for lesson in lessons()[:9:4]:
+            await pilot.press(str(lesson.number))
+            assert opened(app) == lesson.id
+            await pilot.press("q")
+
+
+async def test_the_number_of_no_lesson_does_nothing(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("cbtui.app.lessons", lambda: lessons()[:8])
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("9")
+        assert isinstance(app.screen, MenuScreen)
+
+
+async def test_a_click_opens_a_lesson() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        row = next(row for row, line in enumerate(lines_of(app)) if lessons()[2].title in line)
+        top = app.screen.query_one(Choices).region.y
+        await pilot.click(Choices, offset=(10, row - top))
+        assert opened(app) == lessons()[2].id
+
+
+async def test_a_click_on_a_key_does_what_the_key_does() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        column = lines_of(app)[-1].index("? help")
+        await pilot.click(KeyBar, offset=(column, 0))
+        assert isinstance(app.screen, HelpScreen)
+
+
+async def test_leaving_a_lesson_comes_back_to_where_it_was_opened() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("4", "q")
+        assert isinstance(app.screen, MenuScreen)
+        await pilot.press("enter")
+        assert opened(app) == lessons()[3].id
+
+
+async def test_q_leaves_the_console() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("q")
+        assert not app.is_running
+
+
+async def test_the_palette_finds_a_command_of_the_screen() -> None:
+    app = menu()
+    async with app.run_test(size=WIDE) as pilot:
+        await pilot.press("ctrl+p", *"lesson 5")
+        await until(pilot, lambda: is_the_palettes_first(app, "Open lesson 5"))
+        await pilot.press("enter", "enter")
+        while opened(app) is None:
+            await pilot.pause(0.02)
+        assert opened(app) == lessons()[4].id
+
+
+def is_the_palettes_first(app: CbtuiApp, command: str) -> bool:
+    """Whether the palette, once it has found what it looked for, has this command first."""
+    palette = app.screen
+    assert isinstance(palette, CommandPalette)
+    commands = palette.query_one(CommandList)
+    searches = [each for each in palette.workers if each.group == CommandPalette._GATHER_COMMANDS_GROUP]
+    return (
+        bool(commands.option_count)
+        and all(each.is_finished for each in searches)
+        and command in str(commands.get_option_at_index(0).prompt)
+    )
+
+
+def many_lessons() -> tuple[Lesson, ...]:
+    return tuple(
+        msgspec.structs.replace(
+            lessons()[0], id=f"lesson-{number}", number=number, title=f"Title {number}", unit=f"{number // 7}"
+        )
+        for number in range(1, 28)
+    )
+
+
+@pytest.mark.parametrize("size", first_daily(WIDE, NARROW))
+async def test_a_list_that_is_too_long_goes_with_the_highlight(
+    size: tuple[int, int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("cbtui.app.lessons", many_lessons)
+    app = menu()
+    async with app.run_test(size=size) as pilot:
+        assert "Title 27" not in text_of(app)
+        await pilot.press("up")
+        await pilot.pause()
+        assert "27  Title 27" in text_of(app)
+        await pilot.press("down")
+        await pilot.pause()
+        assert "1  Title 1 " in text_of(app)
+
+
+# progress
+
+
+@pytest.mark.slow
+async def test_a_lesson_that_was_opened_has_a_mark_in_the_next_console_too() -> None:
+    first, second, *_ = lessons()
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        assert f"·  1  {first.title}" in text_of(app)
+        await pilot.press("1", "q")
+        await pilot.pause()
+        assert f"○  1  {first.title}" in text_of(app)
+    app = menu()
+    async with app.run_test(size=NARROW):
+        text = text_of(app)
+        assert f"○  1  {first.title}" in text
+        assert f"·  2  {second.title}" in text
+        assert "opened    just now" in text
+
+
+@pytest.mark.slow
+async def test_a_home_that_cannot_be_written_is_told_of_and_nothing_else_changes(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "state").write_text("")
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("1", "q", "2", "q")
+        assert [note.severity for note in app._notifications] == ["warning"]
+        assert isinstance(app.screen, MenuScreen)
+
+
+def test_nothing_heavy_is_imported_before_the_menu_is_shown() -> None:
+    program = """
+import asyncio, sys
+from cbtui.app import CbtuiApp
+async def main():
+    app = CbtuiApp()
+    async with app.run_test(size=(80, 24)):
+        print(*sys.modules)
+asyncio.run(main())
+"""
+    shown = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert HEAVY & set(shown.stdout.split()) == set()
+
+
+@pytest.mark.slow
+async def test_marks_tell_how_far_the_learner_is_in_each_lesson() -> None:
+    plain, exercised = lessons()[0], next(lesson for lesson in lessons() if lesson.exercise is not None)
+    app = menu()
+    progress = Progress()
+    async with app.run_test(size=WIDE) as pilot:
+        told = []
+        for change in (
+            partial(progress.answer, exercised.id, 0, 0),
+            partial(progress.see, exercised.id),
+            partial(progress.passes, exercised.id),
+        ):
+            change()
+            await pilot.press("question_mark", "escape")
+            await pilot.pause()
+            told.append(next(line for line in lines_of(app) if exercised.title in line).split()[1])
+        assert told == ["◐", "●", "✓"]
+        progress.see(plain.id)
+        await pilot.press("question_mark", "escape")
+        await pilot.pause()
+        assert "so far" in text_of(app)
+        assert "✓ done" in text_of(app)
+        unit = [lesson for lesson in lessons() if lesson.unit == plain.unit]
+        assert f"multithreading 2/{len(unit)}" in text_of(app)
+
+
+async def test_progress_that_cannot_be_read_is_told_of_in_the_menu(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path))
+    (tmp_path / "cbtui").mkdir()
+    (tmp_path / "cbtui" / "progress.jsonl").write_text("no progress\n")
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.pause()
+        (note,) = app._notifications
+        assert "progress.jsonl:1 is no progress" in note.message

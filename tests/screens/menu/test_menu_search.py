@@ -1,0 +1,90 @@
+"""The search of the menu."""
+
+from pathlib import Path
+
+import pytest
+
+from cbtui.app import CbtuiApp
+from cbtui.runs.setup.recent import Kind, Opened, Recents
+from cbtui.screens.lesson import LessonScreen
+from cbtui.screens.menu import MenuScreen
+from cbtui.widgets.menu_search import MenuSearch
+from tests.support.console import NARROW, TALL, predict
+from tests.support.fake_session import FakeEngines
+from tests.support.pictures import text_of
+
+
+def menu() -> CbtuiApp:
+    return CbtuiApp(open_session=FakeEngines([], 0))
+
+
+@pytest.fixture
+def program(tmp_path: Path) -> Path:
+    path = tmp_path / "my_node.py"
+    path.write_text("pass\n")
+    Recents().note(Opened(Kind.PROGRAM, str(path), 100))
+    return path
+
+
+async def test_words_show_only_what_has_them_and_escape_shows_all(program: Path) -> None:
+    app = menu()
+    async with app.run_test(size=TALL) as pilot:
+        await pilot.press("slash", *"THREADS reen")
+        await pilot.pause()
+        text = text_of(app)
+        assert "Reentrant, 2 threads" in text
+        assert "Split groups" not in text
+        assert "my_node.py" not in text
+        await pilot.press("escape")
+        await pilot.pause()
+        assert "Split groups" in text_of(app)
+        assert "my_node.py" in text_of(app)
+        assert not app.screen.query(MenuSearch)
+
+
+async def test_digits_are_words_too_and_enter_opens_what_is_highlighted() -> None:
+    app = menu()
+    predict(app, "reentrant-2-threads")
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("slash", *"2 threads", "down")
+        await pilot.press("enter")
+        assert isinstance(app.screen, LessonScreen)
+        assert app.screen.subject.lesson is not None
+        assert app.screen.subject.lesson.id == "reentrant-2-threads"
+
+
+async def test_a_search_stays_when_a_lesson_is_left_until_it_is_ended() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("slash", *"split", "enter", "q")
+        await pilot.pause()
+        assert "One shared group" not in text_of(app)
+        await pilot.press("escape")
+        await pilot.pause()
+        assert "One shared group" in text_of(app)
+
+
+async def test_recent_files_are_found_by_their_paths(program: Path) -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("slash", *"my_n")
+        await pilot.pause()
+        assert "my_node.py" in text_of(app)
+        assert "Unit" not in text_of(app)
+
+
+async def test_words_that_nothing_has_are_said_to_find_nothing() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("slash", *"zebra", "enter", "down", "up")
+        await pilot.pause()
+        assert "No lesson and no recent file has all of" in text_of(app)
+        assert isinstance(app.screen, MenuScreen)
+
+
+async def test_a_search_without_words_goes_when_it_is_left() -> None:
+    app = menu()
+    async with app.run_test(size=NARROW) as pilot:
+        await pilot.press("slash", "tab")
+        await pilot.pause()
+        assert not app.screen.query(MenuSearch)

@@ -1,0 +1,427 @@
+"""Two runs in the console: one above the other, the same stretch and cursor, and a table of what differs."""
+
+import asyncio
+import re
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from pathlib import Path
+
+import pytest
+from textual.pilot import Pilot
+
+from cbtui.app import CbtuiApp
+from cbtui.keys.action import Scope
+from cbtui.keys.actions import ACTIONS
+from cbtui.keys.keymap import keys_of
+from cbtui.looks.theme import Charset
+from cbtui.runs.compared_runs import ComparedRun, Progress, Side, Terms
+from cbtui.runs.setup.changes import Changes
+from cbtui.runs.setup.lesson_setup import RunRequest
+from cbtui.screens import compare
+from cbtui.screens.compare import CompareScreen
+from cbtui.screens.gathering import GatheringScreen, sentence_on
+from cbtui.screens.help import HelpScreen
+from cbtui.screens.lesson import LessonScreen
+from cbtui.screens.menu import MenuScreen
+from cbtui.screens.moment import MomentScreen
+from cbtui.widgets.comparison import ComparisonTable
+from cbtui.widgets.lanes import Lanes, start_of
+from lessons.catalogue import find
+from sim.trace.events import AnyEvent, RobotMoved, RunEnded
+from sim.trace.model import Window
+from sim.trace.timeline import Timeline
+from tests.support.builder import ns
+from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.exercises import until
+from tests.support.pictures import lines_of, text_of
+from tests.support.runs import shared_group_run, split_groups_run
+
+
+def timeline_of(events: list[AnyEvent], end: float) -> Timeline:
+    timeline = Timeline()
+    timeline.extend([event for event in events if event.t <= ns(end)])
+    return timeline
+
+
+def sides(ends: tuple[float, float] = (14.0, 9.4)) -> tuple[Side, Side]:
+    return (
+        Side("shared-group", timeline_of(shared_group_run().events, ends[0]), "/motor_power"),
+        Side("split-groups", timeline_of(split_groups_run().events, ends[1]), "/motor_power"),
+    )
+
+
+class ComparingConsole(CbtuiApp):
+    """The console with a comparison open."""
+
+    def __init__(
+        self,
+        first: Side,
+        second: Side,
+        charset: Charset = Charset.BRAILLE,
+        bounds: Window | None = None,
+    ) -> None:
+        super().__init__(charset=charset)
+        self.animation_level = "none"
+        self.comparison = CompareScreen(first, second, charset, bounds)
+
+    def on_mount(self) -> None:
+        self.push_screen(self.comparison)
+
+
+@asynccontextmanager
+async def compared(
+    first: Side, second: Side, size: tuple[int, int] = WIDE, bounds: Window | None = None
+) -> AsyncIterator[tuple[ComparingConsole, Pilot[None]]]:
+    app = ComparingConsole(first, second, bounds=bounds)
+    async with app.run_test(size=size, notifications=True) as pilot:
+        await drawn(app, pilot)
+        yield app, pilot
+
+
+async def drawn(app: ComparingConsole, pilot: Pilot[None]) -> None:
+    await pilot.pause()
+    app.comparison._rest_until = 0.0
+    app.comparison.draw()
+    await app.workers.wait_for_complete()
+    await pilot.pause()
+
+
+async def press(app: ComparingConsole, pilot: Pilot[None], *keys: str) -> None:
+    await pilot.press(*keys)
+    await drawn(app, pilot)
+
+
+def lanes(app: ComparingConsole) -> tuple[Lanes, Lanes]:
+    first, second = app.comparison.query(Lanes).results(Lanes)
+    return first, second
+
+
+def title(app: ComparingConsole) -> str:
+    """What the table says that it is about."""
+    return next(line for line in lines_of(app) if line.endswith("──"))
+
+
+async def test_both_runs_have_the_same_stretch_and_cursor_whatever_is_pressed() -> None:
+    async with compared(*sides()) as (app, pilot):
+        for key in (
+            "",
+            "left_square_bracket",
+            "greater_than_sign",
+            "left",
+            "right",
+            "comma",
+            "full_stop",
+            "0",
+        ):
+            if key:
+                await press(app, pilot, key)
+            first, second = lanes(app)
+            assert first.window == second.window
+            cursor = app.comparison.navigation.playhead.now(first.timeline.end)
+            assert (first.now, second.now) == (cursor, min(cursor, second.timeline.end))
+            assert first.picture is not None
+            assert second.picture is not None
+            assert first.picture.scale == second.picture.scale
+            assert first.picture.layout == second.picture.layout
+
+
+async def test_the_axis_goes_as_far_as_the_longer_run_and_the_table_as_far_as_the_shorter() -> None:
+    async with compared(*sides()) as (app, _):
+        assert lanes(app)[0].now == app.comparison._sides[0].timeline.end
+        assert "Whole runs, 0 to 9.4 s; run A goes on to 14 s" in title(app)
+
+
+@pytest.mark.parametrize(
+    "key",
+    ["left", "right", "[", "]", "{", "}", ",", ".", "<", ">", "G", "0", "z", "Z", "escape"],
+)
+def test_a_key_that_moves_through_time_does_the_same_as_in_a_lesson(key: str) -> None:
+    here, there = (
+        {action.id for action in ACTIONS if action.scope is scope and key in keys_of(action)}
+        for scope in (Scope.COMPARE, Scope.LESSON)
+    )
+    assert here == there != set()
+
+
+async def test_the_cursor_goes_from_bar_to_bar_of_the_lane_that_was_clicked_on() -> None:
+    async with compared(*sides()) as (app, pilot):
+        lanes = app.comparison.query_one("#lanes1", Lanes)
+        await pilot.click(lanes, offset=(60, 1))
+        await pilot.pause()
+        assert lanes.selection is not None
+        assert app.comparison.query_one("#lanes0", Lanes).selection is None
+        await pilot.press("right_curly_bracket")
+        later = lanes.now
+        await pilot.press("left_curly_bracket", "left_curly_bracket")
+        assert lanes.now < later
+        assert lanes.selection.bar is not None
+        assert start_of(lanes.selection.bar) == lanes.now
+        await pilot.press("escape")
+        assert lanes.selection is None
+
+
+async def test_w_lets_the_table_tell_of_the_stretch_on_screen_and_back() -> None:
+    async with compared(*sides()) as (app, pilot):
+        await press(app, pilot, "w")
+        assert "On screen, 4 to 9.4 s; run B ends at" in title(app)
+        await press(app, pilot, "greater_than_sign")
+        assert "On screen, 9 to 9.4 s" in title(app)
+        await press(app, pilot, "w")
+        assert "Whole runs, 0 to 9.4 s" in title(app)
+
+
+async def test_a_stretch_that_only_one_run_has_says_so() -> None:
+    async with compared(*sides((14.0, 3.0))) as (app, pilot):
+        await press(app, pilot, "w")
+        assert "On screen: nothing that both runs have; run B ends at 3.000 s" in text_of(app)
+        assert "odom_callback" not in "\n".join(lines_of(app)[-18:])
+
+
+async def test_g_goes_to_a_moment_of_both() -> None:
+    async with compared(*sides()) as (app, pilot):
+        await pilot.press("G")
+        assert isinstance(app.screen, MomentScreen)
+        await press(app, pilot, *["backspace"] * 8, *"5.5", "enter")
+        assert [each.now for each in lanes(app)] == [ns(5.5)] * 2
+        assert "t 5.500 s" in lines_of(app)[0]
+
+
+async def test_steps_stop_at_the_events_of_either_run() -> None:
+    async with compared(*sides()) as (app, pilot):
+        await press(app, pilot, "left_square_bracket", "left_square_bracket", "left_square_bracket")
+        await press(app, pilot, "left_square_bracket", "left_square_bracket", "left_square_bracket")
+        at = lanes(app)[0].now
+        timelines = [side.timeline for side in app.comparison._sides]
+        beside = [timeline.neighbour(at, None, -1) for timeline in timelines]
+        await press(app, pilot, "comma")
+        assert lanes(app)[0].now == max(each for each in beside if each is not None)
+        at = lanes(app)[0].now
+        beside = [timeline.neighbour(at, None, 1) for timeline in timelines]
+        await press(app, pilot, "full_stop")
+        assert lanes(app)[0].now == min(each for each in beside if each is not None)
+
+
+async def test_a_narrow_screen_scrolls_the_table_and_z_lets_it_fill_the_screen() -> None:
+    async with compared(*sides(), size=NARROW) as (app, pilot):
+        table = app.comparison.query_one(ComparisonTable)
+        assert "run A  shared-group" in text_of(app)
+        assert "run B  split-groups" in text_of(app)
+        assert "whole program" not in text_of(app)
+        await press(app, pilot, *["down"] * 12)
+        assert table.scroll_offset.y > 0
+        assert "heading" in text_of(app)
+        before = table.size.height
+        await press(app, pilot, *["up"] * 12, "z")
+        assert table.scroll_offset.y == 0
+        assert table.size.height > before + 6
+        await press(app, pilot, "z")
+        assert table.size.height == before
+
+
+async def test_a_narrow_screen_names_the_key_that_lets_all_lanes_be_seen() -> None:
+    async with compared(*sides(), size=NARROW) as (app, pilot):
+        table = app.comparison.query_one(ComparisonTable)
+        assert "+2 lanes Z" in text_of(app)
+        await press(app, pilot, "Z")
+        assert "lanes" not in text_of(app)
+        assert "ThreadPoolExecutor-0_3" in text_of(app) or "Pool-0_3" in text_of(app)
+        shown = [table.display]
+        await press(app, pilot, "z")
+        shown.append(table.display)
+        assert shown == [False, True]
+        assert not app.comparison.query_one("#lanes0").display
+        await press(app, pilot, "z")
+        assert "+2 lanes Z" in text_of(app)
+
+
+async def test_a_wide_screen_has_room_for_everything() -> None:
+    async with compared(*sides()) as (app, _):
+        table = app.comparison.query_one(ComparisonTable)
+        assert table.max_scroll_y == 0
+        picture = text_of(app)
+        for word in ("calls", "drops", "wait med/max", "age med/max", "robot travelled", "collisions"):
+            assert word in picture
+
+
+async def test_what_is_asked_for_is_what_the_table_and_the_lanes_begin_with() -> None:
+    async with compared(*sides(), bounds=Window(ns(2.0), ns(5.0))) as (app, _):
+        assert "As asked, 2 to 5 s; run A goes on to 14 s; run B goes on to 9.4 s" in title(app)
+        shown = lanes(app)[0].window
+        assert shown.start <= ns(2.0)
+        assert shown.end >= ns(5.0)
+
+
+async def test_a_run_that_goes_on_grows_on_screen_and_in_the_table() -> None:
+    events = shared_group_run().events
+    growing = Timeline()
+    growing.extend([event for event in events if event.t <= ns(3.0)])
+    first = Side("now", growing, alive=lambda: True)
+    async with compared(first, sides()[1]) as (app, pilot):
+        assert "goes on" in text_of(app)
+        assert lanes(app)[0].now == growing.end
+        assert "Whole runs, 0 to 3 s" in title(app)
+        growing.extend([event for event in events if ns(3.0) < event.t <= ns(6.0)])
+        await drawn(app, pilot)
+        assert [each.now for each in lanes(app)] == [growing.end] * 2
+        assert "Whole runs, 0 to 6 s" in title(app)
+
+
+async def test_how_a_run_failed_and_what_of_a_recording_is_lost_is_said() -> None:
+    failed = Timeline()
+    failed.extend(
+        [RobotMoved(0, 0, 0, 0, 1, 0, 0, True, False, 0, 0), RunEnded(ns(1), "it broke", failed=True)]
+    )
+    async with compared(Side("a", failed), Side("b", sides()[1].timeline, damage="it breaks off")) as (
+        app,
+        _,
+    ):
+        told = {notification.message for notification in app._notifications}
+        assert told == {"a: it broke", "it breaks off"}
+
+
+async def test_help_begins_with_the_comparisons_keys_and_q_is_the_way_back() -> None:
+    async with compared(*sides(), size=NARROW) as (app, pilot):
+        await pilot.press("question_mark")
+        assert isinstance(app.screen, HelpScreen)
+        await pilot.pause()
+        assert "Let the table tell of whole runs, or of what is on screen" in text_of(app)
+        await pilot.press("q", "q")
+        assert isinstance(app.screen, MenuScreen)
+
+
+async def test_too_small_a_terminal_gets_a_sentence() -> None:
+    async with compared(*sides(), size=(60, 20)) as (app, pilot):
+        assert "cbtui needs a terminal of 80 columns" in text_of(app)
+        await pilot.resize_terminal(*WIDE)
+        await drawn(app, pilot)
+        assert "run A  shared-group" in text_of(app)
+
+
+# from a lesson
+
+
+async def test_a_lesson_offers_a_comparison_once_there_is_a_run_before() -> None:
+    app = RecordedConsole("shared-group", shared_group_run().events, 13.15)
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        assert app.lesson_screen.check_action("compare", ()) is False
+        before = app.lesson_screen.live_run.timeline
+        await pilot.press("t", "4")
+        await settle(pilot)
+        assert app.lesson_screen.check_action("compare", ()) is True
+        lesson = app.lesson_screen
+        await pilot.press("C")
+        await until(pilot, lambda: isinstance(app.screen, CompareScreen))
+        comparison = app.screen
+        assert isinstance(comparison, CompareScreen)
+        first, second = comparison._sides
+        assert (first.name, second.name) == ("shared-group, as written", "shared-group, 4 threads")
+        assert first.timeline is before
+        assert second.timeline is lesson.live_run.timeline
+        assert (first.alive(), second.alive()) == (False, True)
+        app.engines.latest.play(ns(15))
+        await until(pilot, lambda: lesson.live_run.timeline.end > ns(14))
+        comparison.draw()
+        assert comparison.query(Lanes).last(Lanes).now == lesson.live_run.timeline.end > ns(14)
+        await pilot.press("q")
+        assert isinstance(app.screen, LessonScreen)
+
+
+# from the command line
+
+
+def compared_run(lesson: str, threads: int | None = None) -> ComparedRun:
+    return ComparedRun(lesson, RunRequest(lesson=find(lesson), changes=Changes(threads)))
+
+
+@asynccontextmanager
+async def gathering(
+    first: ComparedRun, second: ComparedRun, terms: Terms
+) -> AsyncIterator[tuple[CbtuiApp, Pilot[None]]]:
+    app = CbtuiApp(start_comparison=(first, second, terms))
+    app.animation_level = "none"
+    async with app.run_test(size=WIDE, notifications=True) as pilot:
+        await pilot.pause()
+        yield app, pilot
+
+
+async def test_two_lessons_are_run_and_then_compared() -> None:
+    terms = Terms(end=3.0, calls=(1.2,))
+    first, second = compared_run("exclusive-2-threads"), compared_run("reentrant-1-thread", threads=2)
+    async with gathering(first, second, terms) as (app, pilot):
+        assert isinstance(app.screen, GatheringScreen | CompareScreen)
+        while isinstance(app.screen, GatheringScreen):
+            await asyncio.sleep(0.02)
+        assert isinstance(app.screen, CompareScreen)
+        await until(pilot, lambda: "As asked, 0 to 3 s" in text_of(app))
+        assert [side.timeline.end for side in app.screen._sides] == [ns(3.0)] * 2
+        picture = text_of(app)
+        assert "SetBool_callback" in picture
+        assert "MultiThreadedExecutor(2)" in picture
+
+
+async def test_what_cannot_be_compared_is_said_and_ends_the_console_with_2(tmp_path: Path) -> None:
+    terms = Terms()
+    async with gathering(
+        ComparedRun("x.mcap", tmp_path / "x.mcap"), compared_run("single-thread"), terms
+    ) as (
+        app,
+        pilot,
+    ):
+        while "cannot be read" not in text_of(app):
+            await asyncio.sleep(0.02)
+            await pilot.pause()
+        await pilot.press("w", "z", "q")
+    assert app.return_code == 2
+
+
+async def test_a_run_that_takes_long_can_be_given_up() -> None:
+    terms = Terms(end=36_000)
+    async with gathering(compared_run("single-thread"), compared_run("split-groups"), terms) as (app, pilot):
+        await pilot.press("q")
+        assert isinstance(app.screen, MenuScreen)
+
+
+@pytest.mark.parametrize(
+    ("progress", "sentence"),
+    [
+        (Progress("a", "running", ns(12.34), ns(60)), "running a: 12.3 s of 60 s"),
+        (Progress("a.mcap", "reading", ns(2)), "reading a.mcap: 2.0 s"),
+    ],
+)
+def test_progress_tells_how_far_a_run_has_come(progress: Progress, sentence: str) -> None:
+    assert sentence_on(progress) == sentence
+
+
+async def test_keys_are_answered_while_a_comparison_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compare, "_SLICE", 0.0)
+    monkeypatch.setattr(compare, "_SOON", 0.0)
+    monkeypatch.setattr(compare, "_BREATH", 0.02)
+    app = ComparingConsole(*sides())
+    async with app.run_test(size=WIDE) as pilot:
+        await pilot.pause()
+        app.comparison.draw()
+        before = app.comparison.navigation.playhead
+        await pilot.press("left_square_bracket")
+        assert app.comparison.navigation.playhead != before
+        assert re.search(r"Comparing, \d+ s so far", text_of(app))
+        assert app.comparison._comparing
+        monkeypatch.setattr(compare, "_SLICE", 10.0)
+        await app.workers.wait_for_complete()
+        await pilot.pause()
+        assert "Whole runs, 0 to 9.4 s" in title(app)
+
+
+async def test_asking_for_something_else_ends_a_comparison_that_goes_on(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(compare, "_SLICE", 0.0)
+    monkeypatch.setattr(compare, "_BREATH", 0.05)
+    app = ComparingConsole(*sides())
+    async with app.run_test(size=WIDE) as pilot:
+        await pilot.pause()
+        app.comparison.draw()
+        assert app.comparison._comparing
+        monkeypatch.setattr(compare, "_SLICE", 10.0)
+        await press(app, pilot, "w")
+        assert title(app).strip().startswith("On screen")

@@ -1,0 +1,227 @@
+"""The window that lists what the rules found, and the way from there to the moment and the code."""
+
+from collections.abc import AsyncIterator, Sequence
+from contextlib import asynccontextmanager
+from pathlib import Path
+from time import monotonic
+
+import pytest
+from textual.pilot import Pilot
+
+from cbtui.app import CbtuiApp
+from cbtui.keys.keymap import STANDARD, Keymap
+from cbtui.looks.theme import Charset
+from cbtui.runs.live.findings import ExplainedFinding, FindingsMonitor
+from cbtui.screens.diagnoses import DiagnosesScreen, details_of, problems_note, row_of, title_of
+from cbtui.screens.lesson import LessonScreen
+from cbtui.screens.replay import ReplayScreen
+from cbtui.widgets.code import CodeView
+from cbtui.widgets.diagnosis_line import DiagnosisLine
+from cbtui.widgets.lanes import Lanes
+from cbtui.widgets.lanes.rows import MemberLane
+from sim.diagnosis import Diagnoses, Finding
+from sim.recording import About, read
+from sim.trace.events import AnyEvent
+from sim.trace.timeline import Timeline
+from tests.support.builder import ns
+from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.daily import first_daily
+from tests.support.engine_runs import run_lesson
+from tests.support.pictures import lines_of, text_of
+from tests.support.runs import shared_group_run
+from tests.trace.recording.files import write
+
+TURNED = 14.5
+"""Seconds: the robot has turned once, and everybody has waited for it."""
+
+
+@asynccontextmanager
+async def console(
+    lesson: str = "shared-group", seconds: float = TURNED, size: tuple[int, int] = NARROW
+) -> AsyncIterator[tuple[RecordedConsole, Pilot[None]]]:
+    """A console on a real run of a lesson."""
+    app = RecordedConsole(lesson, run_lesson(lesson, seconds).events, seconds)
+    async with app.run_test(size=size) as pilot:
+        await settle(pilot)
+        yield app, pilot
+
+
+async def press(pilot: Pilot[None], *keys: str) -> None:
+    await pilot.press(*keys)
+    await settle(pilot)
+
+
+def told_of(events: Sequence[AnyEvent]) -> tuple[ExplainedFinding, ...]:
+    timeline = Timeline()
+    timeline.extend(events)
+    watch = FindingsMonitor(timeline)
+    watch.look()
+    return watch.findings
+
+
+def status(app: CbtuiApp) -> str:
+    return lines_of(app)[0]
+
+
+@pytest.mark.parametrize("size", first_daily(WIDE, NARROW), ids=["140x40", "80x24"])
+async def test_the_window_tells_what_why_what_to_do_and_where(size: tuple[int, int]) -> None:
+    async with console(size=size) as (app, pilot):
+        await press(pilot, "d", "down")
+        shown = text_of(app)
+        assert "Diagnoses: 6 problems, 1 remark" in shown
+        assert "!    4.003 s  odom_callback waited 10.5 s: group A was held by" in shown
+        assert "·    4.000 s  timer_callback took 10.0 s with a period of 500 ms" in shown
+        assert "odom_callback waited 10.5 s: group A was held by timer_callback." in shown
+        assert "A mutually exclusive group lets one callback in at a time" in shown
+        assert "→ give odom_callback a callback group of its own, and spin with" in shown
+        assert "node.py:63, at 4.003 s" in shown
+        assert "⏎ go there" in shown
+        assert "esc close" in shown
+
+
+@pytest.mark.parametrize("size", first_daily(WIDE, NARROW), ids=["140x40", "80x24"])
+async def test_enter_goes_to_the_moment_the_lane_and_the_code(size: tuple[int, int]) -> None:
+    async with console(size=size) as (app, pilot):
+        await press(pilot, "d", "down", "enter")
+        assert "t 4.003 s" in status(app)
+        lanes, code = app.screen.query_one(Lanes), app.screen.query_one(CodeView)
+        assert lanes.selection is not None
+        assert isinstance(lanes.selection.lane, MemberLane)
+        assert lanes.selection.lane.entity.name == "/odom"
+        assert "▸ A odom_callback waits" in text_of(app)
+        assert code.has_focus
+        assert code.picked == 63
+        assert "def timer_callback" in text_of(app)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("key", ["escape", "q"])
+async def test_closing_leaves_everything_as_it_is(key: str) -> None:
+    async with console() as (app, pilot):
+        before = text_of(app)
+        await press(pilot, "d", "down", key)
+        assert isinstance(app.screen, LessonScreen)
+        assert text_of(app) == before
+
+
+async def test_a_run_without_problems_says_so_and_offers_no_way() -> None:
+    async with console(seconds=3.0) as (app, pilot):
+        assert "problem" not in lines_of(app)[-2]
+        await press(pilot, "d", "enter", "down")
+        assert "✓ Nothing has gone wrong so far" in text_of(app)
+        assert "go there" not in text_of(app)
+
+
+@pytest.mark.slow
+async def test_what_is_true_of_the_whole_run_offers_no_way_to_go() -> None:
+    async with console("reentrant-2-threads", 3.0) as (app, pilot):
+        await press(pilot, "d")
+        assert "Diagnoses: 1 remark" in text_of(app)
+        assert "go there" not in text_of(app)
+        await press(pilot, "enter")
+        assert isinstance(app.screen, DiagnosesScreen)
+
+
+@pytest.mark.slow
+async def test_a_click_on_the_line_opens_the_list_and_one_in_the_list_highlights() -> None:
+    async with console() as (app, pilot):
+        await pilot.click(DiagnosisLine)
+        await settle(pilot)
+        assert isinstance(app.screen, DiagnosesScreen)
+        row = next(place for place, line in enumerate(lines_of(app)) if "4.006 s  scan_callback" in line)
+        await pilot.click(offset=(20, row))
+        await settle(pilot)
+        assert "→ give scan_callback a callback group of its own" in text_of(app)
+
+
+async def test_the_line_counts_problems_and_tells_of_the_worst_when_nothing_waits() -> None:
+    async with console() as (app, pilot):
+        assert "6 problems · d" in lines_of(app)[-2]
+        await press(pilot, *["left_square_bracket"] * 12)
+        assert "t 2.5" in status(app)
+        assert lines_of(app)[-2].startswith(" ! at 4.0 s: timer_callback slept or worked for 10.0 s")
+        assert "6 problems · d" in lines_of(app)[-2]
+
+
+@pytest.mark.slow
+async def test_another_run_begins_without_findings() -> None:
+    async with console() as (app, pilot):
+        app.engines._events = []
+        await press(pilot, "t", "2")
+        assert "problem" not in text_of(app)
+
+
+async def test_the_rules_look_at_most_once_a_second_whatever_is_drawn(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    looks = 0
+    update = Diagnoses.update
+
+    def counting(self: Diagnoses, timeline: Timeline) -> tuple[Finding, ...]:
+        nonlocal looks
+        looks += 1
+        return update(self, timeline)
+
+    async with console() as (app, pilot):
+        monkeypatch.setattr(Diagnoses, "update", counting)
+        began = monotonic()
+        for _ in range(50):
+            app.lesson_screen.draw()
+            app.lesson_screen._draw_if_due()
+        await pilot.pause()
+        assert looks <= monotonic() - began + 1
+
+
+@pytest.mark.slow
+async def test_a_recording_has_its_diagnoses_too(tmp_path: Path) -> None:
+    path = tmp_path / "run.mcap"
+    write(path, run_lesson("shared-group", TURNED).events, About(title="shared-group", clock="virtual"))
+    app = CbtuiApp(start_recording=read(path))
+    app.animation_level = "none"
+    async with app.run_test(size=WIDE) as pilot:
+        await settle(pilot)
+        screen = app.screen
+        assert isinstance(screen, ReplayScreen)
+        while not screen.replay_run.is_read:
+            await pilot.pause(0.01)
+        await settle(pilot)
+        assert "6 problems · d" in lines_of(app)[-2]
+        await press(pilot, "d", "down", "enter")
+        assert "t 4.003 s" in status(app)
+        assert "▸ A odom_callback waits" in text_of(app)
+        assert screen.query_one(CodeView).picked == 63
+
+
+def test_a_finding_is_a_line_and_a_paragraph() -> None:
+    worst = told_of(shared_group_run().until(TURNED))[0]
+    assert row_of(worst, Charset.BRAILLE).plain == (
+        "!    4.000 s  timer_callback slept or worked for 10.0 s in group A, "
+        "which it shares with odom_callback and scan_callback (2 times in all)"
+    )
+    assert details_of(worst, Charset.BRAILLE).plain.splitlines() == [
+        f"{worst.explanation.what}.",
+        "While it sleeps it holds the group, and nothing comes in from the sensors.",
+        "→ give timer_callback a callback group of its own, and spin with "
+        "MultiThreadedExecutor(num_threads=2); or let timer_callback return at once, and go on in a timer.",
+        "node.py:120, at 4.000 s",
+    ]
+
+
+def test_the_title_counts_what_there_is() -> None:
+    told = told_of(shared_group_run().until(TURNED))
+    remarks = [each for each in told if not each.is_problem]
+    assert title_of(told[:1]) == "Diagnoses: 1 problem"
+    assert title_of([*told[:2], *remarks[:1]]) == "Diagnoses: 2 problems, 1 remark"
+    assert title_of([]) == "Diagnoses"
+
+
+def test_the_note_names_the_key_in_force() -> None:
+    told = told_of(shared_group_run().until(TURNED))[:1]
+    assert problems_note(told, STANDARD, Charset.BRAILLE) == "1 problem · d"
+    assert problems_note(told, Keymap({"lesson.diagnoses": ("D",)}), Charset.ASCII).endswith(" D")
+    assert problems_note([], STANDARD, Charset.BRAILLE) == ""
+
+
+def test_moments_of_findings_lie_in_the_run() -> None:
+    told = told_of(run_lesson("shared-group", TURNED).events)
+    assert all(each.at is not None and 0 < each.at <= ns(TURNED) for each in told)

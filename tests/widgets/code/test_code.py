@@ -1,0 +1,140 @@
+from pathlib import Path
+
+import pytest
+from textual.app import App, ComposeResult
+
+from cbtui.widgets.code import CodeView
+from cbtui.widgets.code.files import SourceFiles
+from cbtui.widgets.code.highlight import Kind, highlight
+from cbtui.widgets.code.marks import Doing, Marked, marks_at
+from lessons.catalogue import lessons
+from lessons.lesson import Lesson
+from sim.trace.timeline import Timeline
+from tests.support.builder import Run, ns
+from tests.support.pictures import lines_of
+
+SOURCE = "\n".join(["import rclpy", *(f"# {line}" for line in range(2, 40))]) + "\n"
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    path = tmp_path / "node.py"
+    path.write_text(SOURCE)
+    return path
+
+
+def sleeper(file: str = "node.py") -> tuple[Run, Timeline]:
+    """A timer (lines 30 to 33) that runs from 1 s on, and a subscription (20 to 22) that waits for it."""
+    run = Run()
+    thread = run.thread("MainThread")
+    group = run.exclusive(run.node("/n"))
+    odom = run.subscription(group, "/odom", "odom_callback", file=file, lines=(20, 22))
+    timer = run.timer(group, "timer_callback", 1.0, file=file, lines=(30, 33))
+    run.message(odom, 0.5)
+    run.callback(odom, thread, 0.5, 0.001)
+    run.callback(timer, thread, 1.0)
+    run.wait(odom, 1.5, None, holder=timer)
+    run.log("still there", 8.0)
+    timeline = Timeline()
+    timeline.extend(run.events)
+    return run, timeline
+
+
+def marked(path: Path, timeline: Timeline, at: float) -> list[Marked]:
+    files = SourceFiles(path)
+    return marks_at(timeline, ns(at), files).get(files.main, [])
+
+
+@pytest.mark.parametrize("lesson", lessons(), ids=lambda lesson: lesson.id)
+def test_highlighting_changes_no_character(lesson: Lesson) -> None:
+    source = lesson.node_path.read_text()
+    lines = ["".join(word.text for word in line) for line in highlight(source)]
+    assert lines == source.splitlines()
+
+
+def test_words_get_their_kind() -> None:
+    (line,) = highlight("def f(): return 'a'  # b")
+    kinds = {word.text: word.kind for word in line}
+    assert kinds["def"] == kinds["return"] == Kind.KEYWORD
+    assert kinds["f"] == Kind.NAME
+    assert kinds["# b"] == Kind.COMMENT
+    assert kinds["'"] == kinds["a"] == Kind.STRING
+
+
+def test_a_running_callback_is_marked_with_its_thread(path: Path) -> None:
+    _, timer = marked(path, sleeper()[1], 6.0)
+    assert (timer.doing, timer.first_line, timer.last_line) == (Doing.RUNS, 30, 33)
+    assert timer.texts[0] == "▶ MainThread 5.0 s"
+    assert timer.letter == "A"
+
+
+def test_a_waiting_callback_is_marked_with_the_reason(path: Path) -> None:
+    odom, _ = marked(path, sleeper()[1], 6.0)
+    assert odom.doing is Doing.WAITS
+    assert odom.texts[0] == "╱ waits 4.5 s: group A held by timer_callback"
+
+
+def test_a_short_callback_stays_marked_for_a_moment(path: Path) -> None:
+    assert marked(path, sleeper()[1], 0.6)[0].texts == ("· MainThread",)
+    assert marked(path, sleeper()[1], 0.9)[0].doing is Doing.IDLE
+
+
+def test_callbacks_of_other_files_are_not_marked(path: Path) -> None:
+    assert marked(path, sleeper("/elsewhere/node.py")[1], 6.0) == []
+
+
+def test_a_file_is_known_behind_a_link(tmp_path: Path, path: Path) -> None:
+    link = tmp_path / "link.py"
+    link.symlink_to(path)
+    assert len(marked(link, sleeper(str(path))[1], 6.0)) == 2
+
+
+class CodeOnly(App[None]):
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self._path = path
+
+    def compose(self) -> ComposeResult:
+        yield CodeView(self._path)
+
+    @property
+    def view(self) -> CodeView:
+        return self.query_one(CodeView)
+
+
+async def test_the_view_goes_to_a_callback_that_runs_for_a_while(path: Path) -> None:
+    app = CodeOnly(path)
+    async with app.run_test(size=(60, 10)) as pilot:
+        timeline = sleeper()[1]
+        app.view.show(timeline, ns(0.6))
+        await pilot.pause()
+        assert lines_of(app)[1].startswith("  20 A # 20")
+        app.view.show(timeline, ns(1.1))
+        await pilot.pause()
+        assert lines_of(app)[1].startswith("  20 A # 20")
+        app.view.show(timeline, ns(1.4))
+        await pilot.pause()
+        assert lines_of(app)[1].startswith("  30 A # 30")
+        assert lines_of(app)[1].rstrip().endswith("▶ MainThread 400 ms")
+
+
+async def test_the_view_does_not_come_back_while_the_same_callback_runs(path: Path) -> None:
+    app = CodeOnly(path)
+    async with app.run_test(size=(60, 10)) as pilot:
+        timeline = sleeper()[1]
+        app.view.show(timeline, ns(2.0))
+        await pilot.pause()
+        app.view.scroll_to(y=0, animate=False, immediate=True)
+        app.view.show(timeline, ns(3.0))
+        await pilot.pause()
+        assert lines_of(app)[0].startswith("   1   import rclpy")
+
+
+async def test_a_narrow_view_says_it_in_fewer_words(path: Path) -> None:
+    app = CodeOnly(path)
+    async with app.run_test(size=(40, 10)) as pilot:
+        app.view.show(sleeper()[1], ns(1.9))
+        await pilot.pause()
+        app.view.scroll_to(y=18, animate=False, immediate=True)
+        await pilot.pause()
+        assert lines_of(app)[1].rstrip().endswith("waits 400 ms")
