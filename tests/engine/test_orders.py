@@ -12,7 +12,7 @@ from cbtui.runs.setup.lesson_setup import setup_to_judge
 from lessons.catalogue import find
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
 from sim.trace.events import AnyEvent, Notice, Severity
-from tests.cli.exploring_files import LOCK_ORDER
+from tests.commands.exploring_files import LOCK_ORDER
 from tests.support.engine_runs import SECOND, run_to_end
 
 SETUP = msgspec.structs.replace(setup_to_judge(find("lock-or-group")), until=7 * SECOND, robot=RobotUse.NEVER)

@@ -10,9 +10,9 @@ from cbtui.engines.memory_limit import MEMORY_LIMIT
 from cbtui.runs.live.live_run import LiveRun, State
 from sim.recording import read
 from tests.faults.support import ANSWERED, FIRST, console_on, node_with, provoked, still_here
+from tests.recording.files import timeline_of
 from tests.support.engine_runs import SECOND
 from tests.support.pictures import text_of
-from tests.trace.recording.files import timeline_of
 
 pytestmark = pytest.mark.slow
 

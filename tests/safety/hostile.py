@@ -9,7 +9,7 @@ import msgspec
 
 from sim.recording import About, Recorder
 from sim.trace.events import AnyEvent
-from tests.trace.export.examples import small_run
+from tests.export.examples import small_run
 from tests.trace.samples import FULL
 
 HOSTILE = (

@@ -55,7 +55,7 @@ def test_an_export_holds_nothing_that_a_terminal_obeys(recording: str, tmp_path:
 
 
 def test_an_export_of_calls_has_no_cell_that_a_spreadsheet_reckons_with(tmp_path: Path) -> None:
-    from tests.trace.export.examples import small_run
+    from tests.export.examples import small_run
 
     path = hostile.recording(tmp_path / "run.mcap", small_run())
     assert cli.main(["export", str(path), "--csv", str(tmp_path / "out.csv")]) == 0

@@ -17,8 +17,8 @@ from sim.ros.context.arguments import ArgumentsError, parse_arguments
 from sim.ros.parameters.yaml_files import read_value
 from sim.trace import events as ev
 from sim.trace.timeline import Timeline
+from tests.recording.files import write
 from tests.support.runs import Run
-from tests.trace.recording.files import write
 from tests.trace.samples import CAST
 
 _DEEP = "[" * 5000

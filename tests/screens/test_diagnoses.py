@@ -23,13 +23,13 @@ from sim.diagnosis import Diagnoses, Finding
 from sim.recording import About, read
 from sim.trace.events import AnyEvent
 from sim.trace.timeline import Timeline
+from tests.recording.files import write
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
 from tests.support.daily import first_daily
 from tests.support.engine_runs import run_lesson
 from tests.support.pictures import lines_of, text_of
 from tests.support.runs import shared_group_run
-from tests.trace.recording.files import write
 
 TURNED = 14.5
 """Seconds: the robot has turned once, and everybody has waited for it."""

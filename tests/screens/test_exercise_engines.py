@@ -7,7 +7,7 @@ import pytest
 
 from cbtui.runs.judged.run_budget import RunBudget
 from lessons.progress import Progress
-from tests.cli.exercise_files import A_GIGABYTE, ENDLESS_CALLBACK, LEAVES, SYNTAX_ERROR
+from tests.commands.exercise_files import A_GIGABYTE, ENDLESS_CALLBACK, LEAVES, SYNTAX_ERROR
 from tests.support.console import NARROW, settle
 from tests.support.exercises import FILE, LESSON, SOLUTION, ExerciseConsole, until
 from tests.support.pictures import text_of

@@ -16,12 +16,12 @@ from cbtui.widgets.shell import Prompt
 from sim.engine.setup import ProgramSetup, RunSetup
 from sim.recording import About, Recording, read
 from sim.trace.events import AnyEvent, RunEnded
+from tests.recording.files import timeline_of, write, write_in_chunks
 from tests.support.builder import ns
 from tests.support.console import WIDE, settle
 from tests.support.daily import first_daily
 from tests.support.pictures import lines_of, text_of
 from tests.support.runs import shared_group_run
-from tests.trace.recording.files import timeline_of, write, write_in_chunks
 
 PROGRAM = "/no/such/place/shared.py"
 

@@ -29,9 +29,9 @@ from sim.trace.figures.summary import summarise
 from sim.trace.figures.summary_text import plain_text
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
+from tests.export.examples import small_run
+from tests.recording.files import run_in_batches, write_in_chunks
 from tests.soak.fuzz_target import Target
-from tests.trace.export.examples import small_run
-from tests.trace.recording.files import run_in_batches, write_in_chunks
 from tests.trace.samples import BARE, FULL
 
 

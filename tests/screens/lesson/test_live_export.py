@@ -26,12 +26,12 @@ from sim.export import CallTable
 from sim.recording import About, read
 from sim.trace.events import AnyEvent
 from sim.trace.storage.event_store import EventStore
+from tests.recording.files import write
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
 from tests.support.daily import first_daily
 from tests.support.pictures import lines_of, text_of
 from tests.support.runs import shared_group_run
-from tests.trace.recording.files import write
 
 EVENTS = shared_group_run().events
 

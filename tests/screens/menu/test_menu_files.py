@@ -15,11 +15,11 @@ from cbtui.screens.replay import ReplayScreen
 from cbtui.widgets.about import About
 from sim import recording
 from sim.engine.setup import ProgramSetup
+from tests.recording.files import write
 from tests.support.console import NARROW, TALL
 from tests.support.fake_session import FakeEngines
 from tests.support.pictures import lines_of, text_of
 from tests.support.runs import shared_group_run
-from tests.trace.recording.files import write
 
 
 def told(app: CbtuiApp) -> str:

@@ -17,9 +17,9 @@ from cbtui.screens.replay import ReplayScreen
 from lessons.catalogue import find, lessons
 from sim.recording import About, read
 from sim.trace.timeline import Timeline
+from tests.recording.files import write
 from tests.support.fake_session import FakeEngines
 from tests.support.runs import shared_group_run
-from tests.trace.recording.files import write
 
 WITH_AN_ENGINE = {"run_again", "start_over", "record"}
 WITH_A_PERSON = {

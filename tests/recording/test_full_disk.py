@@ -13,8 +13,8 @@ import pytest
 from cbtui.runs.recorded.events_file import EventsFile
 from sim.recording import About, Recorder, RecordingError, read, recorder
 from sim.trace.events import AnyEvent, Notice, Severity
+from tests.recording.files import run_in_batches, without_contents
 from tests.support.daily import first_daily
-from tests.trace.recording.files import run_in_batches, without_contents
 
 BATCHES = run_in_batches(9)[:3]
 EVENTS = [event for events in BATCHES for event in without_contents(events)]

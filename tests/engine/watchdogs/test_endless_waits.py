@@ -146,7 +146,7 @@ def test_only_threads_that_never_go_on_are_told_to_be_in_a_deadlock_and_none_is_
             capture_output=True,
             text=True,
             timeout=60,
-            cwd=Path(__file__).parents[2],
+            cwd=Path(__file__).parents[3],
             check=False,
         )
         assert (ended.stderr, ended.stdout) == ("", "to the end\n"), seed

@@ -4,8 +4,8 @@ import re
 
 from sim.export import report
 from sim.export.texts import markdown
+from tests.export.examples import small_run, timeline_of
 from tests.support.runs import Run, shared_group_run
-from tests.trace.export.examples import small_run, timeline_of
 
 
 def test_a_report_has_set_up_statistics_waits_notices_and_picture() -> None:

@@ -9,8 +9,8 @@ from cbtui.runs.recorded.recording_file import about
 from cbtui.runs.recorded.repeat import CannotRepeatError, repeated
 from cbtui.runs.setup.lesson_setup import RunRequest
 from sim.engine.setup import ProgramSetup, RunSetup
+from tests.recording.files import write
 from tests.support.commands import cbtui
-from tests.trace.recording.files import write
 from tests.trace.samples import FULL
 
 

@@ -15,8 +15,7 @@ from rosbags.interfaces import ConnectionExtRosbag2
 from sim.recording import About, Recorder, read
 from sim.trace.events import AnyEvent, MessageSent, Printed, TimePassed, TopicAppeared
 from sim.trace.model import Window
-from tests.support.properties import examples
-from tests.trace.recording.files import (
+from tests.recording.files import (
     ABOUT,
     TOPICS,
     message,
@@ -26,6 +25,7 @@ from tests.trace.recording.files import (
     write,
     write_in_chunks,
 )
+from tests.support.properties import examples
 from tests.trace.samples import FULL
 from tests.trace.systems import legal_runs
 from tests.trace.test_timeline_properties import everything

@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.trace.export.goldens import FOLDER, NAMES, made
+from tests.export.goldens import FOLDER, NAMES, made
 
 
 @pytest.mark.parametrize("name", NAMES)

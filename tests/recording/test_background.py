@@ -11,7 +11,7 @@ import pytest
 
 from sim.recording import About, BackgroundRecorder, Recorder, read
 from sim.trace.events import AnyEvent, Notice, RunStarted, Severity, ThreadAppeared
-from tests.trace.recording.files import ABOUT, run_in_batches, without_contents
+from tests.recording.files import ABOUT, run_in_batches, without_contents
 
 BATCHES = run_in_batches()
 

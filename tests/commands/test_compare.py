@@ -5,8 +5,8 @@ from pathlib import Path
 import pytest
 
 from cbtui import cli
+from tests.recording.files import write
 from tests.support.commands import cbtui
-from tests.trace.recording.files import write
 from tests.trace.samples import FULL
 
 

@@ -11,7 +11,7 @@ from cbtui import cli
 from cbtui.runs.recorded.recording_file import CannotRecordError, setup_of, start_recording
 from sim.engine.setup import RunSetup, TimedCall
 from sim.recording import About, read
-from tests.trace.recording.files import write
+from tests.recording.files import write
 from tests.trace.samples import FULL
 
 

@@ -8,8 +8,8 @@ import pytest
 
 from cbtui import cli
 from cbtui.commands.options import inputs
+from tests.recording.files import write
 from tests.support.runs import shared_group_run
-from tests.trace.recording.files import write
 
 LONG = "x" * 300
 """A name that is too long to be looked for, as a name in somebody else's folder may not be."""

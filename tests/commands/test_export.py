@@ -13,8 +13,8 @@ from cbtui import cli
 from cbtui.runs.recorded.exporting import ExportError, Wish, export
 from sim.recording import About, Recorder
 from sim.trace.events import AnyEvent, EntityAppeared, GroupAppeared, RunStarted, ThreadAppeared
+from tests.export.examples import small_run
 from tests.support.runs import shared_group_run
-from tests.trace.export.examples import small_run
 
 OUTPUTS = {
     "perfetto": "out.pftrace",

@@ -17,8 +17,8 @@ from sim.trace.events import AnyEvent, MessageSent
 from sim.trace.figures.statistics import statistics
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
+from tests.recording.files import timeline_of
 from tests.support.engine_runs import SECOND, Run, run_to_end
-from tests.trace.recording.files import timeline_of
 
 TIMES = 1000
 LONGEST_WINDOW = SECOND // 2

@@ -8,7 +8,7 @@ import pytest
 
 from cbtui import cli
 from cbtui.grading.grading import papers_in
-from tests.cli.exercise_files import LEAVES, LESSON, SOLUTION, STARTER, SYNTAX_ERROR
+from tests.commands.exercise_files import LEAVES, LESSON, SOLUTION, STARTER, SYNTAX_ERROR
 
 
 @pytest.fixture

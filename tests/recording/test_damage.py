@@ -17,14 +17,14 @@ from sim.recording import About, Recorder, Recording, RecordingError, batch, rea
 from sim.trace.events import AnyEvent, ArenaShown, Printed, RunStarted, TopicAppeared
 from sim.trace.figures.summary import summarise
 from sim.trace.figures.summary_text import plain_text
-from tests.support.daily import first_daily
-from tests.trace.recording.files import (
+from tests.recording.files import (
     run_in_batches,
     timeline_of,
     without_contents,
     write,
     write_in_chunks,
 )
+from tests.support.daily import first_daily
 
 BATCHES = run_in_batches(100)[:15]
 CAST = [

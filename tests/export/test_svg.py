@@ -13,8 +13,8 @@ from sim.export.lanes import ticks
 from sim.trace.events import AnyEvent, Reason
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
+from tests.export.examples import small_run, timeline_of
 from tests.support.runs import Run, ns, shared_group_run
-from tests.trace.export.examples import small_run, timeline_of
 from tests.trace.systems import legal_runs
 
 SPACE = "{http://www.w3.org/2000/svg}"

@@ -18,7 +18,7 @@ from cbtui.runs.judged.exploration_text import exploration_text
 from cbtui.runs.judged.exploring import Exploration, Failure, Result
 from lessons.catalogue import find
 from sim.engine.setup import RunSetup
-from tests.cli.exploring_files import CHECK_THEN_ACT, IN_ONE_GROUP, LOCK_ORDER
+from tests.commands.exploring_files import CHECK_THEN_ACT, IN_ONE_GROUP, LOCK_ORDER
 from tests.support.processes import descendants, wait_until_gone
 
 

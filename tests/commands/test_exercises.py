@@ -12,7 +12,7 @@ from cbtui.learning import exercise_files
 from cbtui.runs.judged.checking import observe
 from cbtui.runs.setup.lesson_setup import setup_to_judge
 from lessons.progress import Progress
-from tests.cli.exercise_files import (
+from tests.commands.exercise_files import (
     A_GIGABYTE,
     ENDLESS_CALLBACK,
     ENDLESS_MAIN,

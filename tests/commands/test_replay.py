@@ -6,8 +6,8 @@ import pytest
 from mcap.writer import Writer
 
 from cbtui import cli
+from tests.recording.files import write
 from tests.support.runs import shared_group_run
-from tests.trace.recording.files import write
 
 
 def refused(path: Path, capsys: pytest.CaptureFixture[str]) -> str:

@@ -13,9 +13,9 @@ from sim.trace.events import (
     MessageDropped,
     TopicAppeared,
 )
+from tests.recording.files import TOPICS, timeline_of
 from tests.support.daily import first_daily
 from tests.support.runs import dummy_server_run, shared_group_run
-from tests.trace.recording.files import TOPICS, timeline_of
 from tests.trace.samples import CAST
 from tests.trace.systems import legal_runs
 

@@ -19,10 +19,10 @@ from sim.trace.events import (
     kinds,
 )
 from sim.trace.model import Window
+from tests.export import reading
+from tests.export.examples import NASTY, small_run, timeline_of
+from tests.export.reading import Trace
 from tests.support.runs import Run, dummy_server_run, ns, shared_group_run
-from tests.trace.export import reading
-from tests.trace.export.examples import NASTY, small_run, timeline_of
-from tests.trace.export.reading import Trace
 from tests.trace.samples import CAST, FULL, full
 from tests.trace.systems import GROUP_OF, THREADS, jumbled_runs, legal_runs
 

@@ -12,8 +12,8 @@ from sim.export.texts import cell, seconds
 from sim.trace.events import AnyEvent
 from sim.trace.model import Span, Window
 from sim.trace.timeline import Timeline
+from tests.export.examples import NASTY, small_run, timeline_of
 from tests.support.runs import Run
-from tests.trace.export.examples import NASTY, small_run, timeline_of
 from tests.trace.systems import legal_runs
 
 

@@ -1,4 +1,4 @@
-"""The small run as each text format has it: ``python -m tests.trace.export.goldens`` writes the files anew.
+"""The small run as each text format has it: ``python -m tests.export.goldens`` writes the files anew.
 
 Look at what changed before keeping it, at the picture too.
 """
@@ -8,9 +8,9 @@ from pathlib import Path
 
 from sim.export import CallTable, ChromeFile, report, svg
 from sim.trace.model import Window
+from tests.export.examples import small_run, timeline_of
+from tests.export.reading import written
 from tests.support.runs import ns
-from tests.trace.export.examples import small_run, timeline_of
-from tests.trace.export.reading import written
 
 FOLDER = Path(__file__).with_name("golden")
 NAMES = ("calls.csv", "lanes.svg", "report.md", "trace.json")
