@@ -28,6 +28,7 @@ from sim.engine.failures.uncaught_exceptions import report_uncaught
 from sim.engine.outbox import Outbox
 from sim.engine.programs.children import allow_children, refuse_children
 from sim.engine.programs.ending import finalise, set_engine_apart
+from sim.engine.programs.exit_functions import share_exit_functions
 from sim.engine.programs.program import Outcome
 from sim.engine.programs.programs import Programs
 from sim.engine.programs.ros2_lines import Lines
@@ -158,6 +159,7 @@ class Engine:
         self._starter.add_own_interfaces()
         use_workspace(self._starter.packages, clock)
         share_machine()
+        share_exit_functions()
         if isinstance(clock, VirtualClock):
             refuse_children()
         else:

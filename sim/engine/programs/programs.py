@@ -11,7 +11,10 @@ from dataclasses import dataclass, field, replace
 from itertools import count
 
 from sim.clock import Signal
+from sim.engine.programs.ending import flush_files
+from sim.engine.programs.exit_functions import run_exit_functions
 from sim.engine.programs.program import Outcome, Program, run_program
+from sim.engine.stdio.output import finish_lines
 from sim.ros.context.context import end_contexts_by_signal
 from sim.ros.context.signals import deliver_sigint
 from sim.ros.middleware.host import Host
@@ -108,7 +111,12 @@ class Programs:
 
     def _run(self, running: RunningProgram) -> None:
         running.thread = threading.get_ident()
-        self._end(running, run_program(running.program))
+        outcome = run_program(running.program)
+        if running.outcome is None:  # a program that was killed leaves what it has undone
+            run_exit_functions()
+            finish_lines()
+            flush_files()
+        self._end(running, outcome)
 
     def kill(self, running: RunningProgram) -> None:
         """Have a program be over whatever it does: it ends as far as it lets itself be ended."""

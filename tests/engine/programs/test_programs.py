@@ -124,6 +124,56 @@ def test_the_run_fails_with_the_first_program_that_does_and_ends_with_the_last(t
     assert getattr(ended, "reason", "") == "program0-1: program0.py:2: the program raised ValueError: no"
 
 
+def test_a_program_that_ends_runs_its_exit_functions_and_flushes_its_files_while_others_go_on(
+    tmp_path: Path,
+) -> None:
+    (tmp_path / "shared.py").write_text("import atexit\natexit.register(print, 'shared')")
+    ends = """
+import atexit, time, weakref
+import shared
+atexit.register(print, "first", end=" of all\\n")
+@atexit.register
+def fails():
+    raise ValueError("no")
+@atexit.register
+def unwanted():
+    print("unwanted")
+atexit.unregister(unwanted)
+atexit.register(print, "last")
+shared.log = open(__file__ + ".csv", "w")
+shared.log.write("1,2")
+shared.kept = [fails]
+weakref.finalize(fails, print, "finalizer")
+time.sleep(1)
+"""
+    goes_on = """
+import atexit, time
+import shared
+atexit.register(lambda: print("done"))
+time.sleep(2)
+print(open(__file__.replace("1.py", "0.py.csv")).read())
+"""
+    run = run_files(tmp_path, ends, goes_on)
+    printed = [
+        (event.t / SECOND, event.process, event.text)
+        for event in run.events
+        if isinstance(event, Printed) and not event.error
+    ]
+    assert printed == [
+        (1, 1, "last"),
+        (1, 1, "first of all"),
+        (2, 2, "1,2"),
+        (2, 2, "done"),
+        (2, 0, "finalizer"),
+        (2, 0, "shared"),
+    ]
+    (told,) = (event for event in run.events if isinstance(event, Notice))
+    assert told.text == "program0.py:7: ValueError: no; Python drops what comes out of fails"
+    assert told.t == SECOND
+    ended = [event.t / SECOND for event in run.events if isinstance(event, ProcessEnded)]
+    assert ended == [1, 2]
+
+
 def test_a_program_that_failed_fails_the_run_even_when_its_time_is_up(tmp_path: Path) -> None:
     run = run_files(tmp_path, "def main():\n    raise ValueError('no')", TALKER)
     assert run.ending.failed

@@ -1,0 +1,69 @@
+"""What a program registers with ``atexit``: one of several programs has it run as that program ends."""
+
+import atexit
+import sys
+from collections.abc import Callable, Mapping
+from types import FrameType, SimpleNamespace
+from typing import Any
+
+from sim.probes import own_code
+from sim.ros.middleware.process import current_process, of_process
+
+_Call = tuple[Callable[..., object], tuple[Any, ...], Mapping[str, Any]]
+
+
+def share_exit_functions() -> None:
+    """Keep what each of several programs registers apart, for ``run_exit_functions``. Call it once.
+
+    What serves all of them runs at the run's end: functions registered by an only program, by Python's own
+    and by installed modules, and as a module is imported.
+    """
+    register, unregister = atexit.register, atexit.unregister
+
+    def register_here(function: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Callable[..., Any]:
+        if current_process().number == 0 or _serves_all(sys._getframe(1)):
+            return register(function, *args, **kwargs)
+        if not callable(function):
+            raise TypeError("the first argument must be callable")
+        of_process(_calls).append((function, args, kwargs))
+        return function
+
+    def unregister_here(function: Callable[..., Any]) -> None:
+        own = of_process(_calls)
+        own[:] = [call for call in own if call[0] != function]
+        unregister(function)
+
+    atexit.register = register_here
+    atexit.unregister = unregister_here
+
+
+def run_exit_functions() -> None:
+    """Run those that the calling thread's program registered, the last first; what one raises is told."""
+    own = of_process(_calls)
+    while own:
+        function, args, kwargs = own.pop()
+        try:
+            function(*args, **kwargs)
+        except (Exception, SystemExit, KeyboardInterrupt) as error:  # noqa: BLE001 -- as under CPython
+            _tell(error, function)
+
+
+def _calls() -> list[_Call]:
+    return []
+
+
+def _serves_all(caller: FrameType) -> bool:
+    if own_code.is_library(caller) or not own_code.is_own(caller):
+        return True
+    return any(own_code.module_root(frame) == "importlib" for frame in own_code.outwards(caller))
+
+
+def _tell(error: BaseException, function: Callable[..., object]) -> None:
+    unraisable: Any = SimpleNamespace(
+        exc_type=type(error),
+        exc_value=error,
+        exc_traceback=error.__traceback__,
+        err_msg="Exception ignored in atexit callback",
+        object=function,
+    )
+    sys.unraisablehook(unraisable)
