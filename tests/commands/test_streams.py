@@ -9,6 +9,7 @@ from queue import Queue
 from typing import TextIO
 
 import pytest
+from psutil import Process
 
 from cbtui.cli import main
 from cbtui.commands.options.targets import need_terminal
@@ -52,11 +53,13 @@ def nobodys_input(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatc
 @pytest.mark.usefixtures("nobodys_input")
 def test_where_standard_input_has_no_descriptor_a_program_that_reads_gets_its_end() -> None:
     given: Queue[Type] = Queue()
+    before = Process().num_fds()
     keyboard = StandardInput(given.put)
     assert not keyboard.is_terminal
     keyboard.follow([KeyboardAsked(0, Reading.LINES, "node.py")])
     assert given.get(timeout=60) == Type("", ends=True)
     keyboard.close()
+    assert Process().num_fds() == before
 
 
 @pytest.mark.usefixtures("nobodys_input")

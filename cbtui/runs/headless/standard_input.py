@@ -8,7 +8,8 @@ import termios
 import threading
 from codecs import getincrementaldecoder
 from collections.abc import Callable, Iterable
-from contextlib import suppress
+from contextlib import ExitStack, suppress
+from pathlib import Path
 from typing import Any
 
 from sim.engine.commands import END_OF_INPUT, INTERRUPT, Type
@@ -26,7 +27,8 @@ class StandardInput:
 
     def __init__(self, give: Callable[[Type], None]) -> None:
         self._give = give
-        self._descriptor = _descriptor()
+        self._opened = ExitStack()
+        self._descriptor = _descriptor(self._opened)
         self.is_terminal = os.isatty(self._descriptor)
         self._usual: list[Any] = termios.tcgetattr(self._descriptor) if self.is_terminal else []
         self._reads = Reading.NOTHING
@@ -48,6 +50,7 @@ class StandardInput:
         if self._reader.ident is not None:
             self._reader.join()
         os.close(self._over)
+        self._opened.close()
 
     def _put_in_mode(self, reads: Reading) -> None:
         before, self._reads = self._reads, reads
@@ -83,9 +86,9 @@ class StandardInput:
                 return
 
 
-def _descriptor() -> int:
-    """Standard input's; where it was closed, or another object stands in for it, nobody types."""
+def _descriptor(opened: ExitStack) -> int:
+    """Standard input's; where it was closed, or another object is in its place, one on which nobody types."""
     try:
         return sys.stdin.fileno()
     except (AttributeError, OSError, ValueError):
-        return os.open(os.devnull, os.O_RDONLY)
+        return opened.enter_context(Path(os.devnull).open()).fileno()
