@@ -1,8 +1,8 @@
 """Time for everything that runs: one small interface, and the clocks behind it."""
 
-from sim.clock.interface import Clock, Signal, Stopped
+from sim.clock.interface import Clock, Signal
 from sim.clock.paced import PacedClock
 from sim.clock.real import RealClock
 from sim.clock.virtual import VirtualClock
 
-__all__ = ["Clock", "PacedClock", "RealClock", "Signal", "Stopped", "VirtualClock"]
+__all__ = ["Clock", "PacedClock", "RealClock", "Signal", "VirtualClock"]

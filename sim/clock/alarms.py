@@ -112,7 +112,7 @@ class Signals:
     def pause(self) -> None:
         """``signal.pause``: wait until a handler has run."""
         before = self._handled
-        while self._handled == before and not self._clock.stopping:
+        while self._handled == before:
             self._clock.park(None)
 
     def sigtimedwait(self, wanted: Iterable[int], timeout: float) -> Any:
@@ -150,7 +150,7 @@ class Signals:
 
     def _hear(self, number: int, _frame: FrameType | None) -> None:
         """A signal from outside, at whatever real moment."""
-        self._clock.inject(lambda: self._come(number))
+        self._clock.time.inject(lambda: self._come(number))
 
     def _come(self, number: int) -> None:
         if number not in self._waiting:

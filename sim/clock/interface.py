@@ -4,13 +4,6 @@ from collections.abc import Callable
 from typing import Protocol
 
 
-class Stopped(BaseException):
-    """The run is over: raised out of every wait, on each thread but the main one.
-
-    Not an ``Exception``, so that a callback's ``except Exception`` does not hold up the end of a run.
-    """
-
-
 class Signal(Protocol):
     """A flag that one thread waits for and any thread sets; a successful wait clears it."""
 

@@ -6,7 +6,6 @@ outside work counts as long as it lasts, rounded up to a step, and the other thr
 
 import math
 import threading
-import time
 from collections.abc import Callable, Generator
 from contextlib import contextmanager
 from typing import Any, TypeVar
@@ -17,7 +16,6 @@ from sim.units import wait_ns
 
 # Kept from before sim.clock.stdlib puts the virtual ones in their place.
 _Thread = threading.Thread
-_real_sleep = time.sleep
 
 _FIRST_STEP = 1_000_000
 _LONGEST_STEP = 16_000_000
@@ -38,7 +36,7 @@ class OutsideWork:
         """Called on the thread that does it with what cannot be repeated exactly: a clause of a sentence."""
         self._waits = 0
         self._others: list[Callable[[], bool]] = []
-        clock.outside_works = self._goes_on
+        clock.time.outside_works = self._goes_on
 
     def also(self, goes_on: Callable[[], bool]) -> None:
         """Hold time to the pace of the wall as long as ``goes_on`` says so, too; it must not wait."""
@@ -46,7 +44,7 @@ class OutsideWork:
 
     def begin(self) -> None:
         """Outside work begins: time passes as on the wall from here on."""
-        self.clock.pace.keep_real(True, self.clock.now())
+        self.clock.time.pace.keep_real(True, self.clock.now())
 
     def glance(self) -> None:
         """The calling thread has looked for something outside in vain."""
@@ -98,11 +96,8 @@ class OutsideWork:
         It is at most ``limit``, and shorter where a signal came.
         """
         before = self.clock.now()
-        step = int(min(max(step, self.clock.pace.lag(before)), limit))
+        step = int(min(max(step, self.clock.time.pace.lag(before)), limit))
         self.clock.park(before + step)
-        if self.clock.stopping:  # time stands for good, and the program winds up on the wall's
-            _real_sleep(step / 1e9)
-            return step
         return self.clock.now() - before
 
     @contextmanager

@@ -124,7 +124,7 @@ class VirtualLock:
         if not self._clock.owns_current_thread():
             self._real.release()
             if self._waiters:
-                self._clock.inject(self._serve_waiters)
+                self._clock.time.inject(self._serve_waiters)
         elif self._waiters and self._granted is None:
             self._pass_on()
         else:

@@ -22,7 +22,6 @@ class VirtualThread:
         "ident",
         "interrupted",
         "is_main",
-        "knocked",
         "name",
         "stays",
         "waiting",
@@ -37,7 +36,6 @@ class VirtualThread:
         self.stays = False
         """Whether it is not left at switch points."""
         self.interrupted = False
-        self.knocked = False
         self.gate = _allocate_lock()
         self.gate.acquire()
         self.waiting = False
@@ -48,7 +46,7 @@ class VirtualThread:
 
 
 class VirtualSignal:
-    """A signal between threads on virtual time; others may set it through ``VirtualClock.inject``."""
+    """A signal between threads on virtual time; others may set it through ``VirtualTime.inject``."""
 
     __slots__ = ("_clock", "_set", "_waiter")
 

@@ -66,7 +66,7 @@ class CommandLoop:
         if self._virtual is not None:
             for given in setup.inputs:
                 command = commands.input_of(given.command)
-                self._virtual.give_at(given.at, partial(self._carry_out, command), given.recess)
+                self._virtual.time.give_at(given.at, partial(self._carry_out, command), given.recess)
 
     def _read(self) -> None:
         while True:
@@ -87,18 +87,18 @@ class CommandLoop:
     def _carry_out_on(self, clock: VirtualClock, command: commands.WorldCommand) -> None:
         """Have a command carried out at the end of the moment that the run is in."""
         if isinstance(command, commands.CompleteLine):
-            clock.steer(lambda: self._carry_out(command))
+            clock.time.steer(lambda: self._carry_out(command))
             return
-        if clock.in_moment and not isinstance(command, commands.Stop):
+        if clock.time.in_moment and not isinstance(command, commands.Stop):
             text = "time stands in the middle of a moment, and this comes at its end: step, or let time go on"
             self._record(Notice(clock.now(), Severity.WARN, text))
-        clock.give(lambda: self._carry_out(command))
+        clock.time.give(lambda: self._carry_out(command))
         if isinstance(command, commands.Stop):
             self._shutdown.hurry()
 
     def _carry_out(self, command: commands.WorldCommand) -> None:
         if not isinstance(command, commands.CompleteLine):
-            recess = 0 if self._virtual is None else self._virtual.recess
+            recess = 0 if self._virtual is None else self._virtual.time.recess
             self._record(InputGiven(self._clock.now(), commands.input_text(command), recess))
         match command:
             case commands.CallService(name=name, data=data):

@@ -184,12 +184,12 @@ class Engine:
         """
         record, is_watched = self._outbox.record, self._setup.speed is not None
         assert self._endless is not None
-        clock.before_jump = self._look_at_waits
+        clock.time.before_jump = self._look_at_waits
         clock.on_lock_wait = self._endless.begins
         give_up_computing = _ignore if is_watched else partial(self._shutdown.give_up_computing, clock)
         be_back_in = _ignore if is_watched else partial(exit_unless_renewed, self._crash_dump)
         Watchdog(clock, record, give_up_computing, be_back_in).start()
-        clock.on_recess = Standstill(clock, record, _ignore if is_watched else self._shutdown.fail).look
+        clock.time.on_recess = Standstill(clock, record, _ignore if is_watched else self._shutdown.fail).look
         live_on(clock, Repeatability(clock, record).lose)
 
     def _end(self, outcome: Outcome) -> NoReturn:

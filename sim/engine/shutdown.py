@@ -106,7 +106,7 @@ class Shutdown:
             elif self._virtual.owns_current_thread():
                 self._interrupt_on(self._virtual)
             else:
-                self._virtual.inject(partial(self._interrupt_on, self._virtual))
+                self._virtual.time.inject(partial(self._interrupt_on, self._virtual))
 
     def hurry(self) -> None:
         """Let the grace period begin, and time pass if it is paused: a request to stop is on its way."""
@@ -142,8 +142,8 @@ class Shutdown:
         if not clock.current.is_main:
             flush_files_soon()
             self.leave()
-        clock.inject(partial(self._limit_ending, clock))
-        clock.inject(self._programs.end_contexts)
+        clock.time.inject(partial(self._limit_ending, clock))
+        clock.time.inject(self._programs.end_contexts)
         self._grace_begins.release()
         _signal_main()
 
@@ -171,8 +171,8 @@ class Shutdown:
         clock.interrupt(threading.main_thread().ident or 0)
 
     def _limit_ending(self, clock: VirtualClock) -> None:
-        clock.resume()
-        clock.set_speed(None)
+        clock.time.resume()
+        clock.time.set_speed(None)
         clock.call_at(clock.now() + VIRTUAL_GRACE, partial(self._end_by_force, VIRTUAL_GRACE / 1e9))
 
     def _end_in_time(self) -> None:
@@ -188,8 +188,8 @@ class Shutdown:
     def _main_computes_on(self, clock: VirtualClock) -> bool:
         """Whether the main thread has come to no wait since it was to be interrupted there."""
         main = clock.current
-        computes = main.is_main and not clock.rests and (main.knocked or self._cause is None)
-        main.knocked = main.knocked and not computes
+        computes = main.is_main and not clock.time.rests and (main.interrupted or self._cause is None)
+        main.interrupted = main.interrupted and not computes
         return computes
 
     def _end_by_force(self, seconds: float) -> None:

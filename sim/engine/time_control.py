@@ -45,7 +45,7 @@ class VirtualControl:
         self._sink = sink
         self._wanted: Wanted | None = None
         self._goal = ""
-        clock.pace.on_halt = self._note_halt
+        clock.time.pace.on_halt = self._note_halt
 
     def record(self, event: AnyEvent) -> None:
         """Take an event; time stands before this returns if it is what the run was to go on to."""
@@ -56,42 +56,42 @@ class VirtualControl:
 
     def obey(self, command: PaceCommand) -> None:
         """Carry out a command, as soon as the run's threads let it; any thread may call this."""
-        self._clock.steer(lambda: self._carry_out(command))
+        self._clock.time.steer(lambda: self._carry_out(command))
 
     def let_go(self) -> None:
         """Have the run come to the end of the moment that it stands in; any thread may call this."""
-        self._clock.steer(self._leave_moment)
+        self._clock.time.steer(self._leave_moment)
 
     def _leave_moment(self) -> None:
-        if self._clock.in_moment:
+        if self._clock.time.in_moment:
             self._wanted = None
-            self._clock.resume()
+            self._clock.time.resume()
 
     def _carry_out(self, command: PaceCommand) -> None:
         clock, wanted = self._clock, None
         match command:
             case commands.Pause():
-                clock.pause()
+                clock.time.pause()
             case commands.Resume():
-                clock.resume()
+                clock.time.resume()
             case commands.SetSpeed(speed=speed):
-                clock.set_speed(speed)
+                clock.time.set_speed(speed)
                 wanted = self._wanted
             case commands.Step():
-                clock.step()
+                clock.time.step()
                 wanted = is_decision
             case commands.RunUntil(moment=moment):
                 if moment <= clock.now():
                     self._sink(_too_late(clock.now(), moment))
                     return
-                clock.run_until(moment)
+                clock.time.run_until(moment)
         self._wanted = wanted
         if not isinstance(command, commands.SetSpeed):
             self._goal = in_words(command)
         self._sink(given(clock.now(), command))
 
     def _note_halt(self) -> None:
-        if self._clock.pace.stands:
+        if self._clock.time.pace.stands:
             self._wanted = None
         self._sink(TimeHalted(self._clock.now(), self._goal))
 

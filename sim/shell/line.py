@@ -35,7 +35,7 @@ class Line:
         """End the line as Ctrl-C would; again if what it started does not end. Any thread may call it."""
         clock = self._host.clock
         if isinstance(clock, VirtualClock) and not clock.owns_current_thread():
-            clock.inject(self._session.interrupt)
+            clock.time.inject(self._session.interrupt)
         else:
             self._session.interrupt()
 

@@ -5,7 +5,7 @@ import time
 from collections.abc import Callable
 
 from sim.clock import VirtualClock
-from tests.support.simulation import no_thread_left, wind_up
+from tests.support.simulation import EndedClock, no_thread_left
 
 SECOND = 1_000_000_000
 
@@ -13,11 +13,11 @@ SECOND = 1_000_000_000
 def paced(speed: float | None, program: Callable[[VirtualClock], object]) -> float:
     """Run ``program`` at a speed; how many real seconds it took."""
     with no_thread_left():
-        clock = VirtualClock(speed)
+        clock = EndedClock(speed)
         began = time.monotonic()
         program(clock)
         took = time.monotonic() - began
-        wind_up(clock)
+        clock.wind_up()
     return took
 
 
@@ -42,9 +42,9 @@ def test_what_is_injected_into_a_paced_run_happens_between_its_jumps() -> None:
     def program(clock: VirtualClock) -> None:
         def act() -> None:
             happened.append(clock.now())
-            clock.set_speed(None)
+            clock.time.set_speed(None)
 
-        outside(lambda: clock.inject(act))
+        outside(lambda: clock.time.inject(act))
         clock.sleep(3600 * SECOND)
 
     paced(1.0, program)
@@ -55,7 +55,7 @@ def test_what_is_injected_into_a_paced_run_happens_between_its_jumps() -> None:
 def test_what_is_injected_wakes_a_run_in_which_nobody_sleeps() -> None:
     def program(clock: VirtualClock) -> None:
         signal = clock.signal()
-        outside(lambda: clock.inject(signal.set))
+        outside(lambda: clock.time.inject(signal.set))
         assert signal.wait(None)
 
     paced(None, program)
@@ -69,8 +69,8 @@ def test_injected_actions_happen_in_the_order_of_injecting() -> None:
 
         def orders() -> None:
             for number in range(20):
-                clock.inject(lambda number=number: happened.append(number))  # type: ignore[misc]
-            clock.inject(signal.set)
+                clock.time.inject(lambda number=number: happened.append(number))  # type: ignore[misc]
+            clock.time.inject(signal.set)
 
         outside(orders)
         assert signal.wait(None)
@@ -84,12 +84,12 @@ def test_time_stands_while_paused_and_goes_on_where_it_stood() -> None:
 
     def program(clock: VirtualClock) -> None:
         def orders() -> None:
-            clock.inject(clock.pause)
-            clock.inject(lambda: moments.append(clock.now()))
+            clock.time.inject(clock.time.pause)
+            clock.time.inject(lambda: moments.append(clock.now()))
             time.sleep(0.1)
-            clock.inject(lambda: moments.append(clock.now()))
-            clock.inject(clock.resume)
-            clock.inject(lambda: clock.set_speed(None))
+            clock.time.inject(lambda: moments.append(clock.now()))
+            clock.time.inject(clock.time.resume)
+            clock.time.inject(lambda: clock.time.set_speed(None))
 
         outside(orders)
         clock.sleep(3600 * SECOND)
@@ -103,7 +103,7 @@ def test_time_stands_while_paused_and_goes_on_where_it_stood() -> None:
 
 def test_a_new_speed_holds_from_the_moment_that_the_run_has_reached() -> None:
     def program(clock: VirtualClock) -> None:
-        outside(lambda: clock.inject(lambda: clock.set_speed(None)))
+        outside(lambda: clock.time.inject(lambda: clock.time.set_speed(None)))
         clock.sleep(3600 * SECOND)
         assert clock.now() == 3600 * SECOND
 
@@ -117,22 +117,23 @@ def test_a_run_at_rest_says_so() -> None:
         signal = clock.signal()
 
         def watch() -> None:
-            while not clock.rests:
+            while not clock.time.rests:
                 time.sleep(0.001)
             rested.append(True)
-            clock.inject(signal.set)
+            clock.time.inject(signal.set)
 
         outside(watch)
         signal.wait(None)
-        assert not clock.rests
+        assert not clock.time.rests
 
     paced(1.0, program)
     assert rested == [True]
 
 
-def test_stop_from_outside_ends_a_run_that_waits_for_its_pace() -> None:
+def test_an_interrupt_from_outside_reaches_a_run_that_waits_for_its_pace() -> None:
     def program(clock: VirtualClock) -> None:
-        outside(lambda: clock.inject(clock.stop))
+        main = clock.current.ident
+        outside(lambda: clock.interrupt(main))
         try:
             clock.sleep(3600 * SECOND)
         except KeyboardInterrupt:

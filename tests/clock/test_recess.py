@@ -5,7 +5,7 @@ from collections.abc import Callable
 
 from sim.clock import VirtualClock
 from sim.clock.recesses import RECESS, WAITS_TO_RECESS
-from tests.support.simulation import no_thread_left, wind_up
+from tests.support.simulation import EndedClock, no_thread_left
 
 PATIENCE = 60.0
 
@@ -13,11 +13,11 @@ PATIENCE = 60.0
 def on_virtual_time(program: Callable[[VirtualClock], object]) -> None:
     """Run ``program`` as the main thread of a new clock, and end whatever it leaves."""
     with no_thread_left():
-        clock = VirtualClock()
+        clock = EndedClock()
         try:
             program(clock)
         finally:
-            wind_up(clock)
+            clock.wind_up()
 
 
 def dawdle(clock: VirtualClock, until: Callable[[], object]) -> int:
@@ -33,7 +33,7 @@ def test_an_input_reaches_a_loop_that_sleeps_no_time() -> None:
     done: list[int] = []
 
     def program(clock: VirtualClock) -> None:
-        clock.give(lambda: done.append(clock.recess))
+        clock.time.give(lambda: done.append(clock.time.recess))
         assert dawdle(clock, lambda: done) == WAITS_TO_RECESS
         assert clock.now() == RECESS
 
@@ -46,7 +46,7 @@ def test_every_recess_takes_one_input_so_that_its_effects_come_first() -> None:
 
     def program(clock: VirtualClock) -> None:
         for _ in range(3):
-            clock.give(lambda: done.append(clock.recess))
+            clock.time.give(lambda: done.append(clock.time.recess))
         dawdle(clock, lambda: len(done) == 3)
 
     on_virtual_time(program)
@@ -59,11 +59,11 @@ def test_an_input_is_repeated_in_its_recess_and_one_of_the_end_comes_at_the_end(
 
     def program(clock: VirtualClock) -> None:
         def note(name: str) -> Callable[[], None]:
-            return lambda: done.append((name, clock.now(), clock.recess))
+            return lambda: done.append((name, clock.now(), clock.time.recess))
 
-        clock.give_at(5 + 2 * RECESS, note("third"), 3)
-        clock.give_at(end, note("end"))
-        clock.give_at(end + 2, note("first"), 1)
+        clock.time.give_at(5 + 2 * RECESS, note("third"), 3)
+        clock.time.give_at(end, note("end"))
+        clock.time.give_at(end + 2, note("first"), 1)
         clock.sleep(5)
         for _ in range(WAITS_TO_RECESS * 4):
             clock.sleep(0)
@@ -86,7 +86,7 @@ def test_threads_that_wake_each_other_for_ever_have_recesses_too() -> None:
                 signals[1].set()
 
         clock.start_thread(answer, "answer")
-        clock.give(lambda: done.append(clock.recess))
+        clock.time.give(lambda: done.append(clock.time.recess))
         while not done:
             signals[0].set()
             signals[1].wait(None)
@@ -127,7 +127,7 @@ def test_time_that_passes_begins_the_count_anew() -> None:
     recesses: list[int] = []
 
     def program(clock: VirtualClock) -> None:
-        clock.on_recess = recesses.append
+        clock.time.on_recess = recesses.append
         for _ in range(5):
             for _ in range(WAITS_TO_RECESS - 2):
                 clock.sleep(0)
@@ -144,7 +144,7 @@ def test_what_waits_is_explained_in_a_recess() -> None:
     looks: list[int] = []
 
     def program(clock: VirtualClock) -> None:
-        clock.before_jump = lambda: looks.append(clock.recess)
+        clock.time.before_jump = lambda: looks.append(clock.time.recess)
         for _ in range(WAITS_TO_RECESS):
             clock.sleep(0)
 
@@ -158,17 +158,17 @@ def test_a_loop_that_sleeps_no_time_can_be_paused_given_an_input_and_resumed() -
     turns = [0]
 
     def outside(clock: VirtualClock) -> None:
-        clock.steer(clock.pause)
-        while not clock.rests:
+        clock.time.steer(clock.time.pause)
+        while not clock.time.rests:
             stands.wait(0.001)
         before = turns[0]
         stands.wait(0.02)
         done.append("stood" if turns[0] == before else "ran")
-        clock.give(lambda: done.append("input"))
+        clock.time.give(lambda: done.append("input"))
         while "input" not in done:
             stands.wait(0.001)
-        clock.steer(clock.resume)
-        clock.steer(lambda: done.append("resumed"))
+        clock.time.steer(clock.time.resume)
+        clock.time.steer(lambda: done.append("resumed"))
 
     def program(clock: VirtualClock) -> None:
         helper = threading.Thread(target=lambda: outside(clock), daemon=True)
@@ -188,14 +188,14 @@ def test_a_step_in_a_moment_without_decisions_ends_in_its_recess() -> None:
 
     def program(clock: VirtualClock) -> None:
         def halted() -> None:
-            halts.append(clock.recess)
+            halts.append(clock.time.recess)
             if len(halts) == 2:
                 over.append(True)
-                clock.resume()
+                clock.time.resume()
 
-        clock.pace.on_halt = halted
-        clock.step()
-        clock.step()
+        clock.time.pace.on_halt = halted
+        clock.time.step()
+        clock.time.step()
         dawdle(clock, lambda: over)
 
     on_virtual_time(program)

@@ -152,7 +152,7 @@ PROGRAMS = {
         got, done = [], threading.Event()
         def ask():
             got.extend([datetime.datetime.now().year, time.localtime().tm_year, os.urandom(8)])
-            clock.inject(done.set)
+            clock.time.inject(done.set)
         orders.put(ask)
         done.wait()
         assert got[0] > 2024 and got[1] > 2024
@@ -468,7 +468,7 @@ PROGRAMS = {
             real_sleep(0.001)
     """,
     "a_paced_run_waits_for_its_pace_with_the_replaced_locks_too": """
-        clock.inject(lambda: clock.set_speed(20.0))
+        clock.time.inject(lambda: clock.time.set_speed(20.0))
         before = real_monotonic()
         sleeper = after(0.5, lambda: None)
         time.sleep(1)
@@ -476,19 +476,22 @@ PROGRAMS = {
         assert real_monotonic() - before >= 0.04
         assert now() == 1
     """,
-    "stop_ends_every_kind_of_wait": """
+    "an_interrupt_ends_every_kind_of_wait": """
         lock, box, event = threading.Lock(), queue.Queue(), threading.Event()
         lock.acquire()
         ends = []
         def wait(how):
             try:
                 how()
-            finally:
+            except KeyboardInterrupt:
                 ends.append(how)
         waits = (lock.acquire, box.get, event.wait, lambda: time.sleep(99), clock.signal().wait)
         for how in waits[:4]:
             threading.Thread(target=wait, args=(how,), daemon=True).start()
-        clock.call_at(10**9, clock.stop)
+        def interrupt_all():
+            for each in clock.threads:
+                clock.interrupt(each.ident)
+        clock.call_at(10**9, interrupt_all)
         try:
             threading.Barrier(2).wait()
         except KeyboardInterrupt:

@@ -7,7 +7,7 @@ import pytest
 
 from sim.clock import VirtualClock, recesses
 from sim.clock.schedule import Seeded
-from tests.support.simulation import no_thread_left, wind_up
+from tests.support.simulation import EndedClock, no_thread_left
 
 SEEDS = range(1, 9)
 _PATIENCE = 60.0
@@ -18,12 +18,12 @@ def run(seed: int, program: Callable[[VirtualClock], object]) -> None:
     trouble: list[BaseException] = []
 
     def main() -> None:
-        clock = VirtualClock(schedule=Seeded(seed))
+        clock = EndedClock(schedule=Seeded(seed))
         try:
             program(clock)
         except BaseException as error:  # noqa: BLE001 -- it belongs to the test's own thread
             trouble.append(error)
-        wind_up(clock)
+        clock.wind_up()
 
     with no_thread_left():
         thread = threading.Thread(target=main, name="MainThread", daemon=True)
@@ -54,10 +54,10 @@ def test_a_recess_is_no_place_to_switch(seed: int, monkeypatch: pytest.MonkeyPat
         def busy() -> None:
             for _ in range(60):
                 clock.sleep(0)
-                found.append(clock.recess)
+                found.append(clock.time.recess)
 
-        clock.before_jump = clock.switch_point
-        clock.on_recess = lambda _: clock.switch_point()
+        clock.time.before_jump = clock.switch_point
+        clock.time.on_recess = lambda _: clock.switch_point()
         for _ in range(3):
             clock.start_thread(busy, "busy")
         clock.sleep(1_000_000_000)
@@ -80,14 +80,14 @@ def test_nobody_goes_on_while_time_stands_in_a_moment(seed: int) -> None:
         def steer() -> None:
             for _ in range(20):
                 clock.switch_point()
-            clock.resume()
+            clock.time.resume()
 
         stands = False
         for _ in range(3):
             clock.start_thread(other, "other")
         for _ in range(10):
             clock.switch_point()
-            clock.steer(steer)
+            clock.time.steer(steer)
             stands = True
             clock.halt()
             stands = False
@@ -126,10 +126,10 @@ def test_a_thread_that_ends_is_not_left_so_that_it_can_be_joined() -> None:
     def program(clock: VirtualClock) -> None:
         def end() -> None:
             clock.end_thread()
-            steps = clock.steps
+            steps = clock.time.steps
             for _ in range(50):
                 clock.switch_point()
-            left.append(clock.steps != steps)
+            left.append(clock.time.steps != steps)
 
         start_busy(clock, 2)
         for _ in range(5):

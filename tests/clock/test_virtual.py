@@ -3,10 +3,8 @@
 import threading
 from collections.abc import Callable
 
-import pytest
-
-from sim.clock import Stopped, VirtualClock
-from tests.support.simulation import no_thread_left, wind_up
+from sim.clock import VirtualClock
+from tests.support.simulation import EndedClock, no_thread_left
 
 SECOND = 1_000_000_000
 
@@ -14,11 +12,11 @@ SECOND = 1_000_000_000
 def on_virtual_time(program: Callable[[VirtualClock], object]) -> None:
     """Run ``program`` as the main thread of a new clock, and end whatever it leaves."""
     with no_thread_left():
-        clock = VirtualClock()
+        clock = EndedClock()
         try:
             program(clock)
         finally:
-            wind_up(clock)
+            clock.wind_up()
 
 
 def test_sleeping_takes_exactly_its_time_and_computing_takes_none() -> None:
@@ -136,7 +134,7 @@ def test_before_each_jump_of_time_the_hook_is_called_once_at_the_old_time() -> N
         def look() -> None:
             seen.append(clock.now())
 
-        clock.before_jump = look
+        clock.time.before_jump = look
         clock.sleep(SECOND)
         clock.sleep(0)
         clock.sleep(SECOND)
@@ -154,7 +152,7 @@ def test_time_stops_over_where_the_hook_asks_for_it() -> None:
             seen.append(clock.now())
             return 3 * SECOND
 
-        clock.before_jump = look
+        clock.time.before_jump = look
         clock.sleep(2 * SECOND)
         clock.sleep(3 * SECOND)
         assert clock.now() == 5 * SECOND
@@ -163,30 +161,30 @@ def test_time_stops_over_where_the_hook_asks_for_it() -> None:
     assert seen == [0, 2 * SECOND, 3 * SECOND]
 
 
-def test_stop_raises_keyboard_interrupt_in_the_main_thread_once_and_stopped_in_the_others() -> None:
-    raised: list[str] = []
+def test_an_interrupt_is_raised_once_out_of_the_wait_of_the_thread_that_it_is_for() -> None:
+    raised: list[int] = []
 
     def program(clock: VirtualClock) -> None:
         def other() -> None:
             try:
                 clock.sleep(10 * SECOND)
-            except Stopped:
-                raised.append("Stopped")
-                raise
+            except KeyboardInterrupt:
+                raised.append(clock.now())
+            clock.sleep(SECOND)
+            raised.append(clock.now())
 
         clock.start_thread(other, "other")
-        clock.call_at(SECOND, clock.stop)
-        with pytest.raises(KeyboardInterrupt):
-            clock.sleep(10 * SECOND)
-        assert clock.now() == SECOND
-        clock.sleep(SECOND)
-        assert clock.now() == SECOND
+        clock.sleep(0)
+        (sleeper,) = clock.threads - {clock.current}
+        clock.call_at(SECOND, lambda: clock.interrupt(sleeper.ident))
+        clock.sleep(10 * SECOND)
+        assert clock.now() == 10 * SECOND
 
     on_virtual_time(program)
-    assert raised == ["Stopped"]
+    assert raised == [SECOND, 2 * SECOND]
 
 
-def test_stop_reaches_a_thread_that_catches_exceptions() -> None:
+def test_an_interrupt_passes_what_catches_exceptions() -> None:
     def program(clock: VirtualClock) -> None:
         def stubborn() -> None:
             while True:
@@ -201,18 +199,7 @@ def test_stop_reaches_a_thread_that_catches_exceptions() -> None:
     on_virtual_time(program)
 
 
-def test_a_thread_that_has_not_run_yet_never_runs_after_stop() -> None:
-    ran: list[bool] = []
-
-    def program(clock: VirtualClock) -> None:
-        clock.start_thread(lambda: ran.append(True), "unborn")
-        clock.stop()
-
-    on_virtual_time(program)
-    assert ran == []
-
-
-def test_stop_ends_waits_for_a_signal_that_nobody_sets() -> None:
+def test_an_interrupt_ends_a_wait_for_a_signal_that_nobody_sets() -> None:
     def program(clock: VirtualClock) -> None:
         for _ in range(3):
             signal = clock.signal()
@@ -239,9 +226,9 @@ def test_only_the_thread_that_has_the_baton_lives_on_the_clock() -> None:
 
 def test_every_wait_counts_as_a_step() -> None:
     def program(clock: VirtualClock) -> None:
-        before = clock.steps
+        before = clock.time.steps
         clock.sleep(SECOND)
         clock.sleep(SECOND)
-        assert clock.steps == before + 2
+        assert clock.time.steps == before + 2
 
     on_virtual_time(program)

@@ -8,9 +8,8 @@ from typing import TypeAlias
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sim.clock import VirtualClock
 from tests.support.properties import examples
-from tests.support.simulation import no_thread_left, wind_up
+from tests.support.simulation import EndedClock, no_thread_left
 
 
 @dataclass(frozen=True)
@@ -77,7 +76,7 @@ def play(plan: Plan) -> tuple[list[Log], list[tuple[int, int]], list[int]]:
     readings: list[int] = []
     places = count()
     with no_thread_left():
-        clock = VirtualClock()
+        clock = EndedClock()
         signals = [clock.signal() for _ in plan]
 
         def ask(time: int) -> None:
@@ -105,7 +104,7 @@ def play(plan: Plan) -> tuple[list[Log], list[tuple[int, int]], list[int]]:
         for number in range(len(plan)):
             clock.start_thread(lambda number=number: run(number), f"thread {number}")  # type: ignore[misc]
         clock.sleep(1000)
-        wind_up(clock)
+        clock.wind_up()
     return logs, actions, readings
 
 

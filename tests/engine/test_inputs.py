@@ -107,7 +107,7 @@ def told(system: System, tellings: list[Telling | Given], speed: float | None) -
             if isinstance(telling, Given):
                 helm.give(telling.command)
             else:
-                helm.clock.give(lambda what=telling.what: keyboards[0].press(what))  # type: ignore[misc]
+                helm.clock.time.give(lambda what=telling.what: keyboards[0].press(what))  # type: ignore[misc]
 
     return steered(program, steering, SECONDS, speed)
 
@@ -121,7 +121,7 @@ def again(system: System, recorded: list[AnyEvent]) -> list[AnyEvent]:
         keyboard = Keyboard(simulation, simulation.events.append)
         for event in recorded:
             if isinstance(event, InputGiven):
-                clock.give_at(event.t, lambda what=event.command: keyboard.press(what))  # type: ignore[misc]
+                clock.time.give_at(event.t, lambda what=event.command: keyboard.press(what))  # type: ignore[misc]
         program_of(system)(simulation)
 
     return simulate(program, SECONDS).events
@@ -172,8 +172,8 @@ def test_an_input_comes_when_its_moment_ends_and_after_the_effects_of_the_one_be
             signal.set()
 
         clock.start_thread(hear, "ear")
-        clock.give_at(ns(1.0), first)
-        clock.give_at(ns(1.0), lambda: happened.append("second"))
+        clock.time.give_at(ns(1.0), first)
+        clock.time.give_at(ns(1.0), lambda: happened.append("second"))
         for number in range(2):
             clock.call_at(ns(1.0), lambda n=number: happened.append(f"deadline {n}"))  # type: ignore[misc]
         clock.call_at(ns(1.5), lambda: happened.append("later"))
@@ -198,7 +198,7 @@ def test_an_input_comes_while_time_stands_at_the_end_of_the_moment() -> None:
 
         helm.give(RunUntil(ns(0.5)))
         helm.until_halted()
-        helm.clock.give(take)
+        helm.clock.time.give(take)
         assert came.wait(60)
 
     steered(program, steering, until=1.0, speed=0.001)

@@ -199,10 +199,10 @@ def test_a_step_of_a_run_in_which_nothing_can_happen_any_more_ends_at_once() -> 
         signal.wait(None)
 
     def steering(helm: Helm) -> None:
-        helm.clock.steer(helm.clock._deadlines.clear)
+        helm.clock.time.steer(helm.clock.time.deadlines.clear)
         helm.give(Step())
         helm.until_halted()
-        helm.clock.inject(helm.clock.stop)
+        helm.clock.interrupt(helm.clock.current.ident)
 
     steered(nobody_sleeps, steering, until=1.0, speed=0.001)
 

@@ -4,7 +4,8 @@ import sys
 import threading
 import traceback
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
 import sim.ros.rclpy
@@ -176,10 +177,10 @@ def simulate(program: Program, until: float = 60.0, schedule: Schedule | None = 
     events: list[AnyEvent] = []
 
     def run() -> None:
-        clock = VirtualClock(schedule=schedule)
+        clock = EndedClock(schedule=schedule)
         simulation = Simulation(clock)
-        clock.before_jump = simulation.host.explain_waits
-        clock.call_at(ns(until), clock.stop)
+        clock.time.before_jump = simulation.host.explain_waits
+        clock.interrupt_at(until)
         with installed(simulation.host):
             try:
                 program(simulation)
@@ -188,7 +189,7 @@ def simulate(program: Program, until: float = 60.0, schedule: Schedule | None = 
             except BaseException as error:  # noqa: BLE001 -- it belongs to the test's own thread
                 trouble.append(error)
             events.extend(simulation.events)
-            wind_up(clock)
+            clock.wind_up()
 
     with no_thread_left():
         main = threading.Thread(target=run, name="MainThread", daemon=True)
@@ -210,14 +211,37 @@ def no_thread_left() -> Iterator[None]:
         assert not thread.is_alive(), f"{thread.name} was left behind:\n{_where_threads_stand()}"
 
 
-def wind_up(clock: VirtualClock) -> None:
-    """Stop a clock from its main thread and let all others that live on it end."""
-    clock.stop()
-    while len(clock._threads) > 1:
-        try:
-            clock.sleep(0)
-        except KeyboardInterrupt:
-            continue
+class EndedClock(VirtualClock):
+    """A virtual clock whose threads can all be ended: a test goes on after the run, an engine does not."""
+
+    def __init__(self, speed: float | None = None, schedule: Schedule | None = None) -> None:
+        super().__init__(speed, schedule)
+        self._is_over = False
+
+    def adopt(self, target: Callable[[], None], name: str) -> Callable[[], None]:
+        """As ever, but a thread that has not begun when the run ends never does, and none tells its end."""
+
+        def run() -> None:
+            with suppress(KeyboardInterrupt):
+                if not self._is_over:
+                    target()
+
+        return super().adopt(run, name)
+
+    def interrupt_at(self, seconds: float) -> None:
+        """Interrupt the calling thread at that time."""
+        self.call_at(ns(seconds), partial(self.interrupt, threading.get_ident()))
+
+    def wind_up(self) -> None:
+        """Interrupt every thread but the main one, which calls this, until it has ended."""
+        self._is_over = True
+        self.time.resume()
+        while len(self.threads) > 1:
+            for thread in sorted(self.threads - {self.current}, key=lambda each: each.current_wait):
+                thread.interrupted = True
+                self.unpark(thread)
+            with suppress(KeyboardInterrupt):
+                self.sleep(0)
 
 
 @contextmanager

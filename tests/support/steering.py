@@ -10,8 +10,7 @@ from sim.engine.time_control import VirtualControl
 from sim.probes.probe import Probe
 from sim.ros.middleware.host import Host
 from sim.trace.events import AnyEvent, CommandGiven, TimeHalted
-from tests.support.builder import ns
-from tests.support.simulation import Program, Simulation, installed, no_thread_left, wind_up
+from tests.support.simulation import EndedClock, Program, Simulation, installed, no_thread_left
 
 _PATIENCE = 60.0
 
@@ -64,12 +63,12 @@ def steered(program: Program, steering: Steering, until: float, speed: float | N
     began = threading.Event()
 
     def run() -> None:
-        clock = VirtualClock(speed)
+        clock = EndedClock(speed)
         helm = Helm(clock, events.append)
         simulation = Simulation(clock)
         simulation.host = Host(clock, Probe(clock, helm.record))
-        clock.before_jump = simulation.host.explain_waits
-        clock.call_at(ns(until), clock.stop)
+        clock.time.before_jump = simulation.host.explain_waits
+        clock.interrupt_at(until)
         outside = threading.Thread(target=lambda: _steer(steering, helm, began, trouble), daemon=True)
         outside.start()
         with installed(simulation.host):
@@ -82,7 +81,7 @@ def steered(program: Program, steering: Steering, until: float, speed: float | N
                 trouble.append(error)
             helm.over.set()
             seen = len(events)
-            wind_up(clock)
+            clock.wind_up()
             del events[seen:]
         outside.join()
 

@@ -6,7 +6,6 @@ import traceback
 from collections.abc import Callable
 from typing import Any
 
-from sim.clock import Stopped
 from sim.engine.failures.failure import place_of
 from sim.error_text import error_text
 
@@ -30,7 +29,7 @@ def report_uncaught(tell: Tell, path: str, folder: str) -> None:
 
     def of_thread(failed: threading.ExceptHookArgs) -> None:
         error = failed.exc_value
-        if isinstance(error, Stopped | SystemExit | None):
+        if isinstance(error, SystemExit | None):
             return
         name = "a thread" if failed.thread is None else failed.thread.name
         if not isinstance(error, KeyboardInterrupt):

@@ -44,12 +44,12 @@ class Watchdog:
         _RealThread(target=self._watch, name="watchdog", daemon=True).start()
 
     def _watch(self) -> None:
-        steps, still, sentence = self._clock.steps, 0, ""
+        steps, still, sentence = self._clock.time.steps, 0, ""
         while True:
             self._be_back_in(_LOOK * (_LAST_PATIENCE + 1))
             _real_sleep(_LOOK)
-            still = still + 1 if self._clock.steps == steps and not self._clock.rests else 0
-            steps = self._clock.steps
+            still = still + 1 if self._clock.time.steps == steps and not self._clock.time.rests else 0
+            steps = self._clock.time.steps
             if still == _PATIENCE:
                 sentence = self._sentence()
                 self._record(Notice(self._clock.now(), Severity.WARN, sentence, kind=NoticeKind.NO_PROGRESS))

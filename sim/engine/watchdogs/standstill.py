@@ -41,7 +41,7 @@ class Standstill:
         """Take note of a recess; the clock calls this on the thread that waits."""
         if recess == _PATIENCE:
             self._began, self._said = _monotonic(), self._sentence()
-            if not self._told and self._clock.idles:
+            if not self._told and self._clock.time.idles:
                 self._told = True
                 now, kind = self._clock.now(), NoticeKind.NO_PROGRESS
                 self._record(Notice(now, Severity.WARN, self._said, kind=kind))

@@ -12,7 +12,6 @@ from collections.abc import Callable, Coroutine, Generator
 from types import coroutine
 from typing import TYPE_CHECKING, Any
 
-from sim.clock import Stopped
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
 from sim.ros.scheduling.entity import Entity, Taken
 from sim.trace.events import EntityKind
@@ -99,7 +98,7 @@ class _Stay:
             self._resume()
 
     def fail(self, error: BaseException) -> None:
-        if not isinstance(error, (Stopped, KeyboardInterrupt)):
+        if not isinstance(error, KeyboardInterrupt):
             self._probe.callback_failed(self._execution, error)
         self.end()
 

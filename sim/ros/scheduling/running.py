@@ -7,7 +7,6 @@ import weakref
 from threading import get_ident
 from typing import TYPE_CHECKING, Any, TypeAlias
 
-from sim.clock import Stopped
 from sim.marks import calls_the_program
 from sim.ros.scheduling.entity import Entity, Taken
 from sim.ros.scheduling.handlers import Handler
@@ -153,7 +152,7 @@ class Runner:
 
     def fail(self, entity: Entity, error: BaseException, outer: int) -> None:
         """A callback raised, and so has ended."""
-        if not isinstance(error, (Stopped, KeyboardInterrupt)):
+        if not isinstance(error, KeyboardInterrupt):
             with self.lock:
                 self._probe.callback_failed(entity, error)
         self.end(entity, outer)

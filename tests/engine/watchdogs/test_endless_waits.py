@@ -28,7 +28,7 @@ host = Host(clock, Probe(clock))
 install(host)
 told = []
 waits = EndlessWaits(clock, host, told.append)
-clock.before_jump, clock.on_lock_wait = waits.look, waits.begins
+clock.time.before_jump, clock.on_lock_wait = waits.look, waits.begins
 live_on(clock)
 chance = random.Random(int(sys.argv[1]))
 kinds = Counter()
