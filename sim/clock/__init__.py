@@ -2,7 +2,6 @@
 
 from sim.clock.interface import Clock, Signal
 from sim.clock.paced import PacedClock
-from sim.clock.real import RealClock
 from sim.clock.virtual import VirtualClock
 
-__all__ = ["Clock", "PacedClock", "RealClock", "Signal", "VirtualClock"]
+__all__ = ["Clock", "PacedClock", "Signal", "VirtualClock"]

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from typing import Any, TypeAlias
 
-from sim.clock import RealClock
+from sim.clock import PacedClock
 from sim.interfaces import message, service
 from sim.probes.probe import Probe
 from sim.ros.context.context import Context
@@ -43,7 +43,7 @@ class Stage:
 
     def __init__(self, make_executor: MakeExecutor, calls: int) -> None:
         self.trace: deque[AnyEvent] = deque(maxlen=100_000)
-        self.clock = RealClock()
+        self.clock = PacedClock()
         self.context = Context(host=Host(self.clock, Probe(self.clock, self.trace.append)))
         self.context.init([])
         self.node = Node("stage", context=self.context)

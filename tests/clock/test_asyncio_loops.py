@@ -4,7 +4,7 @@ import asyncio
 import threading
 import time
 
-from sim.clock import PacedClock, RealClock
+from sim.clock import PacedClock
 from sim.clock.asyncio_loops import ProgramLoops
 
 
@@ -20,7 +20,7 @@ def test_a_loop_on_a_paced_clock_keeps_its_pace() -> None:
 
 
 def test_every_main_thread_has_a_loop_and_other_threads_have_none() -> None:
-    loops = ProgramLoops(RealClock())
+    loops = ProgramLoops(PacedClock())
     found: list[object] = []
 
     def ask() -> None:

@@ -158,6 +158,22 @@ def test_a_signal_set_before_the_wait_is_not_lost_and_a_wait_clears_it(clock: Pa
     assert not signal.wait(clock.now() + MILLISECOND)
 
 
+def test_many_threads_setting_one_signal_at_once_do_not_fail(clock: PacedClock) -> None:
+    signal = clock.signal()
+
+    def set_often() -> None:
+        for _ in range(200):
+            signal.set()
+
+    threads = [threading.Thread(target=set_often) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert signal.wait(0)
+    assert not signal.wait(0)
+
+
 def test_a_wait_whose_deadline_has_passed_returns_at_once(clock: PacedClock) -> None:
     assert not clock.signal().wait(0)
     clock.pause()

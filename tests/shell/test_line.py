@@ -4,7 +4,7 @@ import threading
 
 import pytest
 
-from sim.clock import RealClock
+from sim.clock import PacedClock
 from sim.probes.probe import SilentProbe
 from sim.ros.middleware.host import Host
 from sim.ros.node.node import Node
@@ -145,7 +145,7 @@ def test_looking_for_a_topic_brings_up_what_waits_for_its_use() -> None:
 
 
 def test_lines_run_on_the_real_clock_too() -> None:
-    clock = RealClock()
+    clock = PacedClock()
     tools, ended = FakeTools(clock), threading.Event()
     tools.statuses = _Telling(ended)
     line = Line(Host(clock, SilentProbe(clock)), "topic pub /t std_msgs/msg/Int32", tools)

@@ -9,7 +9,7 @@ from cbtui.looks.theme import Charset
 from cbtui.text.cells import fit, visible, without_tabs
 from cbtui.widgets.log.filter import FilterError, filter_of
 from cbtui.widgets.log.line import line_of
-from sim.clock import RealClock
+from sim.clock import PacedClock
 from sim.interfaces import message
 from sim.launch.arguments import read_arguments
 from sim.launch.errors import LaunchError
@@ -87,7 +87,7 @@ def _complete(data: bytes, _: Path) -> None:
 
 @cache
 def _some_nodes() -> Host:
-    clock = RealClock()
+    clock = PacedClock()
     host = Host(clock=clock, probe=SilentProbe(clock))
     context = Context(host=host)
     context.init([])

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 import sim.ros.rclpy as rclpy
-from sim.clock import RealClock
+from sim.clock import PacedClock
 from sim.ros.node.node import Node
 from sim.ros.scheduling.executors import Executor, ExternalShutdownException
 from tests.support.simulation import Simulation, installed, no_thread_left
@@ -15,7 +15,7 @@ LIMIT = 60.0
 """Seconds after which a wait that should end has failed: far more than the busiest machine needs."""
 
 
-class ParallelClock(RealClock):
+class ParallelClock(PacedClock):
     """Threads run at once, as on the machine; time passes only while every one of them waits on this clock.
 
     Times are exact however busy the machine is; what threads do in one moment they do in any order. The
@@ -123,7 +123,7 @@ class ParallelSignal:
 @contextmanager
 def on_wall_time() -> Iterator[Simulation]:
     """A program's surroundings on the real clock."""
-    with _on(RealClock()) as simulation:
+    with _on(PacedClock()) as simulation:
         yield simulation
 
 
@@ -135,7 +135,7 @@ def on_parallel_time() -> Iterator[Simulation]:
 
 
 @contextmanager
-def _on(clock: RealClock) -> Iterator[Simulation]:
+def _on(clock: PacedClock) -> Iterator[Simulation]:
     simulation = Simulation(clock)
     with no_thread_left(), installed(simulation.host):
         yield simulation

@@ -12,7 +12,7 @@ from itertools import count
 from typing import Protocol
 from weakref import ref
 
-from sim.clock import Clock, RealClock
+from sim.clock import Clock, PacedClock
 from sim.probes.probe import Probe, SilentProbe
 from sim.ros.middleware.domain import domain_of_machine
 from sim.ros.middleware.host_lock import lock_on
@@ -97,7 +97,7 @@ def current_host() -> Host:
     global _host  # noqa: PLW0603 -- a process has one host, as a machine has one network
     with _making:
         if _host is None:
-            clock = RealClock()
+            clock = PacedClock()
             _host = Host(clock=clock, probe=SilentProbe(clock), takes_signals=True)
         return _host
 

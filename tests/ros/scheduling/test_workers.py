@@ -4,7 +4,7 @@ import threading
 from collections.abc import Callable
 
 import sim.ros.rclpy as rclpy
-from sim.clock import RealClock
+from sim.clock import PacedClock
 from sim.interfaces import message
 from sim.ros.middleware.host_lock import HostLock
 from sim.ros.node.node import Node
@@ -17,7 +17,7 @@ from tests.support.simulation import Simulation, Trace, installed, no_thread_lef
 Int32 = message("std_msgs", "Int32")
 
 
-class LateClock(RealClock):
+class LateClock(PacedClock):
     """Wall time on a machine where the second worker gets to run only when ``gate`` opens."""
 
     def __init__(self) -> None:
@@ -59,7 +59,7 @@ def test_a_worker_that_comes_free_takes_over_what_another_one_is_late_for() -> N
 
 
 def test_what_a_callback_sends_and_waits_for_is_heard_by_an_idle_worker() -> None:
-    simulation = Simulation(RealClock())
+    simulation = Simulation(PacedClock())
     with no_thread_left(), installed(simulation.host):
         node = Node("n")
         publisher = node.create_publisher(Int32, "t", 10)
