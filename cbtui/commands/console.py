@@ -16,6 +16,7 @@ def add_open_options(parser: argparse.ArgumentParser) -> None:
     add_options(parser)
     changes.add_options(parser)
     add_seed(parser)
+    changes.add_on(parser)
     changes.add_traceback(parser)
     parser.add_argument(
         "--exercise",

@@ -5,7 +5,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cbtui.commands.options import changes, grounds, inputs, values
+from cbtui.commands.options import changes, inputs, values
 from cbtui.commands.options.seeds import add_seed, check_seed
 from cbtui.commands.options.targets import Program, is_file_name, program_of, refuse, same_file
 from cbtui.text.output import complain
@@ -33,6 +33,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     changes.add_options(parser)
     add_seed(parser)
+    changes.add_on(parser)
     changes.add_traceback(parser)
     inputs.add_options(parser)
     inputs.add_typing(parser)
@@ -57,7 +58,6 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         default=math.inf,
         help="seconds of the run per real second, or max (max; on the real clock 1)",
     )
-    grounds.add_options(parser)
     parser.add_argument("--events", metavar="FILE.jsonl", help="write every event as a line of JSON")
     parser.add_argument(
         "--record",
@@ -136,8 +136,6 @@ def _request(options: argparse.Namespace, program: Program) -> "RunRequest":
         typed=options.typed,
         keyboard=Keyboard.NOBODY if options.typed else Keyboard.LIVE,
         contents=options.record is not None,
-        ground=options.on,
-        python=options.python,
     )
 
 

@@ -111,7 +111,13 @@ class Session:
         engine: Any = self._context
         self._process: BaseProcess = engine.Process(
             target=_engine,
-            args=(self._setup.ground, msgspec.msgpack.encode(self._setup), self._far_end, last_words, ours),
+            args=(
+                self._setup.real is not None,
+                msgspec.msgpack.encode(self._setup),
+                self._far_end,
+                last_words,
+                ours,
+            ),
             name="cbtui-engine",
             daemon=True,
         )
@@ -238,12 +244,12 @@ class Session:
 
 
 def _engine(
-    ground: str, packed_setup: bytes, pipe: Connection, last_words: Connection, console: Connection
+    is_real: bool, packed_setup: bytes, pipe: Connection, last_words: Connection, console: Connection
 ) -> None:
     """Be the engine; imported only over there, so that the console stays light."""
     watch_over(os.getpid(), console)
     ProcessTree(os.getpid(), os.environ.get(MARK, "")).leave_nothing()
-    if ground == "ros2":
+    if is_real:
         from sim.real.engine import run
     else:
         from sim.engine.process import run

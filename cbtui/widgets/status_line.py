@@ -79,6 +79,8 @@ def status_of(
 
 
 def _pace(run: ShownRun) -> str:
+    if run.setup.real is not None:
+        return "real ROS 2"
     if not run.virtual:
         return "real: computing goes on" if run.state is State.PAUSED else f"real ×{run.speed:.1f}"
     return "virtual max" if run.speed is None else f"virtual ×{run.speed:.1f}"

@@ -92,6 +92,12 @@ class PeriodChange(msgspec.Struct, frozen=True):
     period: int
 
 
+class RealRos(msgspec.Struct, frozen=True):
+    """A real ROS 2: the one that the interpreter ``python`` has, "" for the one that runs this."""
+
+    python: str = ""
+
+
 class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     """All that an engine needs to know to run some programs.
 
@@ -106,8 +112,7 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     leaves the usual one. With ``contents`` the trace has what published messages hold. ``seed`` chooses,
     on the virtual clock, among the orders in which a machine could run threads; None and 0 are first come,
     first served. Tracebacks are without the frames of the model, unless they are to be ``whole_tracebacks``.
-    ``ground`` is what ``import rclpy`` means to the programs: ``model``, or ``ros2``, where they run on real
-    rclpy, the real clock and the interpreter ``python``, "" for the one that runs this.
+    With ``real`` the programs run on real rclpy, in processes of their own, and on the real clock.
     ``seal`` is the key that its trace is sealed with (``sim.trace.integrity.sealing``), b"" for none.
     """
 
@@ -131,6 +136,5 @@ class RunSetup(msgspec.Struct, frozen=True, kw_only=True):
     contents: bool = False
     seed: int | None = None
     whole_tracebacks: bool = False
-    ground: str = "model"
-    python: str = ""
+    real: RealRos | None = None
     seal: bytes = b""

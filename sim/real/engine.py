@@ -79,7 +79,7 @@ class RealEngine:
         self._start = 0
         self._translation = Translation(self._outbox.record, self._begin)
         self._started_at = time.monotonic_ns()
-        python = setup.python or sys.executable
+        python = (setup.real.python if setup.real is not None else "") or sys.executable
         self._environment = environment(python, Path(self._folder.name), random.choice(_DOMAINS))
         unprobed = {name: value for name, value in self._environment.items() if name != PROBE_FOLDER}
         caller = [python, "-m", "cbtui_probe.caller"]

@@ -6,7 +6,7 @@ from pathlib import Path
 import msgspec
 import pytest
 
-from sim.engine.setup import TimedCall
+from sim.engine.setup import RealRos, TimedCall
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from sim.units import SECOND
@@ -118,7 +118,7 @@ def run(
     return run_to_end(
         msgspec.structs.replace(
             program_setup(path, seconds, clock="real" if ground == "ros2" else "virtual"),
-            ground=ground,
+            real=RealRos() if ground == "ros2" else None,
             calls=tuple(TimedCall(round(at * SECOND), data=True) for at in calls),
         )
     )

@@ -1,13 +1,21 @@
 """The options that change a program's set-up without touching its file, and what they come to."""
 
 import argparse
+import shutil
+import subprocess
+import sys
 from dataclasses import replace
+from importlib.util import find_spec
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cbtui.commands.options import values
+from cbtui.commands.options.targets import refuse
+from cbtui.text.installing import install_command
 
 if TYPE_CHECKING:
     from cbtui.runs.setup.changes import Changes, Place
+    from sim.engine.setup import RealRos
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -45,6 +53,21 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def add_on(parser: argparse.ArgumentParser) -> None:
+    """Give a command that can run programs on real ROS 2 the options on that."""
+    parser.add_argument(
+        "--on",
+        choices=("model", "ros2"),
+        default="model",
+        help="what runs the program: cbtui's model of rclpy, or real ROS 2, on the real clock (model)",
+    )
+    parser.add_argument(
+        "--python",
+        metavar="EXE",
+        help="with --on ros2: the Python that has it, as /usr/bin/python3 once ROS is sourced (cbtui's own)",
+    )
+
+
 def add_traceback(parser: argparse.ArgumentParser) -> None:
     """Give a command that shows what a program prints the option on its tracebacks."""
     parser.add_argument(
@@ -63,9 +86,43 @@ def changes_of(options: argparse.Namespace) -> "Changes":
     )
 
 
+def real_ros_of(options: argparse.Namespace) -> "RealRos | None":
+    """The real ROS 2 to run on; what contradicts that ends the program with one line and 2."""
+    from sim.engine.setup import RealRos
+
+    if options.on == "model":
+        if options.python is not None:
+            refuse("--python names the Python of a real ROS 2: give --on ros2 with it")
+        return None
+    if getattr(options, "clock", None) == "virtual" or getattr(options, "seed", None) is not None:
+        refuse("real ROS 2 runs on the real clock and in its own order: leave out --clock virtual and --seed")
+    python = options.python or sys.executable
+    found = shutil.which(python)
+    if found is None:
+        refuse(f"--python {python}: there is no such program")
+    if not _has_rclpy(found):
+        refuse(
+            f"{python} has no rclpy; name a Python that has it with --python, where ROS is sourced, or give "
+            f"cbtui's own one: {install_command('cbtui[ros]')}"
+        )
+    return RealRos(options.python or "")
+
+
+def _has_rclpy(python: str) -> bool:
+    if Path(python) == Path(sys.executable):
+        return find_spec("rclpy") is not None
+    code = "import importlib.util, sys; sys.exit(importlib.util.find_spec('rclpy') is None)"
+    return subprocess.run([python, "-c", code], check=False, capture_output=True).returncode == 0
+
+
 def seeded_changes_of(options: argparse.Namespace) -> "Changes":
-    """What the options change, the order of threads that ``--seed`` chooses, and ``--traceback``."""
-    return replace(changes_of(options), seed=options.seed, whole_tracebacks=options.traceback)
+    """What the options change, with what ``--seed``, ``--on`` and ``--traceback`` say."""
+    return replace(
+        changes_of(options),
+        seed=options.seed,
+        real=real_ros_of(options),
+        whole_tracebacks=options.traceback,
+    )
 
 
 def words(changes: "Changes") -> list[str]:

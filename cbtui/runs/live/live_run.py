@@ -184,8 +184,8 @@ class LiveRun:
 
     @property
     def can_be_paced(self) -> bool:
-        """Whether the engine is there to be paced."""
-        return self.alive
+        """Whether the engine is there to be paced, and is a model's: real ROS 2 goes on by itself."""
+        return self.alive and self.setup.real is None
 
     @property
     def can_step(self) -> bool:

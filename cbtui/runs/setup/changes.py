@@ -9,7 +9,7 @@ from typing import TypeAlias, TypeVar
 import msgspec
 
 from lessons.lesson import with_argument
-from sim.engine.setup import GroupChange, PeriodChange, ProgramSetup, RunSetup
+from sim.engine.setup import GroupChange, PeriodChange, ProgramSetup, RealRos, RunSetup
 from sim.units import SECOND
 
 Place: TypeAlias = tuple[str, str]
@@ -28,7 +28,8 @@ class Changes:
     """Other values than the program's; None, and what is not named, leave the program's.
 
     ``groups`` are some of ``WISHES``, ``periods`` nanoseconds, ``settings`` numbers by the argument of the
-    program that carries them, ``sensor_rate`` is in Hz, ``seed`` chooses the order of threads.
+    program that carries them, ``sensor_rate`` is in Hz, ``seed`` chooses the order of threads. ``real`` is
+    the ROS 2 that it runs on instead of the model, and with that on the real clock.
     ``whole_tracebacks`` changes what is printed of exceptions, and is no change of the program.
     """
 
@@ -38,6 +39,7 @@ class Changes:
     settings: Mapping[str, float] = field(default_factory=dict)
     sensor_rate: float | None = None
     seed: int | None = None
+    real: RealRos | None = None
     whole_tracebacks: bool = field(default=False, compare=False)
 
     def with_group(self, place: Place, wish: str | None) -> Changes:
@@ -70,6 +72,7 @@ class Changes:
             _beyond(self.settings, others.settings),
             None if self.sensor_rate == others.sensor_rate else self.sensor_rate,
             None if self.seed == others.seed else self.seed,
+            None if self.real == others.real else self.real,
         )
 
     def applied(self, setup: RunSetup) -> RunSetup:
@@ -80,6 +83,8 @@ class Changes:
             programs=tuple(self._with_settings(program) for program in setup.programs),
             sensor_rate=setup.sensor_rate if self.sensor_rate is None else self.sensor_rate,
             seed=setup.seed if self.seed is None else self.seed,
+            real=setup.real if self.real is None else self.real,
+            clock=setup.clock if self.real is None else "real",
             whole_tracebacks=self.whole_tracebacks,
             groups=(
                 *setup.groups,
@@ -109,6 +114,8 @@ class Changes:
             said.append(f"sensors {self.sensor_rate:g} Hz")
         if self.threads is not None:
             said.append(f"{self.threads} thread{'s'[: self.threads - 1]}")
+        if self.real is not None:
+            said.append("on real ROS 2")
         if self.seed is not None:
             said.append(f"seed {self.seed}")
         return ", ".join(said)
@@ -122,6 +129,7 @@ def changes_in(setup: RunSetup) -> Changes:
         {(each.node, each.callback): each.period for each in setup.periods},
         sensor_rate=setup.sensor_rate,
         seed=setup.seed,
+        real=setup.real,
     )
 
 

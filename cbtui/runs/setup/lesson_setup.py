@@ -53,10 +53,6 @@ class RunRequest:
     """What is typed at the programs' terminal, and when."""
     keyboard: Keyboard = Keyboard.NOBODY
     contents: bool = False
-    ground: str = "model"
-    """``model``, or ``ros2`` for real rclpy, on the real clock."""
-    python: str = ""
-    """The interpreter of the programs on real rclpy; "" for this one."""
 
     @property
     def names_program(self) -> bool:
@@ -70,7 +66,7 @@ class RunRequest:
             title=" ".join(path.name for path in self.files) if lesson is None else lesson.id,
             programs=tuple(self._programs()),
             service=None if lesson is None else ServiceChoice(lesson.service.name, lesson.service.type),
-            clock=self._clock(),
+            clock=self.clock or ("real" if lesson is None else lesson.setup.clock),
             speed=self.speed,
             until=None if self.seconds is None else nearest_ns(self.seconds),
             calls=tuple(TimedCall(nearest_ns(at), self.call_data) for at in sorted(self.calls)),
@@ -80,15 +76,8 @@ class RunRequest:
             packages=_LESSON_PACKAGES,
             robot=self._robot_use(),
             contents=self.contents,
-            ground=self.ground,
-            python=self.python,
         )
         return self.changes.applied(setup)
-
-    def _clock(self) -> str:
-        if self.ground == "ros2":
-            return "real"
-        return self.clock or ("real" if self.lesson is None else self.lesson.setup.clock)
 
     def _programs(self) -> Iterator[ProgramSetup]:
         lesson = self.lesson
