@@ -2,6 +2,7 @@
 
 import argparse
 import os
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -75,11 +76,15 @@ def grade(options: argparse.Namespace) -> int:
             "end your processes and use the network; grade where it can do no harm"
         )
     missing = [entry for entry in handed_in.entries if not sheet.holds(entry.key)]
+    missing.sort(key=sheet.is_unfinished)
+    if missing and sheet.is_unfinished(missing[-1]):
+        learner, lesson, _ = missing[-1].key
+        complain(f"grading was cut short while {lesson} of {learner} ran, which now comes last")
     report = hand_over if options.csv == _STANDARD_OUTPUT else _nothing
     out = SheetStream(sheet, report) if path is None else SheetFile(sheet, path)
     try:
         out.begin()
-        for each in handed_in.grades(missing, options.limit, confinement, out.mended):
+        for each in handed_in.grades(out.begun(missing), options.limit, confinement, out.mended):
             out.append(sheet.add(each))
             if options.csv != _STANDARD_OUTPUT:
                 say(f"{line(each)}\n")
@@ -91,6 +96,9 @@ def grade(options: argparse.Namespace) -> int:
             raise
         complain(f"{options.csv} cannot be written: {error.strerror}")
         return 1
+    finally:
+        with suppress(OSError):
+            out.end()
     if any(row["suspicious"] for row in sheet.rows):
         return SUSPICIOUS
     return 0 if all(row["passed"] == row["total"] != "0" for row in sheet.rows) else 1

@@ -3,11 +3,11 @@
 import csv
 import io
 import os
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TypeAlias
 
-from cbtui.grading.grading import Grade
+from cbtui.grading.grading import Entry, Grade
 
 Row: TypeAlias = Mapping[str, str]
 _BEFORE = ("learner", "lesson", "passed", "total")
@@ -24,6 +24,17 @@ class MarkSheet:
     def __init__(self, checks: int) -> None:
         self._columns = [*_BEFORE, *(f"check {number}" for number in range(1, checks + 1)), *_AFTER]
         self.rows: list[Row] = []
+        self.unfinished: Sequence[str] = ()
+        """Whose last row was begun and not ended in the table that ``read`` took, and the lesson."""
+
+    def beginning(self, entry: Entry) -> str:
+        """Return how the row of an entry begins, before its grade is known."""
+        learner, lesson, _ = entry.key
+        return self._text([_harmless(learner), _harmless(lesson), ""]).removesuffix("\n")
+
+    def is_unfinished(self, entry: Entry) -> bool:
+        """Whether grading was cut short while the program of this entry ran."""
+        return [*map(_harmless, entry.key[:2])] == [*self.unfinished]
 
     def add(self, grade: Grade) -> str:
         """Take a grade; returns its row as text."""
@@ -51,8 +62,9 @@ class MarkSheet:
         if rows and text.find("\n") > 0 and rows[0] != self._columns:
             raise BadSheetError("its columns are not those of these exercises")
         known = {tuple(map(_harmless, key)) for key in wanted if key[-1]}
-        # The last row of a table that was cut off is no row.
-        for cells in rows[1 : len(rows) if text.endswith("\n") else -1]:
+        if rows and not text.endswith("\n"):
+            self.unfinished = rows.pop()[:2]
+        for cells in rows[1:]:
             if (
                 len(cells) == len(self._columns)
                 and _key(row := dict(zip(self._columns, cells, strict=True))) in known
@@ -100,9 +112,16 @@ class SheetStream:
         """Write what is in the table already."""
         self._write(self._sheet.text())
 
+    def begun(self, entries: Iterable[Entry]) -> Iterator[Entry]:
+        """Return the entries as they are."""
+        return iter(entries)
+
     def append(self, row: str) -> None:
         """Write one more row."""
         self._write(row)
+
+    def end(self) -> None:
+        """Leave it as it is."""
 
     def mended(self) -> str | None:
         """Say nothing: it is as it was."""
@@ -110,12 +129,16 @@ class SheetStream:
 
 
 class SheetFile:
-    """A table in a file, which grows row by row; one that somebody else changes is put right."""
+    """A table in a file, which grows row by row; one that somebody else changes is put right.
+
+    The last row is begun before its program runs: if that ends the grader, the table tells whose it was.
+    """
 
     def __init__(self, sheet: MarkSheet, path: Path) -> None:
         self.path = path
         self._sheet = sheet
         self._written = b""
+        self._begun = b""
 
     def begin(self) -> None:
         """Write what is in the table already.
@@ -126,16 +149,31 @@ class SheetFile:
         self._written = _encoded(self._sheet.text())
         self._write(self._written, "wb")
 
+    def begun(self, entries: Iterable[Entry]) -> Iterator[Entry]:
+        """Yield each of the entries once its row is begun."""
+        for entry in entries:
+            self._begun = _encoded(self._sheet.beginning(entry))
+            self._write(self._begun, "ab")
+            yield entry
+
     def append(self, row: str) -> None:
-        """Write one more row."""
-        self._write(_encoded(row), "ab")
-        self._written += _encoded(row)
+        """Write the rest of the row that was begun."""
+        data = _encoded(row)
+        self._write(data.removeprefix(self._begun), "ab")
+        self._written += data
+        self._begun = b""
+
+    def end(self) -> None:
+        """Take back a row that was begun and not ended."""
+        if self._begun:
+            self._write(self._written, "wb")
 
     def mended(self) -> str | None:
         """Look whether the file is as it was written, and write it again if not; says so then."""
-        if not self._is_ordinary() or (self.path.exists() and self.path.read_bytes() == self._written):
+        whole = self._written + self._begun
+        if not self._is_ordinary() or (self.path.exists() and self.path.read_bytes() == whole):
             return None
-        self._write(self._written, "wb")
+        self._write(whole, "wb")
         return f"{self.path} was changed while it ran"
 
     def _is_ordinary(self) -> bool:

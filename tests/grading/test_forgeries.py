@@ -1,5 +1,8 @@
 """Whatever a submission does, it earns nothing by it, and the others keep their marks."""
 
+import os
+import signal
+
 import pytest
 
 from tests.grading.classroom import NEIGHBOURS, Classroom, Graded
@@ -78,6 +81,25 @@ def test_grading_stops_where_the_checks_are_changed_and_goes_on_when_they_are_wh
     assert resumed.code == 3
     assert resumed.out == "1/1  zoe  blinking\n"
     assert [*resumed.rows] == ["ann", "mallory", "zoe"]
+
+
+def test_who_kills_the_grader_is_named_and_keeps_nobody_else_from_being_graded(
+    open_classroom: Classroom,
+) -> None:
+    kills = """
+import os, pathlib, signal
+for process in pathlib.Path("/proc").glob("[0-9]*"):
+    if b"grade\\0" + HOMEWORK in (process / "cmdline").read_bytes():
+        os.kill(int(process.name), signal.SIGKILL)
+"""
+    open_classroom.hand_in("mallory", kills.replace("HOMEWORK", repr(os.fsencode(open_classroom.homework))))
+    graded = open_classroom.grade()
+    assert graded.code == -signal.SIGKILL
+    assert open_classroom.table.read_text().endswith("\nmallory,blinking,")
+    resumed = open_classroom.grade("--resume")
+    assert "grading was cut short while blinking of mallory ran, which now comes last" in resumed.err
+    assert resumed.out == "1/1  zoe  blinking\n"
+    assert [*resumed.rows] == ["ann", "zoe", "mallory"]
 
 
 def test_what_was_graded_is_not_graded_again_unless_it_is_another_file(open_classroom: Classroom) -> None:
