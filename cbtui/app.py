@@ -18,7 +18,7 @@ from cbtui.keys.keymap import Keymap
 from cbtui.learning.outcome import observe_engine
 from cbtui.looks.colour_themes import STANDARD, THEMES
 from cbtui.looks.theme import Charset
-from cbtui.runs.setup.recent import Kind, Opened, Recents
+from cbtui.runs.setup.recent import RecentEntry, RecentKind, RecentList
 from cbtui.screens.menu import MenuScreen
 from cbtui.terminal.ending import EndingApp
 from cbtui.text.ascii_filter import AsciiFilter
@@ -33,9 +33,9 @@ if TYPE_CHECKING:
 
     from cbtui.engines.session import Deliver, Ended, EngineSession, OpenSession
     from cbtui.learning.outcome import Observe
-    from cbtui.runs.compared_runs import ComparedRun, Terms
+    from cbtui.runs.compared_runs import ComparedRun, ComparisonTerms
     from cbtui.runs.setup.changes import Changes
-    from cbtui.runs.setup.subject import Subject
+    from cbtui.runs.setup.shown_program import ShownProgram
     from sim.engine.setup import RunSetup
     from sim.recording import Recording
 
@@ -46,10 +46,10 @@ def _actions_provider() -> "type[Provider]":
     return ActionsProvider
 
 
-def _unheard_session(setup: "RunSetup", deliver: "Deliver", ended: "Ended") -> "EngineSession":
-    from cbtui.engines.session import Session  # imported when the menu draws a lesson
+def _preview_session(setup: "RunSetup", deliver: "Deliver", ended: "Ended") -> "EngineSession":
+    from cbtui.engines.session import ProcessSession  # imported when the menu draws a lesson
 
-    return Session(setup, deliver, ended)
+    return ProcessSession(setup, deliver, ended)
 
 
 def _engine_session(setup: "RunSetup", deliver: "Deliver", ended: "Ended") -> "EngineSession":
@@ -71,7 +71,7 @@ class CbtuiApp(EndingApp):
 
     TITLE = "cbtui"
     CSS_PATH: ClassVar[CSSPathType | None] = [
-        # The first screen's own CSS_PATH is not read by Textual.
+        # Textual does not read the CSS_PATH of the first screen.
         Path(__file__).with_name("app.tcss"),
         Path(__file__).parent / "screens" / "menu.tcss",
     ]
@@ -88,7 +88,7 @@ class CbtuiApp(EndingApp):
         start_file: tuple[Path, Sequence[str], str] | None = None,
         start_changes: "Changes | None" = None,
         start_recording: "Recording | None" = None,
-        start_comparison: "tuple[ComparedRun, ComparedRun, Terms] | None" = None,
+        start_comparison: "tuple[ComparedRun, ComparedRun, ComparisonTerms] | None" = None,
         theme: str = STANDARD,
         keys: Keymap | None = None,
         complaints: Sequence[str] = (),
@@ -105,8 +105,8 @@ class CbtuiApp(EndingApp):
         self._start_comparison = start_comparison
         self._complaints = complaints
         self._open_session = open_session or _engine_session
-        self._open_preview = open_session or _unheard_session
-        self._recents = Recents()
+        self._open_preview = open_session or _preview_session
+        self._recents = RecentList()
         self.progress = Progress()
         """How far the learner has come."""
         self.observe = observe
@@ -125,7 +125,7 @@ class CbtuiApp(EndingApp):
         self.push_screen(LeavablePalette(providers=[ThemeProvider], placeholder="Search for themes…"))
 
     def get_driver_class(self) -> "type[Driver]":
-        """Return what keys are read from and all is drawn to."""
+        """Return the driver that reads keys and draws."""
         driver = super().get_driver_class()
         if driver.__name__ == "LinuxDriver":
             from cbtui.terminal.driver import TerminalDriver
@@ -141,7 +141,7 @@ class CbtuiApp(EndingApp):
             self.push_screen(LeavablePalette(id="--command-palette"))
 
     def tell_saved(self, sentence: str) -> None:
-        """Say what was saved when a screen was left: now, and once more when the terminal is as it was."""
+        """Report what was saved as a screen closed: in a notification, and on the terminal at exit."""
         self.saved.append(sentence)
         self.notify(sentence, markup=False)
 
@@ -150,7 +150,7 @@ class CbtuiApp(EndingApp):
         return MenuScreen(lessons(), self._recents, self.progress, self._open_preview, self.charset)
 
     def on_mount(self) -> None:
-        """Open the lesson that was asked for."""
+        """Open what the command line named."""
         for sentence in self._complaints:
             self.notify(sentence, severity="warning", timeout=12, markup=False)
         if self._start_lesson is not None:
@@ -163,19 +163,19 @@ class CbtuiApp(EndingApp):
         elif self._start_recording is not None:
             self._show_recording(self._start_recording)
         elif self._start_comparison is not None:
-            from cbtui.screens.gathering import GatheringScreen
+            from cbtui.screens.comparison_loading import ComparisonLoadingScreen
 
-            self.push_screen(GatheringScreen(*self._start_comparison, self.charset))
+            self.push_screen(ComparisonLoadingScreen(*self._start_comparison, self.charset))
 
     def open_lesson(self, lesson: Lesson, changes: "Changes | None" = None) -> None:
         """Run a lesson on screen, in place of another that may be open, as it is or with changes."""
-        from cbtui.runs.setup.subject import of_lesson
+        from cbtui.runs.setup.shown_program import of_lesson
 
-        self._show(of_lesson(lesson, lessons()), changes)
-        self._note(Kind.LESSON, lesson.id)
+        self._show_program(of_lesson(lesson, lessons()), changes)
+        self._remember(RecentKind.LESSON, lesson.id)
 
     def open_exercise(self, lesson: Lesson) -> None:
-        """Run and check the file for a lesson's exercise in the current folder; put it there if need be."""
+        """Run and check the exercise file in the current folder; created from the starter if missing."""
         from cbtui.learning.exercise_files import CannotPlaceError, own_file
         from cbtui.screens.exercise import ExerciseScreen
         from lessons.lesson import BadLesson
@@ -189,10 +189,10 @@ class CbtuiApp(EndingApp):
         except (CannotPlaceError, BadLesson) as error:
             self.notify(str(error), severity="error", markup=False)
             return
-        self._put(screen)
+        self._show_over_menu(screen)
         self.notify(file.sentence, markup=False)
 
-    def open_file(self, entry: Opened) -> None:
+    def open_file(self, entry: RecentEntry) -> None:
         """Run a program or show a recording, in place of the window that asked for it.
 
         Raises:
@@ -202,35 +202,37 @@ class CbtuiApp(EndingApp):
 
         path = Path(entry.what)
         check(path)
-        if entry.kind is Kind.RECORDING:
+        if entry.kind is RecentKind.RECORDING:
             self._show_recording(read_recording(path))
         else:
             self._run_file(path, entry.arguments, entry.clock, None)
 
     def _run_file(self, path: Path, arguments: Sequence[str], clock: str, changes: "Changes | None") -> None:
-        from cbtui.runs.setup.subject import of_file
+        from cbtui.runs.setup.shown_program import of_file
 
-        self._show(of_file(path, arguments, clock), changes)
-        self._note(Kind.PROGRAM, str(path.absolute()), tuple(arguments), clock)
+        self._show_program(of_file(path, arguments, clock), changes)
+        self._remember(RecentKind.PROGRAM, str(path.absolute()), tuple(arguments), clock)
 
     def _show_recording(self, recording: "Recording") -> None:
         from cbtui.screens.replay import ReplayScreen
 
-        self._put(ReplayScreen(recording, self.charset))
-        self._note(Kind.RECORDING, str(recording.path.absolute()))
+        self._show_over_menu(ReplayScreen(recording, self.charset))
+        self._remember(RecentKind.RECORDING, str(recording.path.absolute()))
 
-    def _note(self, kind: Kind, what: str, arguments: tuple[str, ...] = (), clock: str = "real") -> None:
+    def _remember(
+        self, kind: RecentKind, what: str, arguments: tuple[str, ...] = (), clock: str = "real"
+    ) -> None:
         """Remember what was opened."""
-        self._recents.note(Opened(kind, what, int(time()), arguments, clock))
+        self._recents.note(RecentEntry(kind, what, int(time()), arguments, clock))
         for sentence in self._recents.troubles():
             self.notify(sentence, severity="warning", markup=False)
 
-    def _show(self, subject: "Subject", changes: "Changes | None") -> None:
-        from cbtui.screens.lesson import LessonScreen  # the menu has to be there before all that is needed
+    def _show_program(self, subject: "ShownProgram", changes: "Changes | None") -> None:
+        from cbtui.screens.lesson import LessonScreen  # imported late: the menu must appear first
 
-        self._put(LessonScreen(subject, self._open_session, self.charset, changes))
+        self._show_over_menu(LessonScreen(subject, self._open_session, self.charset, changes))
 
-    def _put(self, screen: Screen[Any]) -> None:
+    def _show_over_menu(self, screen: Screen[Any]) -> None:
         """Show a screen over the menu, in place of a lesson or a question for a file."""
         if getattr(self.screen, "SCOPE", None) in (Scope.LESSON, Scope.OPENING):
             self.switch_screen(screen)
@@ -250,6 +252,6 @@ class CbtuiApp(EndingApp):
         yield SystemCommand("Screenshot", "Save a picture of this screen (SVG)", self.deliver_screenshot)
 
     def get_line_filters(self) -> Sequence[LineFilter]:
-        """Return what every line passes on its way to the terminal."""
+        """Return the filters that every line passes on its way to the terminal."""
         filters = [*super().get_line_filters(), self._harmless]
         return [*filters, self._ascii] if self.charset is Charset.ASCII else filters

@@ -1,4 +1,4 @@
-"""The ``cbtui`` command: takes the command line apart, and hands it to the command that it names.
+"""The ``cbtui`` command: parses the command line and calls the command it names.
 
 Whatever a command needs is imported when it runs: ``cbtui --help`` must answer at once.
 """
@@ -30,49 +30,49 @@ from cbtui.commands import (
     start,
 )
 from cbtui.commands.options import appearance, more_lessons
-from cbtui.commands.options.parsing import Parser
+from cbtui.commands.options.command_parser import CommandParser
 from cbtui.commands.options.targets import refuse
 from cbtui.commands.ros2 import ros2
 from cbtui.engines.memory_limit import BadMemoryLimitError, memory_limit
 from cbtui.terminal import streams
 from cbtui.text.output import CannotSayError, is_text, say
 
-_READ_ENOUGH = 141
-"""The exit code where the pipe behind is closed: a shell's for a program that SIGPIPE ended."""
+_BROKEN_PIPE = 141
+"""Exit code when the reader of standard output closed the pipe: a shell's code for death by SIGPIPE."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command line; returns the exit code.
 
-    0 is well, 1 the run failed, 2 the command was wrong, 130 it was interrupted, 141 who reads what it says
-    has read enough.
+    0: success; 1: the run failed; 2: the command was wrong; 130: interrupted; 141: the reader of standard
+    output closed the pipe.
     """
-    streams.make_whole()
+    streams.repair_streams()
     try:
-        code = _carried_out(list(sys.argv[1:] if argv is None else argv))
+        code = _run_command(list(sys.argv[1:] if argv is None else argv))
     except SystemExit:
-        streams.unwritable()
+        streams.flush_streams()
         raise
     except OSError as error:
-        trouble = streams.unwritable()
+        trouble = streams.flush_streams()
         if trouble is None and not isinstance(error, BrokenPipeError | CannotSayError):
             raise
         return _say_unwritable(trouble or error)
-    trouble = streams.unwritable()
+    trouble = streams.flush_streams()
     return code if trouble is None else _say_unwritable(trouble)
 
 
 def _say_unwritable(trouble: OSError) -> int:
-    """Say that standard output takes no more, unless who read it has just read enough; the exit code."""
+    """Report that standard output cannot be written, unless its reader closed it; returns the exit code."""
     if isinstance(trouble, BrokenPipeError):
-        return _READ_ENOUGH
+        return _BROKEN_PIPE
     with suppress(OSError):
         sys.stderr.write(f"cbtui: what it says cannot be written: {trouble.strerror}\n")
-    streams.unwritable()
+    streams.flush_streams()
     return 1
 
 
-def _carried_out(words: list[str]) -> int:
+def _run_command(words: list[str]) -> int:
     if words[:1] == ["ros2"]:
         return ros2(words[1:])
     split = words.index("--") if "--" in words else len(words)
@@ -83,7 +83,7 @@ def _carried_out(words: list[str]) -> int:
     _check_folder()
     _check_memory_limit()
     action: Callable[[argparse.Namespace], int] = options.action
-    with more_lessons.brought_in(options):
+    with more_lessons.lessons_added(options):
         try:
             return action(options)
         except KeyboardInterrupt:
@@ -94,7 +94,7 @@ def _carried_out(words: list[str]) -> int:
 
 
 def _check_folder() -> None:
-    """End the program with one line and 2, if the folder that it was started in is gone."""
+    """Exit with code 2 and one line if the current folder no longer exists."""
     try:
         Path.cwd()
     except OSError as error:
@@ -102,7 +102,7 @@ def _check_folder() -> None:
 
 
 def _check_memory_limit() -> None:
-    """End the program with one line and 2, if what nodes may use of the memory is set to no number."""
+    """Exit with code 2 and one line if the memory limit in the environment is not a number."""
     try:
         memory_limit()
     except BadMemoryLimitError as error:
@@ -110,7 +110,7 @@ def _check_memory_limit() -> None:
 
 
 def _refuse_bad_lesson(error: ValueError) -> None:
-    """End the program with one line and 2, if it is a lesson that is at fault."""
+    """Exit with code 2 and one line if a lesson's files are at fault."""
     from lessons.lesson import BadLesson
 
     if isinstance(error, BadLesson):
@@ -118,12 +118,12 @@ def _refuse_bad_lesson(error: ValueError) -> None:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = Parser(
+    parser = CommandParser(
         prog="cbtui",
         description="A terminal teaching console for ROS 2 callback groups and executors.",
         epilog="Without a command the console opens on its menu of lessons.",
     )
-    parser.add_argument("--version", action=_TellVersion, nargs=0, help="show the version and exit")
+    parser.add_argument("--version", action=_VersionAction, nargs=0, help="show the version and exit")
     appearance.add_options(parser)
     appearance.set_defaults(parser)
     more_lessons.add_option(parser)
@@ -234,7 +234,7 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _add_exercises(commands: "argparse._SubParsersAction[Parser]") -> None:
+def _add_exercises(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     starting = commands.add_parser("start", help="begin a lesson's exercise in a file of your own")
     start.add_options(starting)
     starting.set_defaults(action=start.start)
@@ -261,7 +261,7 @@ def _add_exercises(commands: "argparse._SubParsersAction[Parser]") -> None:
     resetting.set_defaults(action=reset.reset)
 
 
-def _add_authoring(commands: "argparse._SubParsersAction[Parser]") -> None:
+def _add_authoring(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     making = commands.add_parser("new-lesson", help="make a lesson of your own to begin with")
     new_lesson.add_options(making)
     making.set_defaults(action=new_lesson.new_lesson)
@@ -276,8 +276,8 @@ def _add_authoring(commands: "argparse._SubParsersAction[Parser]") -> None:
     linting.set_defaults(action=lint_lesson.lint_lesson)
 
 
-class _TellVersion(argparse.Action):
-    """Tells the version and ends; looks it up only then, which takes as long as the rest of the help."""
+class _VersionAction(argparse.Action):
+    """Prints the version and exits; the look-up is slow, so it is done only here."""
 
     def __call__(self, parser: argparse.ArgumentParser, *_: object) -> NoReturn:
         from cbtui.version import own_version

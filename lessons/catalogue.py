@@ -47,7 +47,7 @@ def find(lesson_id: str) -> Lesson:
     )
 
 
-def comes_along(lesson: Lesson) -> bool:
+def is_built_in(lesson: Lesson) -> bool:
     """Tell whether a lesson is one of the package's own; others run nothing before somebody opens them."""
     return lesson.folder.is_relative_to(ROOT)
 

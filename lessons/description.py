@@ -54,7 +54,7 @@ class Setting(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
             raise ValueError(f"the least {self.least:g} is not below the most {self.most:g}")
 
 
-class Service(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class LessonService(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The service that a lesson's `s` key calls."""
 
     name: ServiceName
@@ -89,7 +89,7 @@ class Prediction(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
             raise ValueError("two answers are the same")
 
 
-class Run(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class LessonRun(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The run that predictions, checks and declared diagnoses are about. Times in seconds of its clock."""
 
     seconds: Seconds = 30.0
@@ -121,7 +121,7 @@ class Exercise(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """What starter and solution have in common that the node lacks; without it they share its other lines."""
 
 
-class Declared(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
+class DeclaredDiagnoses(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True):
     """The ids of the rules that find a problem, exactly those, in the run of each file."""
 
     node: tuple[RuleId, ...] = ()
@@ -146,7 +146,7 @@ class Description(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     groups: Text
     """The callback groups as the menu shows them."""
     setup: Setup
-    service: Service
+    service: LessonService
     task: Text | None = None
     """What to do while the lesson runs, so that there is something to see."""
     tries: tuple[Try, ...] = msgspec.field(name="try", default=())
@@ -154,9 +154,9 @@ class Description(Struct, frozen=True, kw_only=True, forbid_unknown_fields=True)
     predictions: Annotated[tuple[Prediction, ...], Meta(max_length=2)] = msgspec.field(
         name="prediction", default=()
     )
-    run: Run = Run()
+    run: LessonRun = LessonRun()
     exercise: Exercise | None = None
-    diagnoses: Declared = Declared()
+    diagnoses: DeclaredDiagnoses = DeclaredDiagnoses()
 
     def __post_init__(self) -> None:
         for setting in self.settings:

@@ -17,7 +17,7 @@ _CHECKS = "CHECKS"
 
 
 @dataclass(frozen=True, slots=True)
-class Judged:
+class JudgedCheck:
     """A check and what came of it."""
 
     check: Check
@@ -40,13 +40,13 @@ class Judge:
         if lesson.exercise is not None and not self.checks:
             raise BadLesson(f"{self._path}: the exercise needs a tuple {_CHECKS} with at least one check")
 
-    def verdicts(self, run: Timeline) -> list[Judged]:
+    def verdicts(self, run: Timeline) -> list[JudgedCheck]:
         """Judge a run that is over by every check, in their order."""
         return [self.judge(check, run) for check in self.checks]
 
-    def judge(self, check: Check, run: Timeline) -> Judged:
+    def judge(self, check: Check, run: Timeline) -> JudgedCheck:
         """Judge a run that is over by one of the checks; one that stumbles over the run has not passed."""
-        return Judged(check, _verdict(check, run))
+        return JudgedCheck(check, _verdict(check, run))
 
     def true_answer(self, prediction: Prediction, run: Timeline) -> int:
         """Return which answer of a prediction a run shows to be true, from 0.

@@ -7,10 +7,10 @@ from pathlib import Path
 from msgspec import Struct, structs
 
 from lessons.personal import state_folder
-from lessons.state_file import StateFile, Words
+from lessons.state_file import StateFile, StateFileTexts
 
 FILE_NAME = "progress.jsonl"
-_WORDS = Words("progress", "progress is not kept", "the lessons go on")
+_WORDS = StateFileTexts("progress", "progress is not kept", "the lessons go on")
 
 
 class LessonProgress(Struct, frozen=True, kw_only=True):

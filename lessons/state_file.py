@@ -17,13 +17,13 @@ from sim.whole_file import write_whole
 
 EntryT = TypeVar("EntryT", bound=msgspec.Struct)
 
-_PATIENCE = 1.0
+_LOCK_TIMEOUT = 1.0
 """Seconds that another console may hold the lock; after that this one goes on without it."""
 _POLL = 0.02
 
 
 @dataclass(frozen=True)
-class Words:
+class StateFileTexts:
     """What sentences on a file call an entry, the loss of all of it, and what goes on after a partial one."""
 
     entry: str
@@ -31,7 +31,7 @@ class Words:
     rest: str
 
 
-class Content(NamedTuple, Generic[EntryT]):
+class StateFileContent(NamedTuple, Generic[EntryT]):
     """The readable entries of a file; ``broken`` if there was something else in it, and it was set aside."""
 
     entries: list[EntryT]
@@ -46,7 +46,7 @@ class StateFile(Generic[EntryT]):
     of trouble once. A file with something unreadable in it is kept under another name. Not thread-safe.
     """
 
-    def __init__(self, path: Path, kind: type[EntryT], words: Words) -> None:
+    def __init__(self, path: Path, kind: type[EntryT], words: StateFileTexts) -> None:
         self.path = path
         self._kind = kind
         self._words = words
@@ -54,7 +54,7 @@ class StateFile(Generic[EntryT]):
         self._told: set[str] = set()
         self._usable = True
 
-    def read(self) -> Content[EntryT] | None:
+    def read(self) -> StateFileContent[EntryT] | None:
         """Return what is in the file; None where there is none, or none that can be read."""
         try:
             lines = read_bytes(self._known_path(), MOST_OF_A_PROGRAM).splitlines()
@@ -67,7 +67,7 @@ class StateFile(Generic[EntryT]):
         entries = [self._entry_in(line) for line in lines]
         if None in entries:
             self._set_aside(entries.index(None) + 1)
-        return Content([entry for entry in entries if entry is not None], None in entries)
+        return StateFileContent([entry for entry in entries if entry is not None], None in entries)
 
     def write(self, entries: Iterable[EntryT]) -> None:
         """Replace the file."""
@@ -142,7 +142,7 @@ class StateFile(Generic[EntryT]):
 
 def _wait_for(lock: int) -> None:
     """Take a lock when it is free; it goes with the file's descriptor, also when the console crashes."""
-    deadline = time.monotonic() + _PATIENCE
+    deadline = time.monotonic() + _LOCK_TIMEOUT
     while time.monotonic() < deadline:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)

@@ -51,7 +51,7 @@ def engines_copied() -> Iterator[None]:
 @pytest.fixture
 def fresh_engines(monkeypatch: pytest.MonkeyPatch) -> None:
     """Start engines as the console does, where the process itself is what is tested."""
-    monkeypatch.setattr(session, "AFRESH", multiprocessing.get_context("spawn"))
+    monkeypatch.setattr(session, "SPAWN_CONTEXT", multiprocessing.get_context("spawn"))
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Give the command its arguments."""
+    """Add the command's arguments."""
     parser.add_argument("lesson", metavar="LESSON", help="a lesson with an exercise")
     parser.add_argument(
         "file", metavar="FILE.py", nargs="?", help="the file to check (what cbtui start has put here)"
@@ -25,7 +25,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def add_limit(parser: argparse.ArgumentParser, usual: float) -> None:
-    """Give a command the option on how long a file may run."""
+    """Add ``--limit``, the real time that a run may take."""
     parser.add_argument(
         "--limit",
         metavar="SECONDS",
@@ -54,7 +54,7 @@ def check(options: argparse.Namespace) -> int:
 
 
 def exercise_of(name: str) -> "Lesson":
-    """The lesson of that id; one without an exercise ends the program with one line and 2."""
+    """The lesson of that id; exits with code 2 and one line if it has no exercise."""
     lesson = lesson_of(name)
     if lesson.exercise is None:
         from lessons.catalogue import lessons

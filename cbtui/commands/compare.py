@@ -8,15 +8,16 @@ from typing import TYPE_CHECKING
 from cbtui.commands.options import appearance, inputs, values
 from cbtui.commands.options.targets import file_of, is_file_name, lesson_of, refuse
 from cbtui.commands.run import DEFAULT_SECONDS
+from sim.plural import counted
 
 if TYPE_CHECKING:
-    from cbtui.runs.compared_runs import ComparedRun, Terms
+    from cbtui.runs.compared_runs import ComparedRun, ComparisonTerms
 
 _RECORDING = ".mcap"
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Give the command its arguments."""
+    """Add the command's arguments."""
     for name in ("A", "B"):
         parser.add_argument(name, help=f"a recording ({_RECORDING}), a lesson's id, or a node or launch file")
     appearance.add_options(parser)
@@ -73,7 +74,7 @@ def compare(options: argparse.Namespace) -> int:
 
 
 def _check(options: argparse.Namespace, names: list[str], threads: list[int | None]) -> None:
-    """Refuse what does not fit together."""
+    """Refuse options that contradict each other."""
     for letter, name, number in zip("ab", names, threads, strict=True):
         if number is not None and _is_recording(name):
             refuse(f"{name} is a recording and has the threads it had; leave out --threads-{letter}")
@@ -102,7 +103,7 @@ def _compared_run(name: str, threads: int | None, arguments: list[str]) -> "Comp
 
     if _is_recording(name):
         return ComparedRun(name, _readable(Path(name)))
-    called = name if threads is None else f"{name}, {threads} thread{'s'[: threads - 1]}"
+    called = name if threads is None else f"{name}, {counted(threads, 'thread')}"
     if is_file_name(name):
         file = file_of(name)
         request = RunRequest(files=[file], arguments=arguments, changes=Changes(threads), clock="virtual")
@@ -111,7 +112,7 @@ def _compared_run(name: str, threads: int | None, arguments: list[str]) -> "Comp
 
 
 def _readable(path: Path) -> Path:
-    """A recording's path; one that cannot be opened ends the program with one line and 2."""
+    """A recording's path; exits with code 2 and one line if it cannot be opened."""
     from sim.recording import RecordingError, read
 
     try:
@@ -121,12 +122,12 @@ def _readable(path: Path) -> Path:
     return path
 
 
-def _terms(options: argparse.Namespace) -> "Terms":
-    from cbtui.runs.compared_runs import Terms
+def _terms(options: argparse.Namespace) -> "ComparisonTerms":
+    from cbtui.runs.compared_runs import ComparisonTerms
 
     if options.end is not None and options.end <= options.start:
         refuse(f"nothing is left to compare from {options.start:g} s to {options.end:g} s")
-    return Terms(
+    return ComparisonTerms(
         start=options.start,
         end=options.end,
         calls=options.calls,

@@ -1,4 +1,4 @@
-"""``cbtui``, ``cbtui open``, ``cbtui replay``: what opens the console."""
+"""``cbtui``, ``cbtui open`` and ``cbtui replay``: the commands that open the console."""
 
 import argparse
 from pathlib import Path
@@ -69,7 +69,7 @@ def _open_exercise(options: argparse.Namespace) -> int:
 
 
 def _read_lessons() -> None:
-    """Find a lesson that is at fault before the console takes the screen."""
+    """Read the lessons, so that a faulty one is reported before the console takes over the terminal."""
     from lessons.catalogue import lessons
 
     lessons()

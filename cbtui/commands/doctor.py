@@ -1,4 +1,4 @@
-"""``cbtui doctor``: looks whether this machine has what cbtui needs."""
+"""``cbtui doctor``: checks whether this machine has what cbtui needs."""
 
 import argparse
 import os
@@ -7,20 +7,21 @@ from typing import TYPE_CHECKING
 
 from cbtui.commands.options import appearance
 from cbtui.text.output import say
+from sim.plural import counted
 
 if TYPE_CHECKING:
-    from cbtui.doctor.verdict import Verdict
+    from cbtui.doctor.examination import Examination
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Give the command its arguments."""
+    """Add the command's arguments."""
     appearance.add_options(parser)
 
 
 def examine(options: argparse.Namespace) -> int:
-    """Print a line for each thing looked at; returns the exit code: 0 nothing is wrong, 1 something is."""
+    """Print a line for each check; returns the exit code: 0 if nothing is wrong, else 1."""
     from cbtui.doctor import examinations
-    from cbtui.doctor.verdict import Sign
+    from cbtui.doctor.examination import Sign
     from cbtui.terminal.capabilities import charset_of
 
     charset = options.charset
@@ -35,7 +36,7 @@ def examine(options: argparse.Namespace) -> int:
     return 1 if faults else 0
 
 
-def _print(verdict: "Verdict", *, plain: bool) -> None:
+def _print(verdict: "Examination", *, plain: bool) -> None:
     sign = verdict.sign.plain if plain else verdict.sign.value
     remedy = f": {verdict.remedy}" if verdict.remedy else ""
     say(f"{sign} {verdict.subject:<12} {verdict.what}{remedy}\n")
@@ -43,5 +44,5 @@ def _print(verdict: "Verdict", *, plain: bool) -> None:
 
 def _sum(faults: int, notes: int) -> str:
     if faults:
-        return f"{faults} thing{'s' * (faults > 1)} cbtui needs {'are' if faults > 1 else 'is'} not well."
+        return f"{counted(faults, 'thing')} cbtui needs {'are' if faults > 1 else 'is'} not well."
     return "All is well." if not notes else "cbtui works here; with what is marked ! something is left out."

@@ -6,13 +6,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cbtui.text.output import CannotSayError, complain, say
+from sim.plural import counted
 
 if TYPE_CHECKING:
     from cbtui.eject.ament_package import AmentPackage
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Give the command its arguments."""
+    """Add the command's arguments."""
     parser.add_argument(
         "folder", metavar="DIR", type=Path, help="where the packages go, such as the src of a workspace"
     )
@@ -30,7 +31,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def eject(options: argparse.Namespace) -> int:
-    """Carry the command out; returns the exit code: 0 well, 2 it was wrong or a file is in the way."""
+    """Write the packages; returns the exit code: 0 on success, 2 for wrong arguments or a file in the way."""
     from cbtui.eject.eject import EjectError
     from lessons.lesson import BadLesson
 
@@ -46,7 +47,7 @@ def eject(options: argparse.Namespace) -> int:
         complain(str(error))
         return 2
     except (BrokenPipeError, CannotSayError):
-        raise  # of what is said, not of a file
+        raise  # about standard output, not about a file
     except OSError as error:
         place = error.filename2 or error.filename or folder
         complain(f"cannot write {place}: {error.strerror}")
@@ -57,7 +58,7 @@ def eject(options: argparse.Namespace) -> int:
 
 
 def _packages(folder: Path, names: Sequence[str]) -> "list[AmentPackage]":
-    """The packages of the units of these names, all of them for none, if the folder can hold any."""
+    """The packages of the named units, of all units if none is named."""
     from cbtui.eject.eject import EjectError, chosen, package_of, units_of
     from lessons.catalogue import lessons
 
@@ -88,14 +89,10 @@ def _refuse_changed(packages: Iterable[Mapping[Path, bytes]]) -> None:
 
 
 def _write(package: "AmentPackage", folder: Path, files: Mapping[Path, bytes]) -> None:
-    """Write a package, and tell what that came to."""
+    """Write a package, and print what was written."""
     from cbtui.eject.eject import write_files
 
     written = write_files(files)
     kept = f", {len(files) - written} were there" if written < len(files) else ""
-    told = f"{_counted(len(package.programs), 'lesson')}, {_counted(written, 'file')} written{kept}"
+    told = f"{counted(len(package.programs), 'lesson')}, {counted(written, 'file')} written{kept}"
     say(f"{folder / package.name}: {told}\n")
-
-
-def _counted(number: int, what: str) -> str:
-    return f"1 {what}" if number == 1 else f"{number} {what}s"

@@ -1,4 +1,4 @@
-"""``cbtui explore``: runs a program in other orders of its threads, and tells what comes of them."""
+"""``cbtui explore``: runs a program under other thread schedules and reports the outcomes."""
 
 import argparse
 import shlex
@@ -13,14 +13,14 @@ from cbtui.terminal.interrupts import INTERRUPTED
 from cbtui.text.output import complain, say
 
 if TYPE_CHECKING:
-    from cbtui.runs.judged.exploring import Exploration, Result
+    from cbtui.runs.judged.exploring import Exploration, ScheduleResult
     from lessons.lesson import Lesson
 
 DEFAULT_SECONDS = 10.0
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Give the command its arguments."""
+    """Add the command's arguments."""
     parser.add_argument("target", metavar="FILE.py|LESSON", help="a file, or a lesson's id, see cbtui list")
     parser.add_argument(
         "--schedules", metavar="N", type=values.count, default=100, help="how many orders (%(default)s)"
@@ -43,16 +43,16 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def explore(options: argparse.Namespace) -> int:
-    """Run other orders of a program; returns the exit code: 0 all went well, 1 some failed.
+    """Run a program under other schedules; returns the exit code: 0 if all went well, 1 if some failed.
 
-    Ctrl-C ends it early, with 130; what came of the orders that were tried is told all the same.
+    Ctrl-C ends it early with 130; the results so far are printed all the same.
     """
     _check(options)
     exploration, replays = _of_file(options) if is_file_name(options.target) else _of_lesson(options)
     from cbtui.runs.judged.exploration_text import exploration_text
 
     seeds = range(options.seed, options.seed + options.schedules)
-    found: dict[int, Result] = {}
+    found: dict[int, ScheduleResult] = {}
     interrupted = False
     try:
         _explore(exploration, seeds, found)
@@ -67,7 +67,7 @@ def explore(options: argparse.Namespace) -> int:
 
 
 def _check(options: argparse.Namespace) -> None:
-    """Refuse what does not fit together."""
+    """Refuse options that contradict each other."""
     is_file = is_file_name(options.target)
     if options.check is not None and not is_file:
         refuse(f"a lesson is judged by its own checks; leave out --check {options.check}, or give a file")
@@ -81,7 +81,7 @@ def _check(options: argparse.Namespace) -> None:
 
 
 def _of_files_only(options: argparse.Namespace) -> dict[str, object]:
-    """What would make a lesson's run another one."""
+    """Options that would change the run that a lesson's checks are about."""
     return {
         "--for": options.seconds,
         "--call": options.calls,
@@ -94,7 +94,7 @@ def _of_files_only(options: argparse.Namespace) -> dict[str, object]:
 
 
 def _of_file(options: argparse.Namespace) -> "tuple[Exploration, list[str]]":
-    """What is to be run, and the commands that show one order again."""
+    """The exploration of a file, and the commands that repeat one schedule."""
     path = file_of(options.target)
     if options.check is not None:
         lesson = exercise_of(options.check)
@@ -139,7 +139,7 @@ def _of_lesson(options: argparse.Namespace) -> "tuple[Exploration, list[str]]":
 
 
 def _judged(lesson: "Lesson", options: argparse.Namespace, file: str | None) -> "Exploration":
-    """A lesson's node, or a file in its place, judged by the lesson's checks if it has any."""
+    """The exploration of a lesson's node, or of a file in its place, judged by the lesson's checks."""
     from cbtui.runs.judged.exploring import Exploration
     from cbtui.runs.setup.lesson_setup import setup_to_judge
     from lessons.judge import Judge
@@ -150,8 +150,8 @@ def _judged(lesson: "Lesson", options: argparse.Namespace, file: str | None) -> 
     return Exploration(setup_to_judge(lesson, path), name, judge, options.limit)
 
 
-def _explore(exploration: "Exploration", seeds: range, found: "dict[int, Result]") -> None:
-    """Put into ``found`` what comes of each seed; how far it has come shows on a terminal."""
+def _explore(exploration: "Exploration", seeds: range, found: "dict[int, ScheduleResult]") -> None:
+    """Put the result of each seed into ``found``; progress is shown if standard error is a terminal."""
     tells = sys.stderr.isatty()
     try:
         with closing(exploration.results(seeds)) as results:

@@ -1,34 +1,34 @@
-"""The ``export`` command: takes a recording to trace viewers, spreadsheets and paper."""
+"""``cbtui export``: converts a recording for trace viewers, spreadsheets and paper."""
 
 import argparse
 from pathlib import Path
 
 from cbtui.commands.options.targets import same_file
-from cbtui.commands.options.values import moment, whole
-from cbtui.runs.recorded.exporting import FORMATS, WIDTH, ExportError, Wish, export
+from cbtui.commands.options.values import moment, whole_number
+from cbtui.runs.recorded.exporting import FORMATS, WIDTH, ExportError, ExportRequest, export
 from cbtui.text.output import complain
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Give the command its arguments."""
+    """Add the command's arguments."""
     parser.add_argument("file", metavar="FILE.mcap", help="a recording")
     for name, (metavar, about) in FORMATS.items():
         parser.add_argument(f"--{name}", metavar=metavar, help=about)
     parser.add_argument("--from", dest="start", metavar="S", type=moment, help="where the picture begins (0)")
     parser.add_argument("--to", dest="end", metavar="S", type=moment, help="where it ends (the run's end)")
-    parser.add_argument("--width", metavar="PIXELS", type=whole, help=f"how wide it is ({WIDTH})")
+    parser.add_argument("--width", metavar="PIXELS", type=whole_number, help=f"how wide it is ({WIDTH})")
 
 
 def export_command(options: argparse.Namespace) -> int:
-    """Carry the command out; returns the exit code: 0 well, 2 it was wrong or a file is in the way."""
+    """Export; returns the exit code: 0 on success, 2 for wrong arguments or a file in the way."""
     from cbtui.runs.recorded.reading_progress import ReadingProgress
     from sim.recording import RecordingError, read
 
     source = Path(options.file)
     try:
-        wish = _wish(options, source)
+        request = _request(options, source)
         recording = read(source)
-        export(ReadingProgress(recording), wish)
+        export(ReadingProgress(recording), request)
     except (ExportError, RecordingError) as error:
         complain(str(error))
         return 2
@@ -37,11 +37,11 @@ def export_command(options: argparse.Namespace) -> int:
     return 0
 
 
-def _wish(options: argparse.Namespace, source: Path) -> Wish:
-    """What the options ask for.
+def _request(options: argparse.Namespace, source: Path) -> ExportRequest:
+    """The export that the options ask for.
 
     Raises:
-        ExportError: they ask for nothing, or contradict each other.
+        ExportError: no output is named, or the options contradict each other.
     """
     from sim.export.svg import NARROWEST, WIDEST
 
@@ -59,7 +59,7 @@ def _wish(options: argparse.Namespace, source: Path) -> Wish:
     width = WIDTH if options.width is None else options.width
     if not NARROWEST <= width <= WIDEST:
         raise ExportError(f"a picture cannot be {width} pixels wide; give {NARROWEST} to {WIDEST}")
-    return Wish(outputs, start, options.end, width)
+    return ExportRequest(outputs, start, options.end, width)
 
 
 def _check_paths(outputs: dict[str, Path], source: Path) -> None:

@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING
 from cbtui.commands.check import add_limit, exercise_of
 from cbtui.commands.options import more_lessons
 from cbtui.commands.options.targets import folder_of, refuse, same_file
-from cbtui.text.output import complain, hand_over, say
+from cbtui.text.output import complain, say, say_data
 
 if TYPE_CHECKING:
-    from cbtui.grading.grading import HandedIn, Paper
+    from cbtui.grading.grading import Grader, HandIn
     from cbtui.grading.mark_sheet import MarkSheet
 
 _STANDARD_OUTPUT = "-"
 SUSPICIOUS = 3
-"""The exit code where a run shows something that no honest one can."""
+"""Exit code when a trace shows something that no honest run can."""
 CHANGED = 4
-"""The exit code where a submission changed cbtui or a lesson, and grading stopped."""
+"""Exit code when a submission changed cbtui or a lesson, which ends the grading."""
 
 DESCRIPTION = """Run and check what lies in DIR: a folder for each learner with files such as split_groups.py,
 or a file for each. The files are programs, and are run: each on a copy, and with bwrap (of the package
@@ -33,7 +33,7 @@ changed cbtui or a lesson, which ends the grading."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Give the command its arguments."""
+    """Add the command's arguments."""
     parser.add_argument("folder", metavar="DIR", help="a folder with a folder or a file for each learner")
     parser.add_argument("--lesson", metavar="LESSON", help="the exercise that all files are for")
     parser.add_argument(
@@ -61,10 +61,10 @@ def grade(options: argparse.Namespace) -> int:
     elif options.resume:
         refuse("--resume goes on with a table; name it with --csv OUT.csv")
     from cbtui.grading.confinement import Confinement
-    from cbtui.grading.grading import HandedIn, PackagesChangedError, line
+    from cbtui.grading.grading import Grader, PackagesChangedError, line
     from cbtui.grading.mark_sheet import MarkSheet, SheetFile, SheetStream
 
-    handed_in = HandedIn(papers)
+    handed_in = Grader(papers)
     sheet = MarkSheet(handed_in.most_checks)
     if options.resume and path is not None:
         _take_earlier(sheet, path, handed_in)
@@ -80,7 +80,7 @@ def grade(options: argparse.Namespace) -> int:
     if missing and sheet.is_unfinished(missing[-1]):
         learner, lesson, _ = missing[-1].key
         complain(f"grading was cut short while {lesson} of {learner} ran, which now comes last")
-    report = hand_over if options.csv == _STANDARD_OUTPUT else _nothing
+    report = say_data if options.csv == _STANDARD_OUTPUT else _nothing
     out = SheetStream(sheet, report) if path is None else SheetFile(sheet, path)
     try:
         out.begin()
@@ -105,10 +105,10 @@ def grade(options: argparse.Namespace) -> int:
 
 
 def _nothing(_text: str) -> None:
-    """Stand for a table that nobody wants."""
+    """Write nothing: no table was asked for."""
 
 
-def _take_earlier(sheet: "MarkSheet", path: Path, handed_in: "HandedIn") -> None:
+def _take_earlier(sheet: "MarkSheet", path: Path, handed_in: "Grader") -> None:
     from cbtui.grading.mark_sheet import BadSheetError
 
     try:
@@ -120,8 +120,8 @@ def _take_earlier(sheet: "MarkSheet", path: Path, handed_in: "HandedIn") -> None
         refuse(f"--resume cannot go on with {path}: {error}")
 
 
-def _hidden(papers: "list[Paper]") -> "list[Path]":
-    """What no submission may see, wherever it lies."""
+def _hidden(papers: "list[HandIn]") -> "list[Path]":
+    """Files and folders that no submission may see."""
     from lessons.catalogue import ROOT
     from lessons.personal import config_folder, state_folder
 
@@ -129,8 +129,8 @@ def _hidden(papers: "list[Paper]") -> "list[Path]":
     return [ROOT, *sorted(folders), state_folder(), config_folder()]
 
 
-def _check_table(path: Path, papers: "list[Paper]") -> None:
-    """Refuse a table that can be written nowhere, before every file is run."""
+def _check_table(path: Path, papers: "list[HandIn]") -> None:
+    """Refuse a table that cannot be written before any file is run."""
     for paper in papers:
         if paper.file is not None and same_file(path, paper.file):
             refuse(f"--csv would overwrite {paper.file}; give it a file of its own")
@@ -146,15 +146,15 @@ def _check_table(path: Path, papers: "list[Paper]") -> None:
         refuse(f"{path} cannot be written: you may not write there")
 
 
-def _papers(options: argparse.Namespace) -> "list[Paper]":
-    from cbtui.grading.grading import papers_in
+def _papers(options: argparse.Namespace) -> "list[HandIn]":
+    from cbtui.grading.grading import hand_ins_in
     from lessons.catalogue import lessons
 
     only = None if options.lesson is None else exercise_of(options.lesson)
     folder = folder_of(options.folder)
     exercises = [lesson for lesson in lessons() if lesson.exercise is not None]
     try:
-        papers = papers_in(folder, exercises, only)
+        papers = hand_ins_in(folder, exercises, only)
     except OSError as error:
         refuse(f"{folder} cannot be read: {error.strerror}")
     if not papers:

@@ -1,4 +1,4 @@
-"""``cbtui lint-lesson``: proves lessons, or tells what is wrong with them."""
+"""``cbtui lint-lesson``: verifies lessons and prints their faults."""
 
 import argparse
 from pathlib import Path
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Give the command its arguments."""
+    """Add the command's arguments."""
     parser.add_argument(
         "folder", metavar="DIR", help="a lesson's folder, or one in which there are lessons' folders"
     )
@@ -21,7 +21,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def lint_lesson(options: argparse.Namespace) -> int:
-    """Prove lessons; returns the exit code: 0 all is as they say, 1 something is not."""
+    """Verify lessons; returns the exit code: 0 if all that they claim is so, else 1."""
     from cbtui.learning.lesson_lint import faults_of
 
     count = 0
@@ -37,7 +37,7 @@ def lint_lesson(options: argparse.Namespace) -> int:
 
 
 def _lessons_in(folder: Path) -> "Iterator[Path]":
-    """The folder itself, or those in it that have a lesson's description."""
+    """The folder itself, or the folders in it that hold a lesson's description."""
     from lessons.lesson import DESCRIPTION_FILE
 
     try:

@@ -1,4 +1,4 @@
-"""``cbtui new-lesson``: a small lesson that is right as it is, to make another one of."""
+"""``cbtui new-lesson``: creates a small, valid lesson as a starting point."""
 
 import argparse
 from pathlib import Path
@@ -7,12 +7,12 @@ from cbtui.text.output import complain, say
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Give the command its arguments."""
+    """Add the command's arguments."""
     parser.add_argument("folder", metavar="DIR", help="a new folder; its name is the lesson's id")
 
 
 def new_lesson(options: argparse.Namespace) -> int:
-    """Make a lesson; returns the exit code: 0 it is there, 1 it could not be made."""
+    """Create a lesson; returns the exit code: 0 on success, 1 if it could not be created."""
     from cbtui.learning.lesson_scaffold import CannotScaffoldError, make_lesson
 
     folder = Path(options.folder)

@@ -8,13 +8,13 @@ from cbtui.text.output import complain, say
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Give the command its arguments."""
+    """Add the command's arguments."""
     parser.add_argument("lesson", metavar="LESSON", help="a lesson's id, see cbtui list")
     more_lessons.add_option(parser)
 
 
 def reset(options: argparse.Namespace) -> int:
-    """Forget the progress in a lesson; returns the exit code: 0 it is forgotten, 1 that could not be kept.
+    """Forget the progress in a lesson; returns the exit code: 0 on success, 1 if that could not be saved.
 
     The learner's files stay as they are.
     """

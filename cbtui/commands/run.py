@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from cbtui.commands.options import changes, inputs, values
 from cbtui.commands.options.seeds import add_seed, check_seed
-from cbtui.commands.options.targets import Program, is_file_name, program_of, refuse, same_file
+from cbtui.commands.options.targets import RunTargets, is_file_name, refuse, same_file, targets_of
 from cbtui.text.output import complain
 
 if TYPE_CHECKING:
@@ -17,7 +17,7 @@ DEFAULT_SECONDS = 60.0
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Give the command its arguments."""
+    """Add the command's arguments."""
     parser.add_argument(
         "targets",
         metavar="LESSON|FILE.py",
@@ -77,7 +77,7 @@ def run(options: argparse.Namespace) -> int:
         refuse("run needs a LESSON or a FILE.py; cbtui list lists the lessons")
     options.seconds = options.seconds or DEFAULT_SECONDS
     _check_run(options, is_file=is_file_name(options.targets[0]))
-    program = program_of(options.targets)
+    program = targets_of(options.targets)
     _check_outputs(options, program.files)
     lesson = program.lesson
     check_seed(options.seed, options.clock or (None if lesson is None else lesson.setup.clock))
@@ -101,11 +101,11 @@ def _repeat(options: argparse.Namespace) -> int:
         refuse("--force lets --record replace a file; there is nothing to record to")
     _check_outputs(options, [Path(name) for name in (options.inputs, *options.targets)])
     from cbtui.runs.headless.headless import run_headless
-    from cbtui.runs.recorded.repeat import CannotRepeatError, repeated
+    from cbtui.runs.recorded.repeat import CannotRepeatError, repeated_setup
 
-    request = _request(options, program_of(options.targets))
+    request = _request(options, targets_of(options.targets))
     try:
-        setup = repeated(Path(options.inputs), request, tell=complain)
+        setup = repeated_setup(Path(options.inputs), request, tell=complain)
     except CannotRepeatError as error:
         refuse(str(error))
     return run_headless(
@@ -116,8 +116,8 @@ def _repeat(options: argparse.Namespace) -> int:
     )
 
 
-def _request(options: argparse.Namespace, program: Program) -> "RunRequest":
-    """What the options ask for."""
+def _request(options: argparse.Namespace, program: RunTargets) -> "RunRequest":
+    """The run that the options ask for."""
     from cbtui.runs.setup.lesson_setup import RunRequest
     from sim.engine.setup import Keyboard
 
@@ -140,7 +140,7 @@ def _request(options: argparse.Namespace, program: Program) -> "RunRequest":
 
 
 def _check_outputs(options: argparse.Namespace, taken: list[Path]) -> None:
-    """Refuse to write over what is read, or twice into one file."""
+    """Refuse to overwrite an input, or to write two outputs into one file."""
     outputs = {"--events": options.events, "--record": options.record}
     for option, path in [(option, Path(name)) for option, name in outputs.items() if name is not None]:
         for each in taken:
@@ -150,7 +150,7 @@ def _check_outputs(options: argparse.Namespace, taken: list[Path]) -> None:
 
 
 def _check_run(options: argparse.Namespace, *, is_file: bool) -> None:
-    """Refuse what does not fit together."""
+    """Refuse options that contradict each other."""
     inputs.check(options, options.seconds)
     if options.force and options.record is None:
         refuse("--force lets --record replace a file; there is nothing to record to")

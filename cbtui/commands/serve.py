@@ -10,9 +10,9 @@ from urllib.parse import urlsplit
 
 from cbtui.commands import console
 from cbtui.commands.options import appearance
-from cbtui.commands.options.parsing import Parser
+from cbtui.commands.options.command_parser import CommandParser
 from cbtui.commands.options.targets import file_of, is_file_name, lesson_of, refuse
-from cbtui.terminal.interrupts import whole
+from cbtui.terminal.interrupts import deferred_interrupt
 from cbtui.text.installing import install_command
 from cbtui.text.output import CannotSayError, complain, is_text, say
 
@@ -23,7 +23,7 @@ _SHORTEST_TOKEN = 12
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Give the command its arguments."""
+    """Add the command's arguments."""
     parser.add_argument(
         "--host", type=_host, default="127.0.0.1", help="address to be reached at (%(default)s)"
     )
@@ -59,7 +59,7 @@ def serve(options: argparse.Namespace) -> int:
         refuse(f"the browser needs textual-serve; install it with: {install_command('cbtui[serve]')}")
     appearance.appearance(options)
     command = [sys.executable, "-P", "-m", "cbtui", *appearance.given(options), *_opened(options.arguments)]
-    import asyncio  # no other command waits for it
+    import asyncio  # imported late: no other command needs it
 
     from cbtui.web.guard import is_loopback
     from cbtui.web.server import ConsoleServer
@@ -69,14 +69,14 @@ def serve(options: argparse.Namespace) -> int:
             f"whoever has the token and reaches {options.host} can run programs on this machine as you; "
             "give it only to people whom you trust, and not over a network whose others could read along"
         )
-    os.environ.pop(_VARIABLE, None)  # visitors' programs need not know it
+    os.environ.pop(_VARIABLE, None)  # programs of visitors must not see it
     token = options.token or secrets.token_urlsafe()
     server = ConsoleServer(command, options.host, options.port, options.visitors, options.public_url, token)
     try:
-        with whole() as unheard:
-            asyncio.run(server.serve_until_told(_tell, unheard))
+        with deferred_interrupt() as interruption:
+            asyncio.run(server.serve_until_signal(_tell, interruption))
     except (BrokenPipeError, CannotSayError):
-        raise  # of what is said, not of the address
+        raise  # about standard output, not about the address
     except (OSError, UnicodeError) as error:
         refuse(_why_not(error, options.host, options.port))
     return 0
@@ -87,11 +87,11 @@ def _tell(address: str) -> None:
 
 
 def _opened(words: list[str]) -> list[str]:
-    """The rest of the visitors' command line; what cannot be opened ends the program with one line and 2."""
+    """The rest of the visitors' command line; exits with code 2 and one line if it cannot be opened."""
     if not words:
         return []
     split = words.index("--") if "--" in words else len(words)
-    parser = Parser(prog="cbtui open", add_help=False)
+    parser = CommandParser(prog="cbtui open", add_help=False)
     console.add_open_options(parser)
     target = parser.parse_args(words[:split]).target
     if is_file_name(target):
@@ -119,7 +119,7 @@ def _port(text: str) -> int:
 
 def _token(text: str) -> str:
     if len(text) < _SHORTEST_TOKEN or not text.isprintable():
-        # It is not repeated: what is complained of may be read by others.
+        # The token is not repeated: others may read the message.
         raise argparse.ArgumentTypeError(
             f"a token has {_SHORTEST_TOKEN} or more printable characters; give such a one with --token or "
             f"in {_VARIABLE}, or none at all for a random one"
@@ -137,7 +137,7 @@ def _url(text: str) -> str:
     try:
         parts = urlsplit(text)
         well = parts.scheme in {"http", "https"} and parts.hostname and parts.port != 0
-    except ValueError:  # of a port, or of an address in brackets
+    except ValueError:  # a bad port, or a bad address in brackets
         well = False
     if not well:
         raise argparse.ArgumentTypeError(f"{text!r} is not an address; give one such as https://example.org")

@@ -1,4 +1,4 @@
-"""``cbtui start``: puts the file that an exercise begins with where the learner works."""
+"""``cbtui start``: copies the starter file of an exercise into the learner's folder."""
 
 import argparse
 from pathlib import Path
@@ -10,16 +10,16 @@ from cbtui.text.output import complain, say
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Give the command its arguments."""
+    """Add the command's arguments."""
     parser.add_argument("lesson", metavar="LESSON", help="a lesson with an exercise")
     parser.add_argument("folder", metavar="DIR", nargs="?", default=".", help="where to put it (here)")
     more_lessons.add_option(parser)
 
 
 def start(options: argparse.Namespace) -> int:
-    """Put the starter of an exercise into a folder; returns the exit code: 0 it is there, 1 it is not."""
+    """Put the starter of an exercise into a folder; returns the exit code: 0 if it is there, else 1."""
     lesson = exercise_of(options.lesson)
-    from cbtui.learning.exercise_files import CannotPlaceError, Placed, place_starter
+    from cbtui.learning.exercise_files import CannotPlaceError, StarterPlacement, place_starter
 
     folder = Path(options.folder)
     path = folder / lesson.file_name
@@ -28,14 +28,14 @@ def start(options: argparse.Namespace) -> int:
     except CannotPlaceError as error:
         complain(str(error))
         return 1
-    if placed is Placed.CHANGED:
+    if placed is StarterPlacement.CHANGED:
         complain(
             f"{path} is there already, and is not as it was put there: nothing was written; "
             "give another folder, or move it away to begin again"
         )
         return 1
     assert lesson.exercise is not None, "there is a starter"
-    known = "is there already, unchanged" if placed is Placed.THERE_ALREADY else "is yours now"
+    known = "is there already, unchanged" if placed is StarterPlacement.THERE_ALREADY else "is yours now"
     say(f"{path} {known}.\n{fill(lesson.exercise.asks.strip(), 79)}\n")
     if folder == Path():
         say(f"In the console: cbtui open {lesson.id} --exercise\n")

@@ -8,28 +8,28 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from cbtui.doctor.engines import engine
+from cbtui.doctor.examination import Examination
 from cbtui.doctor.extras import browser, editor, ros
+from cbtui.doctor.files import configuration, folders, lessons_found, progress
 from cbtui.doctor.packages import bullet, dependencies, python
-from cbtui.doctor.places import configuration, folders, lessons_found, progress
-from cbtui.doctor.probes import Probe
-from cbtui.doctor.screen import Screen, screen
-from cbtui.doctor.verdict import Verdict
+from cbtui.doctor.probes import ProbeProcess
+from cbtui.doctor.terminal import TerminalFacts, screen
 
 
-def examinations(charset: str, config: str | None = None) -> Iterator[Verdict]:
+def examinations(charset: str, config: str | None = None) -> Iterator[Examination]:
     """Yield what is found, thing by thing.
 
     ``charset`` is what the screen would be drawn with, ``config`` a configuration instead of one's own.
     Takes about two seconds: an engine and other processes are started, and ended. Nothing is changed.
     """
-    importing, world = Probe.of_imports(), Probe.of_world()
+    importing, world = ProbeProcess.of_imports(), ProbeProcess.of_world()
     try:
         yield python(sys.version_info[:3])
         yield from dependencies(importing)
         yield bullet(world, sys.version_info[:2], sysconfig.get_platform())
         yield engine()
         yield from lessons_found()
-        yield from screen(Screen(os.environ, charset, _size()))
+        yield from screen(TerminalFacts(os.environ, charset, _size()))
         yield from folders(Path.cwd)
         yield from configuration(None if config is None else Path(config))
         yield progress()

@@ -2,9 +2,9 @@
 
 import time
 
-from cbtui.doctor.verdict import Verdict, fault, note, well
+from cbtui.doctor.examination import Examination, fault, note, well
 from cbtui.engines.follow import EngineLostError, FollowedRun, RunTimeoutError
-from cbtui.engines.session import Session
+from cbtui.engines.session import ProcessSession
 from cbtui.runs.setup.lesson_setup import RunRequest
 from lessons.catalogue import find
 from sim.engine.setup import RunSetup
@@ -13,14 +13,14 @@ from sim.trace.events import RunEnded
 _LESSON = "single-thread"
 _RUN = 0.1
 """Seconds that the run lasts in its own time."""
-_PATIENCE = 20.0
+_TIMEOUT = 20.0
 """Seconds after which the engine is given up."""
 _SLOW = 3.0
 """Seconds after which a learner wonders whether something is wrong."""
 _REMEDY = "run cbtui run single-thread --for 1 to see more, and install cbtui anew if it says nothing"
 
 
-def engine() -> Verdict:
+def engine() -> Examination:
     """Run a lesson for a tenth of a second of its own time, without the robot, in an engine of its own."""
     try:
         setup = RunRequest(lesson=find(_LESSON), robot=False, seconds=_RUN).setup()
@@ -41,17 +41,17 @@ def engine() -> Verdict:
 
 def _trouble(setup: RunSetup) -> str | None:
     reason: str | None = None
-    with FollowedRun(setup, Session) as run:
+    with FollowedRun(setup, ProcessSession) as run:
         try:
             run.start()
-            run.limit(_PATIENCE)
+            run.limit(_TIMEOUT)
             for batch in run:
-                run.limit(_PATIENCE)
+                run.limit(_TIMEOUT)
                 for event in batch:
                     if isinstance(event, RunEnded) and event.failed:
                         reason = event.reason
         except RunTimeoutError:
-            return f"nothing came of it within {_PATIENCE:g} s"
+            return f"nothing came of it within {_TIMEOUT:g} s"
         except EngineLostError as error:
             return str(error)
     return reason

@@ -7,14 +7,14 @@ from collections.abc import Iterator, Mapping
 from importlib.util import find_spec
 from pathlib import Path
 
-from cbtui.doctor.verdict import Verdict, note, well
+from cbtui.doctor.examination import Examination, note, well
 from cbtui.text.installing import install_command
 
 _PORT = 8000
 """The port that ``cbtui serve`` takes when none is named."""
 
 
-def editor(environment: Mapping[str, str]) -> Verdict:
+def editor(environment: Mapping[str, str]) -> Examination:
     """Look whether the person's editor is there."""
     named = environment.get("VISUAL", "").strip() or environment.get("EDITOR", "").strip()
     if not named:
@@ -30,7 +30,7 @@ def editor(environment: Mapping[str, str]) -> Verdict:
     return well("editor", named)
 
 
-def browser(port: int = _PORT) -> Verdict:
+def browser(port: int = _PORT) -> Examination:
     """Look whether the console can be shown in a browser."""
     if find_spec("textual_serve") is None:
         return well("browser", f"left out; {install_command('cbtui[serve]')} brings cbtui serve")
@@ -43,7 +43,7 @@ def browser(port: int = _PORT) -> Verdict:
     return well("browser", f"cbtui serve can have port {port}")
 
 
-def ros(environment: Mapping[str, str]) -> Iterator[Verdict]:
+def ros(environment: Mapping[str, str]) -> Iterator[Examination]:
     """Look for a real ROS 2 beside cbtui's model of it."""
     distribution = environment.get("ROS_DISTRO")
     try:

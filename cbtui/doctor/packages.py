@@ -4,9 +4,9 @@ import sys
 from collections.abc import Iterator, Mapping
 from importlib.metadata import PackageNotFoundError, version
 
-from cbtui.doctor.probes import Probe, module_of
+from cbtui.doctor.examination import Examination, fault, note, well
+from cbtui.doctor.probes import ProbeProcess, module_of
 from cbtui.doctor.requirements import Requirement, in_range, requirements
-from cbtui.doctor.verdict import Verdict, fault, note, well
 from cbtui.text.installing import install_command
 
 _OLDEST = (3, 11)
@@ -15,7 +15,7 @@ _MACHINE_WITH_WHEEL = "linux-x86_64"
 """What PyBullet has ready-made wheels for."""
 
 
-def python(running: tuple[int, ...]) -> Verdict:
+def python(running: tuple[int, ...]) -> Examination:
     """Look at the version of Python."""
     said = ".".join(map(str, running))
     if running < _OLDEST:
@@ -23,7 +23,7 @@ def python(running: tuple[int, ...]) -> Verdict:
     return well("Python", f"{said} ({sys.executable})")
 
 
-def dependencies(importing: Probe) -> Iterator[Verdict]:
+def dependencies(importing: ProbeProcess) -> Iterator[Examination]:
     """Look whether each package is there, in a version that fits, and can be imported."""
     needed = [each for each in requirements() if each.name != "pybullet"]
     if not needed:
@@ -38,7 +38,7 @@ def dependencies(importing: Probe) -> Iterator[Verdict]:
         yield well("packages", f"{len(needed)}, each in a version that fits")
 
 
-def _package(needed: Requirement, broken: Mapping[str, str]) -> Verdict | None:
+def _package(needed: Requirement, broken: Mapping[str, str]) -> Examination | None:
     name, versions = needed
     remedy = f"install it with {install_command(f'{name}{versions}')}"
     try:
@@ -55,7 +55,7 @@ def _package(needed: Requirement, broken: Mapping[str, str]) -> Verdict | None:
     return None
 
 
-def _broken(importing: Probe) -> dict[str, str]:
+def _broken(importing: ProbeProcess) -> dict[str, str]:
     """The modules that could not be imported, and why."""
     outcome = importing.outcome()
     broken, begun = {}, ""
@@ -70,7 +70,7 @@ def _broken(importing: Probe) -> dict[str, str]:
     return broken
 
 
-def bullet(world: Probe, running: tuple[int, ...], machine: str) -> Verdict:
+def bullet(world: ProbeProcess, running: tuple[int, ...], machine: str) -> Examination:
     """Look whether PyBullet, which moves the robot, builds a world.
 
     ``machine`` is what ``sysconfig.get_platform`` calls this one.

@@ -6,7 +6,7 @@ import subprocess
 import sys
 from typing import NamedTuple
 
-_PATIENCE = 20.0
+_TIMEOUT = 20.0
 """Seconds after which a process that tries something out is given up."""
 
 _IMPORTS = {"backports-zstd": "backports.zstd", "pyyaml": "yaml"}
@@ -18,7 +18,7 @@ def module_of(distribution: str) -> str:
     return _IMPORTS.get(name, name.replace("-", "_"))
 
 
-class Outcome(NamedTuple):
+class ProbeResult(NamedTuple):
     """What a process that tried something out said, and what it died of, "" if it ended by itself."""
 
     said: str
@@ -27,7 +27,7 @@ class Outcome(NamedTuple):
     death: str
 
 
-class Probe:
+class ProbeProcess:
     """A process that was started to try something out. End it when it is not needed any more."""
 
     def __init__(self, module: str, *arguments: str) -> None:
@@ -44,7 +44,7 @@ class Probe:
         )
 
     @classmethod
-    def of_imports(cls) -> "Probe":
+    def of_imports(cls) -> "ProbeProcess":
         """Import what cbtui depends on, one after another."""
         from cbtui.doctor.requirements import requirements
 
@@ -52,20 +52,20 @@ class Probe:
         return cls("cbtui.doctor.importing", *names)
 
     @classmethod
-    def of_world(cls) -> "Probe":
+    def of_world(cls) -> "ProbeProcess":
         """Build the robot's world."""
         return cls("sim.robot.probe")
 
-    def outcome(self) -> Outcome:
+    def outcome(self) -> ProbeResult:
         """Wait for the end, but not for ever."""
         try:
-            said, complained = self._process.communicate(timeout=_PATIENCE)
+            said, complained = self._process.communicate(timeout=_TIMEOUT)
         except subprocess.TimeoutExpired:
             self._process.kill()
             said, complained = self._process.communicate()
-            return Outcome(said, complained, -1, f"it did not come back within {_PATIENCE:g} s")
+            return ProbeResult(said, complained, -1, f"it did not come back within {_TIMEOUT:g} s")
         code = self._process.returncode
-        return Outcome(
+        return ProbeResult(
             said, complained, code, f"it crashed by {signal.Signals(-code).name}" if code < 0 else ""
         )
 

@@ -20,7 +20,7 @@ class EjectError(Exception):
 
 
 @dataclass(frozen=True)
-class Unit:
+class CourseUnit:
     """A unit of the course, and its lessons in teaching order; ``number`` is empty for one that has none."""
 
     number: str
@@ -30,18 +30,18 @@ class Unit:
     lessons: tuple[Lesson, ...]
 
 
-def units_of(lessons: Iterable[Lesson]) -> list[Unit]:
+def units_of(lessons: Iterable[Lesson]) -> list[CourseUnit]:
     """Return the units that the lessons belong to, in the lessons' order."""
-    units: dict[str, Unit] = {}
+    units: dict[str, CourseUnit] = {}
     for lesson in lessons:
         number, title = _number_and_title(lesson.unit)
         package = _package_name(f"unit{number}" if number else title)
-        before = units.get(package, Unit(number, title, package, ()))
-        units[package] = Unit(before.number, before.title, package, (*before.lessons, lesson))
+        before = units.get(package, CourseUnit(number, title, package, ()))
+        units[package] = CourseUnit(before.number, before.title, package, (*before.lessons, lesson))
     return list(units.values())
 
 
-def chosen(units: Sequence[Unit], names: Sequence[str]) -> list[Unit]:
+def chosen(units: Sequence[CourseUnit], names: Sequence[str]) -> list[CourseUnit]:
     """Return the units of these numbers or package names; all of them where none is named.
 
     Raises:
@@ -54,7 +54,7 @@ def chosen(units: Sequence[Unit], names: Sequence[str]) -> list[Unit]:
     return [unit for unit in units if not names or {unit.number, unit.package} & {*names}]
 
 
-def package_of(unit: Unit) -> AmentPackage:
+def package_of(unit: CourseUnit) -> AmentPackage:
     """Return the unit as a package.
 
     If a package of that name lies beside the lessons, the names that it gives their nodes stay valid, and its
@@ -114,7 +114,7 @@ def _package_name(text: str) -> str:
     return name if name[0].isalpha() else f"unit_{name}"
 
 
-def _packages_beside(unit: Unit) -> list[Package]:
+def _packages_beside(unit: CourseUnit) -> list[Package]:
     folders = {lesson.folder.parent / unit.package: None for lesson in unit.lessons}
     return [Package(unit.package, folder) for folder in folders if (folder / "package.xml").is_file()]
 

@@ -1,7 +1,7 @@
-"""Takes ``ros2`` lines from other terminals into a run, over a local socket named by the process's number.
+"""Receives ``ros2`` lines from other terminals over a local socket named by this process's number.
 
-The socket lies in the user's own runtime folder, which nobody else may enter. One connection carries one
-line: the client sends its words and perhaps an interruption, and gets what the line writes and how it ends.
+The socket lies in the user's runtime folder, which no other user may enter. One connection carries one line:
+the client sends its words and perhaps an interrupt, and receives the line's output and exit status.
 """
 
 import os
@@ -22,49 +22,49 @@ from sim.engine.commands import Command, InterruptLine, RunLine
 from sim.trace.events import AnyEvent, LineEnded, LineId, LineSaid
 
 _FIRST_NUMBER = 1_000_000
-"""Lines from other terminals are numbered from here on: those of the run itself come before."""
+"""The first number for lines from other terminals; those of the run itself are smaller."""
 
 
-class Ask(msgspec.Struct, frozen=True, tag="ask"):
-    """Carry out a line."""
+class LineRequest(msgspec.Struct, frozen=True, tag="ask"):
+    """Runs a line."""
 
     text: str
 
 
-class Interrupt(msgspec.Struct, frozen=True, tag="interrupt"):
-    """End the line as Ctrl-C would."""
+class InterruptRequest(msgspec.Struct, frozen=True, tag="interrupt"):
+    """Ends the line as Ctrl-C would."""
 
 
-class Said(msgspec.Struct, frozen=True, tag="said"):
-    """What the line wrote."""
+class LineOutput(msgspec.Struct, frozen=True, tag="said"):
+    """Output of the line."""
 
     text: str
     error: bool
 
 
-class Done(msgspec.Struct, frozen=True, tag="done"):
+class LineResult(msgspec.Struct, frozen=True, tag="done"):
     """The line's exit status; None: the run ended before it."""
 
     status: int | None
 
 
-Question: TypeAlias = Ask | Interrupt
-Answer: TypeAlias = Said | Done
+ClientMessage: TypeAlias = LineRequest | InterruptRequest
+ServerMessage: TypeAlias = LineOutput | LineResult
 
 _encode = msgspec.msgpack.Encoder().encode
-_decode_question: Callable[[bytes], Question] = msgspec.msgpack.Decoder(Question).decode
-_decode_answer: Callable[[bytes], Answer] = msgspec.msgpack.Decoder(Answer).decode
+_decode_question: Callable[[bytes], ClientMessage] = msgspec.msgpack.Decoder(ClientMessage).decode
+_decode_answer: Callable[[bytes], ServerMessage] = msgspec.msgpack.Decoder(ServerMessage).decode
 
 
 class UnusableFolderError(OSError):
-    """There is no folder in which sockets are safe; the text says which, and why."""
+    """The runtime folder cannot be used; the text says which folder, and why."""
 
 
 def runtime_folder() -> Path:
-    """The folder of the sockets; made, for its owner only, if it is not there.
+    """The folder of the sockets, created for its owner only if it is missing.
 
     Raises:
-        UnusableFolderError: it cannot be made, or somebody else could have put something into it.
+        UnusableFolderError: it cannot be created, or other users have access to it.
     """
     above = os.environ.get("XDG_RUNTIME_DIR") or tempfile.gettempdir()
     folder = Path(above) / f"cbtui-{os.getuid()}"
@@ -83,18 +83,18 @@ def runtime_folder() -> Path:
 
 
 class ControlServer:
-    """Takes lines for one run; thread-safe. ``send`` commands its engine, ``take`` is fed its events."""
+    """Receives lines for one run; thread-safe. ``send`` commands its engine, ``take`` gets its events."""
 
     def __init__(self, send: Callable[[Command], None]) -> None:
         self._send = send
         self._lock = threading.Lock()
         self._next = _FIRST_NUMBER
-        self._answers: dict[LineId, SimpleQueue[Answer]] = {}
+        self._answers: dict[LineId, SimpleQueue[ServerMessage]] = {}
         self._socket: socket.socket | None = None
         self._path = Path()
 
     def start(self) -> str | None:
-        """Begin to listen; a sentence if there can be no socket, so that no line from elsewhere comes."""
+        """Start listening; returns a sentence if the socket cannot be opened."""
         try:
             self._path = runtime_folder() / f"{os.getpid()}.sock"
             self._path.unlink(missing_ok=True)
@@ -117,12 +117,12 @@ class ControlServer:
         for event in events:
             match event:
                 case LineSaid(line=line, text=text, error=error):
-                    self._answer(line, Said(text, error))
+                    self._answer(line, LineOutput(text, error))
                 case LineEnded(line=line, status=status):
-                    self._answer(line, Done(status))
+                    self._answer(line, LineResult(status))
 
     def stop(self) -> None:
-        """Listen no more and tell everybody that the run is over."""
+        """Stop listening and tell all clients that the run is over."""
         if self._socket is not None:
             listening, self._socket = self._socket, None
             with suppress(OSError):
@@ -130,9 +130,9 @@ class ControlServer:
             listening.close()
             self._path.unlink(missing_ok=True)
         for line in tuple(self._answers):
-            self._answer(line, Done(None))
+            self._answer(line, LineResult(None))
 
-    def _answer(self, line: LineId, answer: Answer) -> None:
+    def _answer(self, line: LineId, answer: ServerMessage) -> None:
         queue = self._answers.get(line)
         if queue is not None:
             queue.put(answer)
@@ -149,7 +149,7 @@ class ControlServer:
     def _serve(self, connection: Connection) -> None:
         with connection, suppress(OSError, EOFError, msgspec.DecodeError):
             question = _decode_question(connection.recv_bytes())
-            if isinstance(question, Ask):
+            if isinstance(question, LineRequest):
                 self._carry_out(connection, question.text)
 
     def _carry_out(self, connection: Connection, text: str) -> None:
@@ -160,29 +160,29 @@ class ControlServer:
         self._send(RunLine(line, text))
         threading.Thread(target=self._listen, args=(connection, line), name="control", daemon=True).start()
         try:
-            while not isinstance(answer := answers.get(), Done):
+            while not isinstance(answer := answers.get(), LineResult):
                 connection.send_bytes(_encode(answer))
             connection.send_bytes(_encode(answer))
         finally:
             del self._answers[line]
 
     def _listen(self, connection: Connection, line: LineId) -> None:
-        """Interrupt the line when its client says so or goes away."""
-        # A connection that is closed while it is read from has no descriptor any more: a TypeError.
+        """Interrupt the line when its client asks for it or disconnects."""
+        # Closing a connection while another thread reads from it raises a TypeError there.
         with suppress(OSError, EOFError, TypeError, msgspec.DecodeError):
             _decode_question(connection.recv_bytes())
         self._send(InterruptLine(line))
 
 
 class NoEngine(LookupError):  # noqa: N818 - the sentence it carries is what a reader sees
-    """No run listens; the text says which was looked for, and where."""
+    """No run listens on a socket; the text says which one was looked for, and where."""
 
 
 def connect(process: int | None) -> Connection:
-    """Connect to the run of that process number, for None to the one started last.
+    """Connect to the run of that process number, or to the one started last.
 
     Raises:
-        NoEngine: there is none.
+        NoEngine: no such run listens.
     """
     try:
         folder = runtime_folder()
@@ -201,7 +201,7 @@ def connect(process: int | None) -> Connection:
 
 
 def _sockets(folder: Path) -> list[Path]:
-    """The sockets there are, youngest first."""
+    """The existing sockets, newest first."""
     made = dict[Path, float]()
     for path in folder.glob("*.sock"):
         with suppress(FileNotFoundError):  # its run has just ended
@@ -210,20 +210,20 @@ def _sockets(folder: Path) -> list[Path]:
 
 
 class RemoteLine:
-    """A line given to a run elsewhere."""
+    """A line that runs in another process."""
 
     def __init__(self, connection: Connection, text: str) -> None:
         self._connection = connection
-        connection.send_bytes(_encode(Ask(text)))
+        connection.send_bytes(_encode(LineRequest(text)))
 
-    def next_answer(self) -> Answer:
-        """Wait for what it writes next, or for how it ends: ``Done(None)`` if the run is over before it."""
+    def next_answer(self) -> ServerMessage:
+        """Wait for its next output or its result; ``LineResult(None)`` if the run ends first."""
         try:
             return _decode_answer(self._connection.recv_bytes())
         except (OSError, EOFError):
-            return Done(None)
+            return LineResult(None)
 
     def interrupt(self) -> None:
-        """End it as Ctrl-C would."""
+        """End the line as Ctrl-C would."""
         with suppress(OSError):
-            self._connection.send_bytes(_encode(Interrupt()))
+            self._connection.send_bytes(_encode(InterruptRequest()))

@@ -1,4 +1,4 @@
-"""Follows one run to its end, on the caller's thread, whatever ends it."""
+"""Follows one run to its end on the caller's thread."""
 
 import math
 from collections.abc import Iterator
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     _News: TypeAlias = list[AnyEvent] | str | None
 
 _BATCHES = 64
-"""Batches that may wait to be taken; a full queue holds the engine up, and nothing is lost."""
+"""Size of the queue in batches; a full queue blocks the engine, and nothing is lost."""
 _POLL = 0.1
-"""Real seconds between two looks whether the run is still wanted."""
+"""Real seconds between two checks whether the run was given up."""
 
 
 class EngineLostError(Exception):
@@ -27,17 +27,17 @@ class EngineLostError(Exception):
 
 
 class RunTimeoutError(Exception):
-    """The run had not ended when its time was up."""
+    """The run did not end within its limit."""
 
 
 class GivenUpError(Exception):
-    """Nobody wants the run any more."""
+    """The run was given up by its user."""
 
 
 class FollowedRun:
-    """A run and its engine: iterate over it for the batches of events; leaving its context ends the engine.
+    """A run and its engine: iterating yields batches of events; leaving the context ends the engine.
 
-    It is used on one thread; ``given_up`` may be set on any. It waits for ever unless ``limit`` is called.
+    Used on one thread; ``given_up`` may be set from any. Without a ``limit`` it waits for ever.
     """
 
     def __init__(self, setup: "RunSetup", open_session: "OpenSession", given_up: Event | None = None) -> None:
@@ -67,7 +67,7 @@ class FollowedRun:
         return self.session.start()
 
     def limit(self, seconds: float) -> None:
-        """Give the run so many real seconds from now on, in place of an earlier limit."""
+        """Set the timeout to so many real seconds from now, replacing an earlier one."""
         self._deadline = monotonic() + seconds
 
     def __iter__(self) -> Iterator[list["AnyEvent"]]:
@@ -75,11 +75,11 @@ class FollowedRun:
         return iter(self.next_batch, None)
 
     def next_batch(self) -> list["AnyEvent"] | None:
-        """Wait for the next events; None when the run has ended as it should.
+        """Wait for the next events; None after the normal end of the run.
 
         Raises:
             EngineLostError: the engine ended before the run did.
-            RunTimeoutError: the time is up.
+            RunTimeoutError: the limit has passed.
             GivenUpError: ``given_up`` was set.
         """
         news = self._next()
@@ -99,7 +99,7 @@ class FollowedRun:
             raise GivenUpError
 
     def _put(self, news: "_News") -> None:
-        """Hand over to the follower; on the session's reader thread."""
+        """Put a batch into the queue; called on the session's reader thread."""
         while not self._left.is_set():
             with suppress(Full):
                 self._queue.put(news, timeout=_POLL)

@@ -1,4 +1,4 @@
-"""Starts processes as forks of a server that has imported all they need."""
+"""A multiprocessing context that forks processes from a server with modules already imported."""
 
 import multiprocessing
 from collections.abc import Sequence
@@ -10,11 +10,11 @@ from sim.clean_start import without_current_folder
 
 
 def forking_context(modules: Sequence[str]) -> BaseContext:
-    """Return what starts such processes; ``modules`` are imported once, before the first of them."""
+    """Return a multiprocessing context that forks from a server, which imports ``modules`` once."""
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload([*modules])
     with without_current_folder():
-        resource_tracker.ensure_running()  # it lets SIGINT through when it has started, and forks must not
+        resource_tracker.ensure_running()  # it unblocks SIGINT as it starts, and forks must keep it blocked
     with engine_environment():
         forkserver.ensure_running()
     return context

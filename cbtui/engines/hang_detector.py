@@ -1,4 +1,4 @@
-"""Detects an engine that has stopped sending its heartbeat, which comes several times a second."""
+"""Detects an engine that no longer sends its heartbeat, which is due several times a second."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -8,19 +8,19 @@ from sim.trace.events import AnyEvent, Notice, NoticeKind, Severity
 if TYPE_CHECKING:
     from sim.trace.model import Nanoseconds
 
-LOOK = 0.5
-"""Real seconds to wait for data before a look counts as empty."""
+POLL_INTERVAL = 0.5
+"""Real seconds to wait for data in one poll."""
 
-_PATIENCE = 10
-"""Looks without anything after which the person is told; a machine that slept makes one of them long."""
-_PATIENCE_AT_FIRST = 60
-"""Looks that an engine gets to import all that it needs."""
+_SILENT_POLLS = 10
+"""Empty polls before an engine counts as silent; not seconds, as a suspended machine makes one long."""
+_STARTING_POLLS = 60
+"""Empty polls that a starting engine gets for its imports."""
 
 
 def why_silent(stands: str, stands_later: str) -> str:
-    """Explain a hang from two samples of where the program stands in its code; "" is nowhere.
+    """Explain a hang by two samples of the program's current line; "" if there is none.
 
-    Python code that computes moves on, and lets the engine's own threads in between.
+    Python code that computes moves on between samples; C code that holds the GIL does not.
     """
     if not stands_later:
         return "the machine has no time for it"
@@ -30,23 +30,23 @@ def why_silent(stands: str, stands_later: str) -> str:
 
 
 class HangDetector:
-    """Adds notices on a silent engine to its batches. Used on the reader thread only."""
+    """Adds notices about a silent engine to its batches. Used on the reader thread only."""
 
     def __init__(self) -> None:
         self._t: Nanoseconds = 0
-        self._looks_left = _PATIENCE_AT_FIRST
+        self._polls_left = _STARTING_POLLS
 
-    def nothing_came(self, why: Callable[[], str]) -> list[AnyEvent]:
-        """Return the notice that is due after a look without data; ``why`` gives its reason."""
-        self._looks_left -= 1
-        if self._looks_left != 0:
+    def polled_nothing(self, why: Callable[[], str]) -> list[AnyEvent]:
+        """Count an empty poll; returns a notice, with its reason from ``why``, once the engine is silent."""
+        self._polls_left -= 1
+        if self._polls_left != 0:
             return []
         text = f"the engine does not answer: {why()}"
         return [Notice(self._t, Severity.WARN, text, kind=NoticeKind.ENGINE_SILENT)]
 
-    def came(self, events: list[AnyEvent]) -> list[AnyEvent]:
-        """Return the batch that came, after a notice if the engine had been silent. It may be empty."""
-        was_silent, self._looks_left = self._looks_left <= 0, _PATIENCE
+    def received(self, events: list[AnyEvent]) -> list[AnyEvent]:
+        """Return the batch that came, which may be empty, after a notice if the engine had been silent."""
+        was_silent, self._polls_left = self._polls_left <= 0, _SILENT_POLLS
         again: list[AnyEvent] = [Notice(self._t, Severity.INFO, "the engine answers again")]
         if events:
             self._t = events[-1].t

@@ -1,31 +1,31 @@
-"""A session that other terminals can give ``ros2`` lines to."""
+"""A session that accepts ``ros2`` lines from other terminals."""
 
 from cbtui.engines.control_socket import ControlServer
-from cbtui.engines.session import Deliver, Ended, Session
+from cbtui.engines.session import Deliver, Ended, ProcessSession
 from sim.engine.commands import Command
 from sim.engine.setup import RunSetup
 from sim.trace.events import AnyEvent
 
 
 class ListeningSession:
-    """A ``Session`` beside which a control socket is open as long as it runs."""
+    """A ``ProcessSession`` with a control socket that is open while it runs."""
 
     def __init__(self, setup: RunSetup, deliver: Deliver, ended: Ended) -> None:
         self._deliver = deliver
-        self._session = Session(setup, self._take, ended)
+        self._session = ProcessSession(setup, self._take, ended)
         self._control = ControlServer(self._session.send)
 
     def start(self) -> str | None:
-        """Start the engine, and listen; a sentence if it cannot be listened."""
+        """Start the engine and listen; returns a sentence if the socket cannot be opened."""
         self._session.start()
         return self._control.start()
 
     def send(self, command: Command) -> None:
-        """Tell the engine something; nothing happens if it has ended."""
+        """Send a command to the engine; ignored once it has ended."""
         self._session.send(command)
 
     def stop(self) -> None:
-        """Listen no more and end the engine. Safe to call twice."""
+        """Stop listening and end the engine. Idempotent."""
         self._control.stop()
         self._session.stop()
 

@@ -1,12 +1,12 @@
-"""How much memory an engine may use."""
+"""The memory limit of an engine's process tree."""
 
 import os
 
 MEMORY_LIMIT = "CBTUI_MEMORY_GB"
-"""The environment variable that says how much memory a node and what it starts may use."""
+"""The environment variable with the limit in GB."""
 GB = 1_000_000_000
 
-_USUAL_LIMIT = 4 * GB
+_DEFAULT_LIMIT = 4 * GB
 
 
 class BadMemoryLimitError(Exception):
@@ -14,14 +14,14 @@ class BadMemoryLimitError(Exception):
 
 
 def memory_limit() -> int:
-    """Bytes that an engine and what it starts may use: from the environment, else 4 GB or half of all.
+    """The limit in bytes: from the environment, else 4 GB or half of the machine's memory.
 
     Raises:
-        BadMemoryLimitError: the environment holds something else than a number of GB.
+        BadMemoryLimitError: the environment holds no positive number.
     """
     text = os.environ.get(MEMORY_LIMIT)
     if text is None:
-        return min(_USUAL_LIMIT, os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") // 2)
+        return min(_DEFAULT_LIMIT, os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") // 2)
     try:
         gigabytes = float(text)
     except ValueError:

@@ -1,7 +1,7 @@
-"""Ends an engine and its process tree when the console has been killed.
+"""Ends an engine's process tree when the console is killed.
 
-An engine whose console is gone ends by itself, unless it is stopped or code in C keeps it, and it cannot end
-what its program started. So a small process stands beside each one, which does nothing but wait for that.
+An engine without a console ends by itself, unless it is stopped or blocked in C code, and it cannot end the
+processes that its program started. So a small process beside each engine waits for the console's end.
 """
 
 import os
@@ -12,16 +12,16 @@ from typing import NoReturn
 from cbtui.engines.process_tree import MARK, ProcessTree
 
 _MOST_FILES = 1 << 16
-"""More than an engine has open as it begins."""
-ENDS_ITSELF = b"."
-"""What the console writes when it ends an engine in order."""
+"""More descriptors than a starting engine has open."""
+ENDED_NORMALLY = b"."
+"""What the console writes after a normal end of the engine."""
 
 
-def watch_over(engine: int, console: Connection) -> None:
+def start_orphan_guard(engine: int, console: Connection) -> None:
     """Start the process that waits until ``console``, a pipe that only the console writes to, is closed.
 
-    To be called first of all in an engine, before it has threads. It belongs to nobody, so that no program
-    can wait for it, and has nothing of the engine's open.
+    Called first of all in an engine, before it has threads. The process is forked twice, so that no program
+    can wait for it as its child, and closes all inherited descriptors.
     """
     if not hasattr(os, "fork"):
         return
@@ -39,14 +39,14 @@ def _wait(engine: int, console: int) -> NoReturn:
     try:
         os.setsid()
         signal.signal(signal.SIGTERM, signal.SIG_IGN)
-        _let_go_of_all_but(console)
-        if os.read(console, 1) != ENDS_ITSELF:
+        _close_all_but(console)
+        if os.read(console, 1) != ENDED_NORMALLY:
             ProcessTree(engine, os.environ.get(MARK, "")).end()
     finally:
         os._exit(0)
 
 
-def _let_go_of_all_but(kept: int) -> None:
+def _close_all_but(kept: int) -> None:
     nothing = os.open(os.devnull, os.O_RDWR)
     for number in range(3):
         os.dup2(nothing, number)

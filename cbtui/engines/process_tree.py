@@ -1,9 +1,9 @@
-"""The processes of one engine: what they take of the machine, and how they are ended.
+"""The process tree of one engine: its memory, and how it is ended.
 
-The engine is a subreaper: whatever a program starts stays below it in the process tree as long as it lives,
-daemons included, and is ended as it leaves. If the engine is killed, its processes are known by its session,
-by the mark in their environment, and by the last look at the tree. A process that was started after that
-look, in a session and an environment of its own, is not found.
+The engine is a subreaper: processes that its program starts, daemons included, stay below it while it lives,
+and are ended as it exits. If the engine is killed, its processes are found by its session, by the mark in
+their environment, and by the last snapshot of the tree. A process that was started after that snapshot, in a
+session and an environment of its own, is not found.
 """
 
 import ctypes
@@ -18,10 +18,10 @@ import psutil
 from psutil import Process
 
 MARK = "CBTUI_RUN"
-"""The environment variable that holds the mark."""
+"""The environment variable that marks an engine's processes."""
 
 _SWEEPS = 20
-"""How often processes are looked for that were started while others were being ended."""
+"""How often to look for processes that were started while others were being ended."""
 _PR_SET_CHILD_SUBREAPER = 36
 """Of Linux's ``prctl``: orphans below the caller become its children."""
 _ENDED = {psutil.STATUS_ZOMBIE, psutil.STATUS_DEAD}
@@ -29,7 +29,7 @@ _STOPPED = {psutil.STATUS_STOPPED, psutil.STATUS_TRACING_STOP}
 
 
 class ProcessTree:
-    """The engine ``pid`` and every process that came of it. Thread-safe."""
+    """The engine ``pid`` and all processes below it. Thread-safe."""
 
     def __init__(self, pid: int, mark: str) -> None:
         self.pid = pid
@@ -45,33 +45,33 @@ class ProcessTree:
         return _status(self.pid) in _STOPPED
 
     def engine(self) -> list[Process]:
-        """The engine's process alone, which is cheap to look up; nothing if it is gone."""
+        """The engine's process alone, which is cheap to look up; empty if it is gone."""
         return list(_processes([self.pid]))
 
     def processes(self) -> list[Process]:
         """The engine and all processes below it, without zombies."""
         found = [each for engine in self.engine() for each in (engine, *_below(engine))]
         found = [process for process in found if _status(process.pid) not in _ENDED]
-        if found and found[0].pid == self.pid:  # else its children have another parent by now
+        if found and found[0].pid == self.pid:  # otherwise its children have been reparented
             self._seen = found
         return found
 
-    def leave_nothing(self) -> None:
-        """Make the calling process the engine: it adopts orphans, and ends all below it as it leaves."""
+    def end_tree_on_exit(self) -> None:
+        """Make the calling process a subreaper that ends its process tree as it exits."""
         if sys.platform != "linux":
             return
         ctypes.CDLL(None).prctl(_PR_SET_CHILD_SUBREAPER, 1, 0, 0, 0)
-        leave, system = os._exit, cast("Any", os)
+        exit_process, system = os._exit, cast("Any", os)
 
-        def leave_nothing(status: int) -> NoReturn:
+        def end_tree_on_exit(status: int) -> NoReturn:
             if os.getpid() == self.pid and len(self.processes()) > 1:
                 self.end()
-            leave(status)
+            exit_process(status)
 
-        system._exit = leave_nothing
+        system._exit = end_tree_on_exit
 
     def end(self) -> None:
-        """Kill them all but the caller. Each is stopped first, so that none starts another one meanwhile."""
+        """Kill all but the caller. Each is stopped first, so that none can start another process."""
         stopped: set[Process] = set()
         for _ in range(_SWEEPS):
             found = {*self._seen, *self._marked(), *self.processes()} - stopped - {Process()}
@@ -86,7 +86,7 @@ class ProcessTree:
                 process.kill()
 
     def wait_for_end(self, seconds: float) -> bool:
-        """Wait until the engine has ended, at most so long; whether it has."""
+        """Wait up to so many seconds for the engine's end; returns whether it has ended."""
         deadline = time.monotonic() + seconds
         while self.lives():
             if time.monotonic() > deadline:
@@ -102,17 +102,17 @@ class ProcessTree:
 
 
 def resident(process: Process) -> int:
-    """Bytes of memory that a process holds; memory shared by several processes counts for each."""
+    """Resident memory of a process in bytes; shared memory counts for each process."""
     with suppress(psutil.Error):
         return process.memory_info().rss
     return 0
 
 
 def proportional(process: Process) -> int:
-    """Bytes of memory that a process holds, its part of what it shares (PSS). Dearer than ``resident``."""
+    """Proportional memory (PSS) of a process in bytes: shared pages count in part. Slow to read."""
     try:
         return process.memory_full_info().pss
-    except (psutil.Error, AttributeError):  # only Linux knows it
+    except (psutil.Error, AttributeError):  # Linux only
         return resident(process)
 
 

@@ -1,4 +1,4 @@
-"""Limits the memory and processes of an engine from outside, and ends whatever it leaves behind."""
+"""Limits the memory and processes of an engine's process tree, and ends what an engine leaves behind."""
 
 import threading
 from collections.abc import Callable
@@ -7,18 +7,18 @@ from itertools import count
 from cbtui.engines.memory_limit import GB
 from cbtui.engines.process_tree import ProcessTree, proportional, resident
 
-_LOOK = 0.1
-"""Seconds between two looks."""
-_LOOKS_A_TREE = 5
-"""Every fifth look goes to the whole process tree, the others to the engine alone."""
+_POLL_INTERVAL = 0.1
+"""Seconds between two polls."""
+_POLLS_PER_TREE_SCAN = 5
+"""Every fifth poll reads the whole process tree, the others the engine alone."""
 _MOST_PROCESSES = 64
 
 
 class ResourceGuard:
-    """Watches a process tree on a thread of its own, and ends what is left of it once the engine has ended.
+    """Watches a process tree on a thread of its own, and ends the rest of it once the engine has ended.
 
-    ``memory`` is in bytes. ``ask`` is called before a tree is ended for exceeding a limit, to have the engine
-    write down where it stands.
+    ``memory`` is in bytes. ``ask`` is called before a tree is ended for exceeding a limit, so that the engine
+    can dump its stacks.
     """
 
     def __init__(self, tree: ProcessTree, memory: int, ask: Callable[[], None]) -> None:
@@ -28,28 +28,28 @@ class ResourceGuard:
         self._thread = threading.Thread(target=self._watch, name="resource-guard", daemon=True)
         self._over = threading.Event()
         self.verdict: str | None = None
-        """Which limit the engine was ended for, a sentence without its place; None if it was not."""
+        """The exceeded limit as a sentence; None if the tree was not ended for one."""
 
     def start(self) -> None:
-        """Begin to watch."""
+        """Start watching."""
         self._thread.start()
 
     def stop(self) -> None:
-        """End the process tree and the watch."""
+        """End the process tree and stop watching."""
         self._over.set()
         self._tree.end()
         if self._thread.is_alive():
             self._thread.join()
 
     def wait(self, seconds: float) -> None:
-        """Wait until the watch is over."""
+        """Wait up to so many seconds until the watch is over."""
         self._thread.join(seconds)
 
     def _watch(self) -> None:
         looks = count()
-        while self._tree.lives() and not self._over.wait(_LOOK):
-            # To find all processes of the tree costs far more than to look at one.
-            self.verdict = self._excess(whole_tree=next(looks) % _LOOKS_A_TREE == 0)
+        while self._tree.lives() and not self._over.wait(_POLL_INTERVAL):
+            # Reading the whole tree costs far more than reading one process.
+            self.verdict = self._excess(whole_tree=next(looks) % _POLLS_PER_TREE_SCAN == 0)
             if self.verdict is not None:
                 self._ask()
                 break

@@ -1,4 +1,4 @@
-"""A session: one engine process, started, commanded and ended from here, and the trace it sends."""
+"""One engine process: started, commanded and ended from here, and the trace that it sends."""
 
 import multiprocessing
 import os
@@ -17,12 +17,12 @@ from uuid import uuid4
 
 import msgspec
 
-from cbtui.engines.hang_detector import LOOK, HangDetector, why_silent
+from cbtui.engines.hang_detector import POLL_INTERVAL, HangDetector, why_silent
 from cbtui.engines.memory_limit import memory_limit
-from cbtui.engines.orphan_guard import ENDS_ITSELF, watch_over
+from cbtui.engines.orphan_guard import ENDED_NORMALLY, start_orphan_guard
 from cbtui.engines.process_tree import MARK, ProcessTree
 from cbtui.engines.resource_guard import ResourceGuard
-from cbtui.terminal.interrupts import whole
+from cbtui.terminal.interrupts import deferred_interrupt
 from sim.clean_start import without_current_folder
 from sim.engine.commands import Command, Stop, encode
 from sim.engine.failures.crash_dump import ASKED, overflowed, place_in, timed_out
@@ -34,49 +34,48 @@ from sim.trace.events import AnyEvent, RunEnded, decode
 Deliver: TypeAlias = Callable[[list[AnyEvent]], None]
 """Takes every batch of events, in order."""
 Ended: TypeAlias = Callable[[str | None], None]
-"""Told once that no more will come: None, or a sentence if the engine was lost."""
+"""Called once after the last batch: with None, or with a sentence if the engine was lost."""
 
 
 class EngineSession(Protocol):
     """One engine process. ``deliver`` and ``ended`` are called on a thread of the session's own."""
 
     def start(self) -> str | None:
-        """Start the process; a sentence if something about it does not work."""
+        """Start the process; returns a sentence if part of it does not work."""
 
     def send(self, command: Command) -> None:
-        """Tell the engine something; ignored once it has ended."""
+        """Send a command to the engine; ignored once it has ended."""
 
     def stop(self) -> None:
-        """End the process, within a second; may be called again."""
+        """End the process within a second. Idempotent."""
 
 
 OpenSession: TypeAlias = Callable[[RunSetup, Deliver, Ended], EngineSession]
-"""Makes the session of a run, and does not start it."""
+"""Creates the session of a run without starting it."""
 
-AFRESH: BaseContext = multiprocessing.get_context("spawn")
+SPAWN_CONTEXT: BaseContext = multiprocessing.get_context("spawn")
 """The context that starts an engine by default."""
-_GRACE = 0.4
-"""Seconds that an engine without a program to end gets to end by itself before it is killed."""
-LONGEST_END = GRACE + TO_LEAVE
-"""Seconds that one with a program gets."""
+_EXIT_TIMEOUT = 0.4
+"""Seconds that an engine without a running program has to exit before it is killed."""
+PROGRAM_EXIT_TIMEOUT = GRACE + TO_LEAVE
+"""Seconds that an engine with a running program has to exit before it is killed."""
 _LONGEST_BATCH = 1 << 30
-"""Bytes; the length of a batch is what the program's process says it is."""
-_TO_WRITE = 0.2
-"""Seconds that an engine gets to write down where its threads stand."""
-_redirecting = threading.Lock()
-"""Standard error is the whole process's: two engines that start together take turns at it."""
+"""Bytes; the length comes from the program's process and cannot be trusted."""
+_REPORT_TIMEOUT = 0.2
+"""Seconds that an engine has to write a dump of its threads' stacks."""
+_stderr_lock = threading.Lock()
+"""Guards ``sys.stderr``, which is redirected while an engine starts."""
 
 
-class Session:
-    """One run in a process of its own.
+class ProcessSession:
+    """A session with an engine in a process of its own.
 
-    ``deliver`` gets every batch of events in order, ``ended`` is called once when no more will come, with
-    None if the run ended as it should and with a sentence if the engine was lost. Both are called on the
-    session's reader thread. A notice among the events reports an engine that sends nothing. One
-    that is stopped while it runs has ``LONGEST_END`` for its program's own ending. When
-    the engine has ended, whatever processes it started are ended too; one that takes more memory than
-    ``resource_guard`` allows is, and so are all when this process is killed. ``context`` starts the engine's
-    process, None: afresh. ``unpack`` makes events of the bytes of a batch, on the reader thread.
+    ``deliver`` gets every batch of events in order. ``ended`` is called once after the last one, with None
+    after a normal end and with a sentence if the engine was lost. Both are called on the session's reader
+    thread. A notice among the events reports a silent engine. An engine that is stopped while its program
+    runs has ``PROGRAM_EXIT_TIMEOUT`` seconds to exit. The engine's whole process tree is ended with it, when
+    it exceeds a limit of ``resource_guard``, and when this process is killed. ``context`` starts the
+    process; None stands for ``SPAWN_CONTEXT``. ``unpack`` decodes a batch, on the reader thread.
     """
 
     def __init__(
@@ -95,18 +94,18 @@ class Session:
         self._begun = False
         self._finished = False
         self._setup = setup
-        self._context = context or AFRESH
+        self._context = context or SPAWN_CONTEXT
         self._pipe, self._far_end = self._context.Pipe()
         self._reader = threading.Thread(target=self._read, name="trace-reader", daemon=True)
 
     def start(self) -> None:
         """Start the engine, its guards and the reader."""
-        with whole():
+        with deferred_interrupt():
             self._start()
 
     def _start(self) -> None:
-        self._last_words = tempfile.TemporaryFile()  # noqa: SIM115 -- closed with the session
-        last_words = Connection(os.dup(self._last_words.fileno()), readable=False)
+        self._stack_dump = tempfile.TemporaryFile()  # noqa: SIM115 -- closed with the session
+        stack_dump = Connection(os.dup(self._stack_dump.fileno()), readable=False)
         ours, self._alive = multiprocessing.Pipe(duplex=False)
         engine: Any = self._context
         self._process: BaseProcess = engine.Process(
@@ -115,42 +114,42 @@ class Session:
                 self._setup.real is not None,
                 msgspec.msgpack.encode(self._setup),
                 self._far_end,
-                last_words,
+                stack_dump,
                 ours,
             ),
             name="cbtui-engine",
             daemon=True,
         )
         mark = uuid4().hex
-        # Starting a process hands on standard error, and Textual's stand-in for it has no descriptor.
-        with _redirecting, redirect_stderr(sys.__stderr__):
+        # A child inherits standard error, and Textual's replacement of it has no descriptor.
+        with _stderr_lock, redirect_stderr(sys.__stderr__):
             with without_current_folder():
-                resource_tracker.ensure_running()  # this process's own: it must not get the engine's mark
+                resource_tracker.ensure_running()  # for all engines, so it must not carry a mark
             with engine_environment(mark):
                 self._process.start()
         self._far_end.close()
-        last_words.close()
+        stack_dump.close()
         ours.close()
         assert self._process.pid is not None
         self._tree = ProcessTree(self._process.pid, mark)
-        self._guard = ResourceGuard(self._tree, memory_limit(), self._ask_where_it_stands)
+        self._guard = ResourceGuard(self._tree, memory_limit(), self._request_stack_dump)
         self._guard.start()
         self._reader.start()
         self._started = True
 
     def send(self, command: Command) -> None:
-        """Tell the engine something; nothing happens if it has ended."""
+        """Send a command to the engine; ignored once it has ended."""
         try:
             self._pipe.send_bytes(encode(command))
         except OSError:
-            return  # the reader tells that the engine is gone
+            return  # the reader reports that the engine is gone
 
     def stop(self) -> None:
-        """End the engine, by force if it must be, what it started, and the reader. Safe to call twice.
+        """End the engine's process tree, by force if need be, and the reader. Idempotent.
 
-        Nothing happens if it could not be started.
+        Does nothing if the engine was not started.
         """
-        with whole():
+        with deferred_interrupt():
             if self._started and not self._stopping:
                 self._stopping = True
                 self._stop()
@@ -158,27 +157,29 @@ class Session:
     def _stop(self) -> None:
         self.send(Stop())
         runs = self._begun and not self._finished
-        self._tree.wait_for_end(LONGEST_END if runs and not self._tree.is_stopped() else _GRACE)
+        self._tree.wait_for_end(
+            PROGRAM_EXIT_TIMEOUT if runs and not self._tree.is_stopped() else _EXIT_TIMEOUT
+        )
         self._guard.stop()
         self._process.kill()
         self._process.join()
         if self._reader is not threading.current_thread():
-            self._reader.join(_GRACE)
+            self._reader.join(_EXIT_TIMEOUT)
         with suppress(OSError):
-            os.write(self._alive.fileno(), ENDS_ITSELF)
+            os.write(self._alive.fileno(), ENDED_NORMALLY)
         self._alive.close()
         self._pipe.close()
-        self._last_words.close()
+        self._stack_dump.close()
 
     def _read(self) -> None:
         hang_detector = HangDetector()
         while True:
             try:
-                if self._pipe.poll(LOOK):
-                    events = hang_detector.came(self._unpack(self._pipe.recv_bytes(_LONGEST_BATCH)))
+                if self._pipe.poll(POLL_INTERVAL):
+                    events = hang_detector.received(self._unpack(self._pipe.recv_bytes(_LONGEST_BATCH)))
                     self._begun = True
                 else:
-                    events = hang_detector.nothing_came(self._why_silent)
+                    events = hang_detector.polled_nothing(self._why_silent)
             except (EOFError, OSError):
                 break
             except msgspec.DecodeError as error:
@@ -188,45 +189,45 @@ class Session:
             self._finished = self._finished or RunEnded in map(type, events)
             if events:
                 self._deliver(events)
-        self._ended(None if self._finished or self._stopping else self._epitaph())
+        self._ended(None if self._finished or self._stopping else self._loss())
 
     def _why_silent(self) -> str:
         if self._tree.is_stopped():
             return "its process was stopped"
-        if not self._begun:  # to one that does not listen yet, the question would be the end
+        if not self._begun:  # the signal would kill an engine that has no handler yet
             return "it has not begun yet"
         return why_silent(self._place_in_program(), self._place_in_program())
 
     def _place_in_program(self) -> str:
-        """Where in the program the engine stands now; its report is deleted after reading."""
-        self._ask_where_it_stands()
-        place = self._place_written()
-        self._last_words.seek(0)  # for the engine too, as the two share the position
-        self._last_words.truncate()
+        """The line of the program that runs now; the dump is deleted after reading."""
+        self._request_stack_dump()
+        place = self._place_in_dump()
+        self._stack_dump.seek(0)  # the engine shares the file position
+        self._stack_dump.truncate()
         return place
 
-    def _place_written(self) -> str:
-        size = os.fstat(self._last_words.fileno()).st_size
-        words = os.pread(self._last_words.fileno(), size, 0).decode(errors="replace")
+    def _place_in_dump(self) -> str:
+        size = os.fstat(self._stack_dump.fileno()).st_size
+        words = os.pread(self._stack_dump.fileno(), size, 0).decode(errors="replace")
         return place_in(words, [program.path for program in self._setup.programs])
 
-    def _ask_where_it_stands(self) -> None:
+    def _request_stack_dump(self) -> None:
         os.kill(self._tree.pid, ASKED)
-        self._tree.wait_for_end(_TO_WRITE)
+        self._tree.wait_for_end(_REPORT_TIMEOUT)
 
-    def _epitaph(self) -> str:
-        """How the engine ended, and where in the program."""
-        if not self._tree.wait_for_end(_GRACE):
+    def _loss(self) -> str:
+        """Why the engine was lost, and at which line of the program."""
+        if not self._tree.wait_for_end(_EXIT_TIMEOUT):
             self._guard.stop()
             return "the engine closed its trace"
-        self._guard.wait(_GRACE)
-        self._process.join(_GRACE)
-        self._last_words.seek(0)
-        words = self._last_words.read().decode(errors="replace")
+        self._guard.wait(_EXIT_TIMEOUT)
+        self._process.join(_EXIT_TIMEOUT)
+        self._stack_dump.seek(0)
+        words = self._stack_dump.read().decode(errors="replace")
         place = place_in(words, [program.path for program in self._setup.programs])
         return f"{self._cause(words)}{f' ({place})' if place else ''}"
 
-    def _cause(self, last_words: str) -> str:
+    def _cause(self, stack_dump: str) -> str:
         code = self._process.exitcode
         if self._guard.verdict is not None:
             return f"{self._guard.verdict} and was ended"
@@ -234,46 +235,46 @@ class Session:
             return "the program closed files of the engine's, as os.closerange does; close only your own"
         if code is None or code >= 0:
             held_up = "code in C held up virtual time for seconds, as only --clock real allows"
-            return held_up if timed_out(last_words) else f"the engine ended with exit code {code}"
+            return held_up if timed_out(stack_dump) else f"the engine ended with exit code {code}"
         name = signal.Signals(-code).name if -code in set(signal.Signals) else str(-code)
         if -code == signal.SIGKILL:
             return f"the engine was killed by signal {-code}"
-        if overflowed(last_words):
+        if overflowed(stack_dump):
             return f"the program called itself until its stack was full, and crashed by {name}"
         return f"the program crashed by {name}"
 
 
 def _engine(
-    is_real: bool, packed_setup: bytes, pipe: Connection, last_words: Connection, console: Connection
+    is_real: bool, packed_setup: bytes, pipe: Connection, stack_dump: Connection, console: Connection
 ) -> None:
-    """Be the engine; imported only over there, so that the console stays light."""
-    watch_over(os.getpid(), console)
-    ProcessTree(os.getpid(), os.environ.get(MARK, "")).leave_nothing()
+    """Run the engine; its modules are imported only in this process, to keep the console light."""
+    start_orphan_guard(os.getpid(), console)
+    ProcessTree(os.getpid(), os.environ.get(MARK, "")).end_tree_on_exit()
     if is_real:
         from sim.real.engine import run
     else:
         from sim.engine.process import run
-    run(packed_setup, pipe, last_words)
+    run(packed_setup, pipe, stack_dump)
 
 
 _ENVIRONMENT = {
-    "PYTHONHASHSEED": "0",  # sets of strings have the same order each time
-    "OPENBLAS_NUM_THREADS": "1",  # numpy starts in half the time, and nobody here multiplies matrices
+    "PYTHONHASHSEED": "0",  # sets of strings iterate in the same order in every run
+    "OPENBLAS_NUM_THREADS": "1",  # numpy starts in half the time
 }
 
 
-_starting = threading.Lock()
-"""Held while a process is started: until then the environment is not this process's own."""
+_environment_lock = threading.Lock()
+"""Held while a child process starts with a changed ``os.environ``."""
 
 
 @contextmanager
 def engine_environment(mark: str = "") -> Iterator[None]:
-    """Let processes started meanwhile have the engine's environment and a mark; one thread at a time.
+    """Start processes inside the block with the engine's environment and a mark; one thread at a time.
 
-    Ctrl-C in the terminal is the console's: they do not hear it until they have a session of their own.
+    SIGINT is blocked in them, so that Ctrl-C in the terminal reaches the console alone.
     """
     wanted = {**_ENVIRONMENT, MARK: mark}
-    with without_current_folder(), _starting:
+    with without_current_folder(), _environment_lock:
         before = {name: os.environ.get(name) for name in wanted}
         os.environ.update(wanted)
         blocked = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})

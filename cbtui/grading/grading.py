@@ -22,7 +22,7 @@ class PackagesChangedError(Exception):
 
 
 @dataclass(frozen=True)
-class Paper:
+class HandIn:
     """What one learner handed in for one exercise; without a lesson or a file, why it cannot be checked.
 
     ``folder`` is the learner's own, if the file is in one.
@@ -36,10 +36,10 @@ class Paper:
 
 
 @dataclass(frozen=True, eq=False)
-class Entry:
+class LoadedHandIn:
     """A paper as it was read at the start; without a submission ``problem`` says why it cannot be run."""
 
-    paper: Paper
+    paper: HandIn
     total: int = 0
     submission: Submission | None = None
     problem: str = ""
@@ -56,7 +56,7 @@ class Entry:
 class Grade:
     """What came of an entry."""
 
-    entry: Entry
+    entry: LoadedHandIn
     marks: Marks
 
     @property
@@ -75,7 +75,7 @@ class Grade:
         return "; ".join(self.marks.doubts)
 
 
-def papers_in(folder: Path, exercises: Sequence[Lesson], only: Lesson | None) -> list[Paper]:
+def hand_ins_in(folder: Path, exercises: Sequence[Lesson], only: Lesson | None) -> list[HandIn]:
     """Return what lies in a folder: a folder or a file for each learner, in order of their names.
 
     A file is told by its name: ``split_groups.py`` in a learner's folder, ``split_groups_ann.py`` or
@@ -85,12 +85,12 @@ def papers_in(folder: Path, exercises: Sequence[Lesson], only: Lesson | None) ->
     Raises:
         OSError: the folder cannot be read.
     """
-    papers: list[Paper] = []
+    papers: list[HandIn] = []
     for path in sorted(folder.iterdir()):
         if path.name.startswith((".", "__")):
             continue
         if path.is_symlink():
-            papers.append(Paper(path.name, only, problem=f"{path} is a link; put what it leads to there"))
+            papers.append(HandIn(path.name, only, problem=f"{path} is a link; put what it leads to there"))
         elif path.is_dir():
             papers += _of_learner(path, exercises, only)
         elif path.suffix == _PYTHON:
@@ -98,10 +98,10 @@ def papers_in(folder: Path, exercises: Sequence[Lesson], only: Lesson | None) ->
     return papers
 
 
-class HandedIn:
+class Grader:
     """All papers, read at once: what a program does to the files later changes nobody's marks."""
 
-    def __init__(self, papers: Iterable[Paper]) -> None:
+    def __init__(self, papers: Iterable[HandIn]) -> None:
         """Read them.
 
         Raises:
@@ -109,7 +109,7 @@ class HandedIn:
         """
         self._totals: dict[str, int] = {}
         self.entries = [self._entry(paper) for paper in papers]
-        self._packages = _Packages(entry.paper.lesson for entry in self.entries)
+        self._packages = _PackageFiles(entry.paper.lesson for entry in self.entries)
         self._on_disk = {entry: entry.key for entry in self.entries}
 
     @property
@@ -119,7 +119,7 @@ class HandedIn:
 
     def grades(
         self,
-        entries: Iterable[Entry],
+        entries: Iterable[LoadedHandIn],
         limit: float,
         confinement: Confinement,
         watch: Callable[[], str | None],
@@ -149,20 +149,20 @@ class HandedIn:
                     "and go on with --resume"
                 )
 
-    def _entry(self, paper: Paper) -> Entry:
+    def _entry(self, paper: HandIn) -> LoadedHandIn:
         if paper.lesson is None:
-            return Entry(paper, problem=paper.problem)
+            return LoadedHandIn(paper, problem=paper.problem)
         if paper.lesson.id not in self._totals:
             self._totals[paper.lesson.id] = len(Judge(paper.lesson).checks)
         total = self._totals[paper.lesson.id]
         if paper.file is None:
-            return Entry(paper, total, problem=paper.problem)
+            return LoadedHandIn(paper, total, problem=paper.problem)
         if not is_text(paper.file.name):
-            return Entry(paper, total, problem="its path is not UTF-8; rename it")
+            return LoadedHandIn(paper, total, problem="its path is not UTF-8; rename it")
         try:
-            return Entry(paper, total, read_submission(paper.file, paper.folder))
+            return LoadedHandIn(paper, total, read_submission(paper.file, paper.folder))
         except BadSubmissionError as error:
-            return Entry(paper, total, problem=str(error))
+            return LoadedHandIn(paper, total, problem=str(error))
 
     def _changed_papers(self) -> Iterator[Path | None]:
         """The files that are no longer what they were when this was last asked."""
@@ -173,7 +173,7 @@ class HandedIn:
                 yield entry.paper.file
 
 
-class _Packages:
+class _PackageFiles:
     """The files of cbtui, of the engine and of lessons, as they are when this is made."""
 
     def __init__(self, lessons: Iterable[Lesson | None]) -> None:
@@ -218,36 +218,36 @@ def line(grade: Grade) -> str:
     return " ".join("  ".join([f"{grade.passed}/{grade.entry.total}", *said]).splitlines())
 
 
-def _of_learner(folder: Path, exercises: Sequence[Lesson], only: Lesson | None) -> list[Paper]:
+def _of_learner(folder: Path, exercises: Sequence[Lesson], only: Lesson | None) -> list[HandIn]:
     try:
         files = sorted(path for path in folder.iterdir() if path.suffix == _PYTHON)
     except OSError as error:
-        return [Paper(folder.name, only, problem=f"{folder} cannot be read: {error.strerror}")]
+        return [HandIn(folder.name, only, problem=f"{folder} cannot be read: {error.strerror}")]
     wanted = exercises if only is None else [only]
     named = {path.name: path for path in files}
     found = [
-        Paper(folder.name, each, named[each.file_name], folder=folder)
+        HandIn(folder.name, each, named[each.file_name], folder=folder)
         for each in wanted
         if each.file_name in named
     ]
     if found:
         return found
     if only is not None and len(files) == 1:
-        return [Paper(folder.name, only, files[0], folder=folder)]
+        return [HandIn(folder.name, only, files[0], folder=folder)]
     first, *others = (each.file_name for each in wanted)
     names = f"{first}, nor one of another exercise" if others else first
-    return [Paper(folder.name, only, problem=f"{folder} has no file {names}")]
+    return [HandIn(folder.name, only, problem=f"{folder} has no file {names}")]
 
 
-def _of_file(path: Path, exercises: Sequence[Lesson], only: Lesson | None) -> Paper:
+def _of_file(path: Path, exercises: Sequence[Lesson], only: Lesson | None) -> HandIn:
     if only is not None:
         learner = _without(path.stem, only)
-        return Paper(path.stem if learner is None else learner, only, path)
+        return HandIn(path.stem if learner is None else learner, only, path)
     for lesson in sorted(exercises, key=lambda each: -len(each.file_name)):
         learner = _without(path.stem, lesson)
         if learner is not None:
-            return Paper(learner, lesson, path)
-    return Paper(path.stem, problem=f"{path.name} does not tell by its name which exercise it is for")
+            return HandIn(learner, lesson, path)
+    return HandIn(path.stem, problem=f"{path.name} does not tell by its name which exercise it is for")
 
 
 def _without(stem: str, lesson: Lesson) -> str | None:

@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TypeAlias
 
-from cbtui.grading.grading import Entry, Grade
+from cbtui.grading.grading import Grade, LoadedHandIn
 
-Row: TypeAlias = Mapping[str, str]
+SheetRow: TypeAlias = Mapping[str, str]
 _BEFORE = ("learner", "lesson", "passed", "total")
 _AFTER = ("problem", "suspicious", "digest")
 
@@ -23,16 +23,16 @@ class MarkSheet:
 
     def __init__(self, checks: int) -> None:
         self._columns = [*_BEFORE, *(f"check {number}" for number in range(1, checks + 1)), *_AFTER]
-        self.rows: list[Row] = []
+        self.rows: list[SheetRow] = []
         self.unfinished: Sequence[str] = ()
         """Whose last row was begun and not ended in the table that ``read`` took, and the lesson."""
 
-    def beginning(self, entry: Entry) -> str:
+    def beginning(self, entry: LoadedHandIn) -> str:
         """Return how the row of an entry begins, before its grade is known."""
         learner, lesson, _ = entry.key
         return self._text([_harmless(learner), _harmless(lesson), ""]).removesuffix("\n")
 
-    def is_unfinished(self, entry: Entry) -> bool:
+    def is_unfinished(self, entry: LoadedHandIn) -> bool:
         """Whether grading was cut short while the program of this entry ran."""
         return [*map(_harmless, entry.key[:2])] == [*self.unfinished]
 
@@ -79,7 +79,7 @@ class MarkSheet:
         """Return all of it."""
         return "".join([self._text(self._columns), *map(self._line, self.rows)])
 
-    def _line(self, row: Row) -> str:
+    def _line(self, row: SheetRow) -> str:
         return self._text([row.get(name, "") for name in self._columns])
 
     def _text(self, cells: Iterable[str]) -> str:
@@ -88,7 +88,7 @@ class MarkSheet:
         return text.getvalue()
 
 
-def _key(row: Row) -> tuple[str, ...]:
+def _key(row: SheetRow) -> tuple[str, ...]:
     return row["learner"], row["lesson"], row["digest"]
 
 
@@ -112,7 +112,7 @@ class SheetStream:
         """Write what is in the table already."""
         self._write(self._sheet.text())
 
-    def begun(self, entries: Iterable[Entry]) -> Iterator[Entry]:
+    def begun(self, entries: Iterable[LoadedHandIn]) -> Iterator[LoadedHandIn]:
         """Return the entries as they are."""
         return iter(entries)
 
@@ -149,7 +149,7 @@ class SheetFile:
         self._written = _encoded(self._sheet.text())
         self._write(self._written, "wb")
 
-    def begun(self, entries: Iterable[Entry]) -> Iterator[Entry]:
+    def begun(self, entries: Iterable[LoadedHandIn]) -> Iterator[LoadedHandIn]:
         """Yield each of the entries once its row is begun."""
         for entry in entries:
             self._begun = _encoded(self._sheet.beginning(entry))

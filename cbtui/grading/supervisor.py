@@ -22,7 +22,7 @@ from typing import Any, NoReturn
 import msgspec
 
 from cbtui.engines.forking import forking_context
-from cbtui.engines.session import Session
+from cbtui.engines.session import ProcessSession
 from cbtui.grading.confinement import Confinement
 from cbtui.grading.submission import Submission
 from cbtui.grading.trace_audit import TraceAudit
@@ -34,9 +34,9 @@ from lessons.lesson import read_lesson
 
 _LARGEST_FILE = 1 << 28
 """Bytes that a program may write to one file."""
-_PATIENCE = 30.0
+_JUDGING_TIMEOUT = 30.0
 """Real seconds beyond a run's own limit that its judging may take."""
-_TO_END = 2.0
+_EXIT_TIMEOUT = 2.0
 _MOST_BYTES = 1 << 24
 _PRELOADED = (__name__,)
 
@@ -53,7 +53,7 @@ class Marks(msgspec.Struct, frozen=True):
 
 
 @dataclass(frozen=True)
-class Assignment:
+class MarkingJob:
     """A submission to run and judge. ``limit`` is in real seconds; ``folder`` is empty, for its copy."""
 
     submission: Submission
@@ -71,7 +71,7 @@ def mark(submission: Submission, lesson: Path, limit: float, confinement: Confin
         folder = Path(place).resolve() / "copy"
         folder.mkdir()
         return _marks_by_supervisor(
-            Assignment(
+            MarkingJob(
                 submission,
                 lesson,
                 limit,
@@ -83,27 +83,27 @@ def mark(submission: Submission, lesson: Path, limit: float, confinement: Confin
         )
 
 
-def _marks_by_supervisor(assignment: Assignment) -> Marks:
+def _marks_by_supervisor(assignment: MarkingJob) -> Marks:
     context: Any = forking_context(_PRELOADED)
     ours, theirs = context.Pipe()
     process = context.Process(target=_supervise, args=(assignment, theirs), name="cbtui-supervisor")
     process.start()
     theirs.close()
     try:
-        if not ours.poll(assignment.limit + _PATIENCE):
+        if not ours.poll(assignment.limit + _JUDGING_TIMEOUT):
             return Marks(trouble="what its run showed took too long to be judged")
         return msgspec.msgpack.decode(ours.recv_bytes(_MOST_BYTES), type=Marks)
     except (EOFError, OSError, msgspec.DecodeError):
         return Marks(doubts=("it ended or disturbed the process that graded it",))
     finally:
         process.terminate()
-        process.join(_TO_END)
+        process.join(_EXIT_TIMEOUT)
         process.kill()
         process.join()
         ours.close()
 
 
-def _supervise(assignment: Assignment, grader: Connection) -> None:
+def _supervise(assignment: MarkingJob, grader: Connection) -> None:
     """Be the supervisor, in a session of its own, with nothing of the terminal's."""
     os.setsid()
     signal.signal(signal.SIGTERM, _leave)
@@ -123,7 +123,7 @@ def _supervise(assignment: Assignment, grader: Connection) -> None:
     grader.send_bytes(msgspec.msgpack.encode(_marks(assignment)))
 
 
-def _marks(assignment: Assignment) -> Marks:
+def _marks(assignment: MarkingJob) -> Marks:
     submission, lesson = assignment.submission, read_lesson(assignment.lesson)
     judge = Judge(lesson)
     program = submission.write_to(assignment.folder)
@@ -131,7 +131,9 @@ def _marks(assignment: Assignment) -> Marks:
     setup = msgspec.structs.replace(setup_to_judge(lesson, program), packages=(), seal=key)
     libraries = assignment.confinement.libraries
     audit = TraceAudit(key, submission, assignment.folder, libraries, virtual=setup.clock == "virtual")
-    run = observe(setup, program.name, assignment.limit, open_session=partial(Session, unpack=audit.unpack))
+    run = observe(
+        setup, program.name, assignment.limit, open_session=partial(ProcessSession, unpack=audit.unpack)
+    )
     doubts = audit.doubts(whole=run.trouble is None)
     if doubts or run.trouble is not None:
         return Marks(trouble=run.trouble or "", doubts=doubts)

@@ -75,6 +75,6 @@ def method_of(action: Action) -> tuple[str, tuple[object, ...]]:
     return name, arguments
 
 
-def together(actions: Iterable[Action], field: str) -> list[tuple[Action, ...]]:
+def group_by(actions: Iterable[Action], field: str) -> list[tuple[Action, ...]]:
     """Put neighbours together that agree in a field."""
     return [tuple(group) for _, group in groupby(actions, key=attrgetter(field))]

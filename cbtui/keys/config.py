@@ -34,7 +34,7 @@ class Config:
     keymap: Keymap = field(default_factory=Keymap)
 
 
-class Reading(NamedTuple):
+class ParsedConfig(NamedTuple):
     """A configuration, without the entries that ``complaints`` is about, a sentence for each."""
 
     config: Config
@@ -46,25 +46,25 @@ def standard_path() -> Path:
     return config_folder() / "config.toml"
 
 
-def read_file(path: Path) -> Reading:
+def read_file(path: Path) -> ParsedConfig:
     """Read a configuration file."""
     try:
         text = foreign_file.read_text(path)
     except UnicodeDecodeError:
-        return Reading(Config(), [f"{path} is not UTF-8 text"])
+        return ParsedConfig(Config(), [f"{path} is not UTF-8 text"])
     except OSError as error:
-        return Reading(Config(), [f"{path} cannot be read: {error.strerror}"])
+        return ParsedConfig(Config(), [f"{path} cannot be read: {error.strerror}"])
     return read_text(text, path.name)
 
 
-def read_text(text: str, name: str) -> Reading:
+def read_text(text: str, name: str) -> ParsedConfig:
     """Read a configuration; ``name`` is what its complaints call it."""
     try:
         document = plain_toml.load(text)
     except tomllib.TOMLDecodeError as error:
-        return Reading(Config(), [f"{name}:{_fault(error, text)}"])
+        return ParsedConfig(Config(), [f"{name}:{_fault(error, text)}"])
     except ValueError as error:  # numbers that Python does not read
-        return Reading(Config(), [f"{name}: {error}"])
+        return ParsedConfig(Config(), [f"{name}: {error}"])
     complaints: list[tuple[int, str]] = []
     lines = _lines_of(text)
 
@@ -78,7 +78,7 @@ def read_text(text: str, name: str) -> Reading:
     keymap = read_keys(dict(_flat(keys)), lambda entry, sentence: complain(f"keys.{entry}", sentence))
     display = _display(_table(document, "display", complain), complain)
     config = Config(display.get("theme"), display.get("charset"), keymap)
-    return Reading(config, [f"{name}:{line}: {sentence}" for line, sentence in sorted(complaints)])
+    return ParsedConfig(config, [f"{name}:{line}: {sentence}" for line, sentence in sorted(complaints)])
 
 
 def _table(

@@ -9,7 +9,7 @@ from sim.foreign_file import read_bytes
 from sim.whole_file import write_whole
 
 
-class Placed(Enum):
+class StarterPlacement(Enum):
     """What became of putting a starter somewhere."""
 
     NEW = "new"
@@ -24,7 +24,7 @@ class CannotPlaceError(Exception):
 
 
 @dataclass(frozen=True)
-class OwnFile:
+class ExerciseFile:
     """A learner's file, and a sentence on where it is and what became of it."""
 
     path: Path
@@ -32,13 +32,15 @@ class OwnFile:
 
 
 _SENTENCES = {
-    Placed.NEW: "{name} is in {folder} now, and is yours: it is checked whenever you save it.",
-    Placed.THERE_ALREADY: "{name} is in {folder} already, unchanged: it is checked whenever you save it.",
-    Placed.CHANGED: "Your {name} in {folder} is kept as it is: it is checked whenever you save it.",
+    StarterPlacement.NEW: "{name} is in {folder} now, and is yours: it is checked whenever you save it.",
+    StarterPlacement.THERE_ALREADY: (
+        "{name} is in {folder} already, unchanged: it is checked whenever you save it."
+    ),
+    StarterPlacement.CHANGED: "Your {name} in {folder} is kept as it is: it is checked whenever you save it.",
 }
 
 
-def own_file(lesson: Lesson, folder: Path) -> OwnFile:
+def own_file(lesson: Lesson, folder: Path) -> ExerciseFile:
     """Return a learner's file for a lesson's exercise in a folder: what is there, or else the starter.
 
     Raises:
@@ -48,10 +50,10 @@ def own_file(lesson: Lesson, folder: Path) -> OwnFile:
     placed = place_starter(lesson, folder)
     if not path.is_file():
         raise CannotPlaceError(f"{path} is there already, and is not a file")
-    return OwnFile(path, _SENTENCES[placed].format(name=path.name, folder=folder))
+    return ExerciseFile(path, _SENTENCES[placed].format(name=path.name, folder=folder))
 
 
-def place_starter(lesson: Lesson, folder: Path) -> Placed:
+def place_starter(lesson: Lesson, folder: Path) -> StarterPlacement:
     """Put the starter of a lesson's exercise into a folder, as ``lesson.file_name``.
 
     Raises:
@@ -70,12 +72,12 @@ def place_starter(lesson: Lesson, folder: Path) -> Placed:
         return _there(path, content)
     except OSError as error:
         raise CannotPlaceError(f"{path} cannot be written: {error.strerror}") from None
-    return Placed.NEW
+    return StarterPlacement.NEW
 
 
-def _there(path: Path, content: bytes) -> Placed:
+def _there(path: Path, content: bytes) -> StarterPlacement:
     try:
         same = read_bytes(path) == content
     except OSError:
         same = False
-    return Placed.THERE_ALREADY if same else Placed.CHANGED
+    return StarterPlacement.THERE_ALREADY if same else StarterPlacement.CHANGED

@@ -9,7 +9,7 @@ from msgspec import structs
 from cbtui.keys.actions import ACTIONS
 from cbtui.keys.signs import character_of
 from cbtui.runs.judged.check_text import verdict_line
-from cbtui.runs.judged.checking import Observed, observe
+from cbtui.runs.judged.checking import ObservedRun, observe
 from cbtui.runs.setup.lesson_setup import setup_to_judge
 from lessons.checks import problems
 from lessons.description import Prediction
@@ -21,7 +21,7 @@ from sim.diagnosis import RULES
 WIDTH = 79
 """Columns of a guide: it is read beside the lanes, and on the narrowest terminals."""
 _LIMIT = 60.0
-_PATIENCE = 3
+_REAL_CLOCK_FACTOR = 3
 _QUOTED = re.compile(r"`([^`\n]+)`")
 _KEY = re.compile(
     r"\S|f\d\d?|(ctrl|shift|alt)\+\S+|space|tab|enter|escape|up|down|left|right|home|end|pageup|pagedown|"
@@ -120,7 +120,7 @@ def faults_in_runs(lesson: Lesson, judge: Judge, limit: float) -> Iterator[str]:
         return
     run = lesson.run
     if lesson.setup.clock == "real":
-        run = structs.replace(run, seconds=_PATIENCE * run.seconds)
+        run = structs.replace(run, seconds=_REAL_CLOCK_FACTOR * run.seconds)
     yield from _faults_in_runs(structs.replace(lesson, run=run), judge, limit)
 
 
@@ -158,7 +158,7 @@ def _faults_in_runs(lesson: Lesson, judge: Judge, limit: float) -> Iterator[str]
             yield f"{lesson.solution_path}: fails '{each.check.asks}': {verdict_line(each)}"
 
 
-def _shown(lesson: Lesson, judge: Judge, prediction: Prediction, node: Observed) -> int:
+def _shown(lesson: Lesson, judge: Judge, prediction: Prediction, node: ObservedRun) -> int:
     """Which answer the node's run shows to be true.
 
     Raises:
@@ -172,7 +172,7 @@ def _shown(lesson: Lesson, judge: Judge, prediction: Prediction, node: Observed)
         raise BadLesson(f"{_in(lesson, lesson.setup.node)}: {node.trouble}") from error
 
 
-def _run_faults(lesson: Lesson, file: str, run: Observed, declared: Iterable[str]) -> Iterator[str]:
+def _run_faults(lesson: Lesson, file: str, run: ObservedRun, declared: Iterable[str]) -> Iterator[str]:
     """What is wrong with a run, whatever a lesson asks of it: cut short, or with other diagnoses."""
     if run.broken_off:
         yield f"{_in(lesson, file)}: {run.trouble}"

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import TypeAlias
 
-from cbtui.learning.outcome import Outcome, run_in_words
+from cbtui.learning.outcome import PredictionOutcome, run_text
 from lessons.description import Exercise, Prediction
 from lessons.lesson import Lesson
 from lessons.progress import LessonProgress
 
 
-class Part(StrEnum):
+class PageSection(StrEnum):
     """The parts of a page, from its top to its bottom."""
 
     ABOUT = "about"
@@ -31,7 +31,7 @@ Page: TypeAlias = Mapping[str, str]
 
 
 @dataclass(frozen=True)
-class Signs:
+class PageKeys:
     """The keys that the page names, as people write them."""
 
     predict: str
@@ -42,7 +42,7 @@ class Signs:
 
 
 @dataclass(frozen=True)
-class Standing:
+class PageState:
     """How far a learner is in a lesson.
 
     ``outcome`` is what the lesson's run showed, None as long as that is not known; ``held`` tells that a run
@@ -50,11 +50,11 @@ class Standing:
     """
 
     progress: LessonProgress
-    outcome: Outcome | None = None
+    outcome: PredictionOutcome | None = None
     held: bool = False
 
 
-def predicted(lesson: Lesson, progress: LessonProgress) -> bool:
+def all_predicted(lesson: Lesson, progress: LessonProgress) -> bool:
     """Tell whether every prediction was answered."""
     return len(progress.answers) >= len(lesson.predictions)
 
@@ -64,7 +64,7 @@ def introduction(guide: str) -> str:
     return _HEADING.split(guide, maxsplit=1)[0]
 
 
-def in_short(lesson: Lesson, progress: LessonProgress) -> str:
+def short_description(lesson: Lesson, progress: LessonProgress) -> str:
     """Return what a lesson teaches; as long as that would answer a question, how its guide begins."""
     if progress.seen or not lesson.predictions:
         return lesson.teaches
@@ -73,20 +73,20 @@ def in_short(lesson: Lesson, progress: LessonProgress) -> str:
     return " ".join(_SENTENCE.split(plain)[:2])
 
 
-def page_of(lesson: Lesson, standing: Standing, signs: Signs) -> Page:
+def page_of(lesson: Lesson, standing: PageState, signs: PageKeys) -> Page:
     """Return a lesson's page; what a prediction asks for is not on it before the learner has answered."""
     parts = dict(_parts(lesson, standing, signs))
-    return {part: parts[part] for part in Part if parts.get(part)}
+    return {part: parts[part] for part in PageSection if parts.get(part)}
 
 
-def page_of_exercise(lesson: Lesson, standing: Standing, signs: Signs, task: str) -> Page:
+def page_of_exercise(lesson: Lesson, standing: PageState, signs: PageKeys, task: str) -> Page:
     """Return the page beside the exercise: the task, the hints, and what was explained already."""
     assert lesson.exercise is not None, "it is on screen"
     told = page_of(lesson, standing, signs) if standing.progress.seen else {}
     return {
-        Part.EXERCISE: task,
-        Part.HINTS: _hints(lesson.exercise, standing.progress, signs),
-        **{part: told[part] for part in (Part.EXPLANATION, Part.GUIDE) if part in told},
+        PageSection.EXERCISE: task,
+        PageSection.HINTS: _hints(lesson.exercise, standing.progress, signs),
+        **{part: told[part] for part in (PageSection.EXPLANATION, PageSection.GUIDE) if part in told},
     }
 
 
@@ -95,37 +95,37 @@ _SENTENCE = re.compile(r"(?<=[.?!]) ")
 _WHY = "## Why"
 
 
-def _parts(lesson: Lesson, standing: Standing, signs: Signs) -> Iterator[tuple[Part, str]]:
+def _parts(lesson: Lesson, standing: PageState, signs: PageKeys) -> Iterator[tuple[PageSection, str]]:
     progress = standing.progress
     about, *sections = _HEADING.split(lesson.guide)
     why = "".join(section for section in sections if section.startswith(_WHY))
     seen = progress.seen
-    yield Part.ABOUT, about
+    yield PageSection.ABOUT, about
     if lesson.task is not None:
-        yield Part.TASK, f"## Task\n\n{lesson.task}"
+        yield PageSection.TASK, f"## Task\n\n{lesson.task}"
     if lesson.predictions and not seen:
-        yield Part.PREDICTION, _predictions(lesson, progress, signs)
-    if seen or predicted(lesson, progress):
-        yield Part.GUIDE, "".join(section for section in sections if not section.startswith(_WHY))
+        yield PageSection.PREDICTION, _predictions(lesson, progress, signs)
+    if seen or all_predicted(lesson, progress):
+        yield PageSection.GUIDE, "".join(section for section in sections if not section.startswith(_WHY))
     if not seen:
         return
     if lesson.predictions:
-        yield Part.SHOWN, _shown(lesson, standing, signs)
-    yield Part.EXPLANATION, "\n".join((re.sub(r"^# ", "## ", lesson.explanation), why))
+        yield PageSection.SHOWN, _shown(lesson, standing, signs)
+    yield PageSection.EXPLANATION, "\n".join((re.sub(r"^# ", "## ", lesson.explanation), why))
     if lesson.exercise is not None:
-        yield Part.EXERCISE, _exercise(lesson.exercise, progress, signs)
-        yield Part.HINTS, _hints(lesson.exercise, progress, signs)
+        yield PageSection.EXERCISE, _exercise(lesson.exercise, progress, signs)
+        yield PageSection.HINTS, _hints(lesson.exercise, progress, signs)
     if lesson.following:
-        yield Part.NEXT, f"**Next:** {lesson.following}"
+        yield PageSection.NEXT, f"**Next:** {lesson.following}"
 
 
-def _predictions(lesson: Lesson, progress: LessonProgress, signs: Signs) -> str:
+def _predictions(lesson: Lesson, progress: LessonProgress, signs: PageKeys) -> str:
     """What was predicted, without a word on whether it is true."""
     given = [
         f"{each.question}\n\n> {each.answers[answer]}"
         for each, answer in zip(lesson.predictions, progress.answers, strict=False)
     ]
-    if predicted(lesson, progress):
+    if all_predicted(lesson, progress):
         way_on = f"The run decides. When you have seen enough, `{signs.explain}` tells what is true, and why."
     else:
         way_on = (
@@ -136,7 +136,7 @@ def _predictions(lesson: Lesson, progress: LessonProgress, signs: Signs) -> str:
     return "\n\n".join((title, *given, way_on))
 
 
-def _shown(lesson: Lesson, standing: Standing, signs: Signs) -> str:
+def _shown(lesson: Lesson, standing: PageState, signs: PageKeys) -> str:
     outcome, answers = standing.outcome, standing.progress.answers
     if outcome is None:
         note = (
@@ -152,11 +152,11 @@ def _shown(lesson: Lesson, standing: Standing, signs: Signs) -> str:
         _verdict(prediction, answers[place] if place < len(answers) else None, true)
         for place, (prediction, true) in enumerate(zip(lesson.predictions, outcome.true, strict=True))
     ]
-    held = f"Read off {run_in_words(lesson)}."
+    held = f"Read off {run_text(lesson)}."
     return "\n\n".join((f"## What the run showed: {tally(lesson, standing)}", *told, held))
 
 
-def tally(lesson: Lesson, standing: Standing) -> str:
+def tally(lesson: Lesson, standing: PageState) -> str:
     """Say how many predictions came true."""
     answers, true = standing.progress.answers, standing.outcome.true if standing.outcome else ()
     if not answers:
@@ -180,13 +180,13 @@ def _verdict(prediction: Prediction, answer: int | None, true: int) -> str:
     return f"{prediction.question}\n\n{told}\n\n{because}"
 
 
-def _exercise(exercise: Exercise, progress: LessonProgress, signs: Signs) -> str:
+def _exercise(exercise: Exercise, progress: LessonProgress, signs: PageKeys) -> str:
     title = "## Exercise: passed ✓" if progress.passed else "## Exercise"
     begin = f"`{signs.exercise}` goes there: to a file of your own in the current folder."
     return "\n\n".join((title, exercise.asks.strip(), begin))
 
 
-def _hints(exercise: Exercise, progress: LessonProgress, signs: Signs) -> str:
+def _hints(exercise: Exercise, progress: LessonProgress, signs: PageKeys) -> str:
     taken = exercise.hints[: progress.hints]
     total = len(exercise.hints)
     told = [f"**Hint {number} of {total}:** {hint}" for number, hint in enumerate(taken, start=1)]

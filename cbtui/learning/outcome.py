@@ -6,17 +6,18 @@ from threading import Event
 from typing import TYPE_CHECKING, TypeAlias
 
 from lessons.lesson import BadLesson, Lesson
+from sim.plural import counted
 
 if TYPE_CHECKING:
-    from cbtui.runs.judged.checking import Observed
+    from cbtui.runs.judged.checking import ObservedRun
     from sim.engine.setup import RunSetup
 
-Observe: TypeAlias = Callable[["RunSetup", str, Event], "Observed"]
+Observe: TypeAlias = Callable[["RunSetup", str, Event], "ObservedRun"]
 """Runs a set-up to its end on the caller's thread; the event breaks the run off."""
 
 
 @dataclass(frozen=True)
-class Outcome:
+class PredictionOutcome:
     """The true answer of each prediction, by its place; or none, and in a sentence why there are none."""
 
     true: tuple[int, ...] = ()
@@ -43,18 +44,18 @@ class OutcomeRun:
         """Wait until the engine has ended, no longer than so many real seconds."""
         self._ended.wait(seconds)
 
-    def run(self) -> Outcome:
+    def run(self) -> PredictionOutcome:
         """Run the lesson and read the answers off; its engine has ended when this comes back."""
         try:
             return self._outcome()
         except BadLesson as error:
-            return Outcome(trouble=str(error))
+            return PredictionOutcome(trouble=str(error))
         except OSError as error:
-            return Outcome(trouble=f"the engine could not be started: {error.strerror or error}")
+            return PredictionOutcome(trouble=f"the engine could not be started: {error.strerror or error}")
         finally:
             self._ended.set()
 
-    def _outcome(self) -> Outcome:
+    def _outcome(self) -> PredictionOutcome:
         from cbtui.runs.setup.lesson_setup import (
             setup_to_judge,  # on this thread: the screen must not stand still for it
         )
@@ -63,23 +64,25 @@ class OutcomeRun:
         judge = Judge(self._lesson)
         observed = self._observe(setup_to_judge(self._lesson), self._lesson.node_path.name, self._given_up)
         if observed.broken_off:
-            return Outcome(trouble=observed.trouble)
-        return Outcome(tuple(judge.true_answer(each, observed.timeline) for each in self._lesson.predictions))
+            return PredictionOutcome(trouble=observed.trouble)
+        return PredictionOutcome(
+            tuple(judge.true_answer(each, observed.timeline) for each in self._lesson.predictions)
+        )
 
 
-def observe_engine(setup: "RunSetup", name: str, given_up: Event) -> "Observed":
+def observe_engine(setup: "RunSetup", name: str, given_up: Event) -> "ObservedRun":
     """Run a set-up in a separate engine."""
     from cbtui.runs.judged.checking import observe
 
     return observe(setup, name, given_up=given_up)
 
 
-def run_in_words(lesson: Lesson) -> str:
+def run_text(lesson: Lesson) -> str:
     """Say which run a lesson's predictions are held against."""
     run = lesson.run
     parts = [f"a run of {run.seconds:g} s"]
     if run.threads is not None:
-        parts.append(f"{run.threads} thread{'s'[: run.threads - 1]}")
+        parts.append(counted(run.threads, "thread"))
     if run.calls:
         parts.append(f"{lesson.service.name} called at {_listed([f'{at:g}' for at in run.calls])} s")
     parts += [f"`{line}` given at {at:g} s" for at, line in run.lines]

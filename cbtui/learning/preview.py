@@ -4,7 +4,7 @@ from threading import Event
 from typing import TYPE_CHECKING
 
 from cbtui.engines.follow import EngineLostError, FollowedRun, RunTimeoutError
-from lessons.catalogue import comes_along
+from lessons.catalogue import is_built_in
 from lessons.lesson import Lesson
 from sim.units import SECOND
 
@@ -17,7 +17,7 @@ LENGTH = 20 * SECOND
 """How long such a run lasts in its own time: nanoseconds."""
 CALLS = (5 * SECOND, 7 * SECOND)
 """When the lesson's service is called in it, as ``s`` would: a lesson on a service shows nothing without."""
-_PATIENCE = 30.0
+_TIMEOUT = 30.0
 """Real seconds after which a run that has not come to its end is given up."""
 
 
@@ -25,9 +25,9 @@ class CannotPreviewError(Exception):
     """A lesson that could not be run; the text is a sentence."""
 
 
-def why_not(lesson: Lesson) -> str | None:
+def why_no_preview(lesson: Lesson) -> str | None:
     """Return why a lesson is not run before it is opened; None if it can be."""
-    if not comes_along(lesson):
+    if not is_built_in(lesson):
         return "it comes from somebody else, and is only run once you open it"
     if lesson.setup.clock == "real":
         return f"on the real clock that would take {LENGTH / SECOND:g} s of computing"
@@ -65,7 +65,7 @@ class PreviewRun:
             self._ended.set()
 
     def _run(self) -> "Timeline":
-        reason = why_not(self.lesson)
+        reason = why_no_preview(self.lesson)
         if reason is not None:
             raise CannotPreviewError(reason)
         from sim.trace.timeline import Timeline  # numpy and all: on this thread, not on the screen's
@@ -74,14 +74,14 @@ class PreviewRun:
         with FollowedRun(preview_setup(self.lesson), self._open_session, self._given_up) as run:
             try:
                 run.start()
-                run.limit(_PATIENCE)
+                run.limit(_TIMEOUT)
                 for batch in run:
                     timeline.extend(batch)
             except OSError as error:
                 sentence = f"the engine could not be started: {error.strerror or error}"
                 raise CannotPreviewError(sentence) from None
             except RunTimeoutError:
-                raise CannotPreviewError(f"it did not come to its end in {_PATIENCE:g} s") from None
+                raise CannotPreviewError(f"it did not come to its end in {_TIMEOUT:g} s") from None
             except EngineLostError as error:
                 raise CannotPreviewError(str(error)) from None
         return timeline

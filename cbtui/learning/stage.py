@@ -35,6 +35,6 @@ _WORDS = {
 }
 
 
-def in_words(stage: Stage) -> str:
+def stage_text(stage: Stage) -> str:
     """Return a sign with what it stands for; "" for what being opened or not says already."""
     return f"{stage.value} {_WORDS[stage]}" if stage in _WORDS else ""

@@ -59,7 +59,7 @@ class Ink(NamedTuple):
     selected: bool = False
 
 
-class Run(NamedTuple):
+class TextRun(NamedTuple):
     """Text in one ink."""
 
     text: str
@@ -151,13 +151,13 @@ _PLAIN = Glyphs(
 GLYPHS = {Charset.BRAILLE: _BLOCKS, Charset.BLOCK: _BLOCKS, Charset.ASCII: _PLAIN}
 
 
-def texture_of(number: int, glyphs: Glyphs) -> Run:
+def texture_of(number: int, glyphs: Glyphs) -> TextRun:
     """Return what fills a column of the group at a place in the order of letters (0 for A).
 
     Neighbours differ; groups beyond the textures begin them again.
     """
     glyph = glyphs.textures[number % len(glyphs.textures)]
-    return Run(glyph, Ink(Role.BAR if glyph == glyphs.left[8] else glyphs.textured, number))
+    return TextRun(glyph, Ink(Role.BAR if glyph == glyphs.left[8] else glyphs.textured, number))
 
 
 def group_colour(number: int, palette: Palette) -> str:

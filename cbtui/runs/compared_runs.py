@@ -7,9 +7,9 @@ from threading import Event
 from typing import TypeAlias
 
 from cbtui.engines.follow import EngineLostError, FollowedRun, GivenUpError
-from cbtui.engines.session import Session
+from cbtui.engines.session import ProcessSession
 from cbtui.runs.live.live_run import ShownRun
-from cbtui.runs.recorded.repeat import CannotRepeatError, repeated
+from cbtui.runs.recorded.repeat import CannotRepeatError, repeated_setup
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.lesson_setup import RunRequest
 from cbtui.text.output import complain, say
@@ -44,7 +44,7 @@ class ComparedRun:
 
 
 @dataclass(frozen=True)
-class Terms:
+class ComparisonTerms:
     """What is compared, and what is given to those that are run.
 
     ``start`` and ``end`` bound the window, which ends where the shorter run does at the latest; what is run
@@ -64,7 +64,7 @@ def _never() -> bool:
 
 
 @dataclass(frozen=True)
-class Side:
+class ComparedSide:
     """One of two runs as they are compared: what it is called, and all that is known of it.
 
     ``alive`` tells whether the timeline still grows; ``service`` is one that has a lane before its first
@@ -77,7 +77,7 @@ class Side:
     alive: Callable[[], bool] = _never
     damage: str | None = None
 
-    def at_rest(self) -> "Side":
+    def at_rest(self) -> "ComparedSide":
         """The same of a run that nothing more is taken from."""
         return replace(self, alive=_never)
 
@@ -89,7 +89,7 @@ class Side:
 
 
 @dataclass(frozen=True)
-class Progress:
+class RunProgress:
     """How far a run has come, and how far it goes: nanoseconds; ``until`` None: nobody knows."""
 
     name: str
@@ -98,22 +98,22 @@ class Progress:
     until: Nanoseconds | None = None
 
 
-Tell: TypeAlias = Callable[[Progress], None]
+Tell: TypeAlias = Callable[[RunProgress], None]
 
 
 @dataclass(frozen=True)
-class Gathered:
+class RunPair:
     """Both runs, and the window that was asked for as far as both have it."""
 
-    first: Side
-    second: Side
+    first: ComparedSide
+    second: ComparedSide
     window: Window
 
 
-def side_of(run: ShownRun, changes: Changes) -> Side:
+def compared_side(run: ShownRun, changes: Changes) -> ComparedSide:
     """A run of the console's as one side; called by its ``changes``, which is what two runs differ in."""
     service = run.setup.service
-    return Side(
+    return ComparedSide(
         f"{run.setup.title}, {changes.words or 'as written'}",
         run.timeline,
         "" if service is None else service.name,
@@ -121,10 +121,10 @@ def side_of(run: ShownRun, changes: Changes) -> Side:
     )
 
 
-def compare_runs(first: ComparedRun, second: ComparedRun, terms: Terms) -> int:
+def compare_runs(first: ComparedRun, second: ComparedRun, terms: ComparisonTerms) -> int:
     """Print the comparison; returns the exit code: 0 well, 1 a run failed, 2 there is nothing to compare."""
     try:
-        found = gather(first, second, terms, tell=lambda _: None, given_up=Event())
+        found = load_runs(first, second, terms, tell=lambda _: None, given_up=Event())
     except CannotCompareError as error:
         complain(str(error))
         return 2
@@ -138,7 +138,9 @@ def compare_runs(first: ComparedRun, second: ComparedRun, terms: Terms) -> int:
     return 1 if failures else 0
 
 
-def gather(first: ComparedRun, second: ComparedRun, terms: Terms, tell: Tell, given_up: Event) -> Gathered:
+def load_runs(
+    first: ComparedRun, second: ComparedRun, terms: ComparisonTerms, tell: Tell, given_up: Event
+) -> RunPair:
     """Read what is recorded and run the rest, on the caller's thread; may take as long as it takes.
 
     Raises:
@@ -155,10 +157,10 @@ def gather(first: ComparedRun, second: ComparedRun, terms: Terms, tell: Tell, gi
         side or _run(each, terms, until, tell, given_up)
         for each, side in zip((first, second), known, strict=True)
     )
-    return Gathered(one, other, Window(nearest_ns(terms.start), until))
+    return RunPair(one, other, Window(nearest_ns(terms.start), until))
 
 
-def _until(lengths: list[Nanoseconds], terms: Terms, tell: Tell, given_up: Event) -> Nanoseconds:
+def _until(lengths: list[Nanoseconds], terms: ComparisonTerms, tell: Tell, given_up: Event) -> Nanoseconds:
     """Where the comparison ends: as asked, where the shorter recording does, or where the inputs do."""
     if terms.end is not None:
         return min([nearest_ns(terms.end), *lengths])
@@ -167,7 +169,7 @@ def _until(lengths: list[Nanoseconds], terms: Terms, tell: Tell, given_up: Event
     return min(lengths, default=LENGTH)
 
 
-def _check(terms: Terms, until: Nanoseconds) -> None:
+def _check(terms: ComparisonTerms, until: Nanoseconds) -> None:
     end = until / SECOND
     if end <= terms.start:
         raise CannotCompareError(f"nothing is left to compare from {terms.start:g} s to {end:g} s")
@@ -179,13 +181,13 @@ def _check(terms: Terms, until: Nanoseconds) -> None:
             )
 
 
-def _recorded(name: str, path: Path, tell: Tell, given_up: Event) -> Side:
+def _recorded(name: str, path: Path, tell: Tell, given_up: Event) -> ComparedSide:
     timeline = Timeline(until_ending=True)
     try:
         recording = read(path)
         for events in recording.batches():
             timeline.extend(events)
-            tell(Progress(name, "reading", timeline.end))
+            tell(RunProgress(name, "reading", timeline.end))
             if given_up.is_set():
                 raise GivenUpError
     except RecordingError as error:
@@ -193,11 +195,11 @@ def _recorded(name: str, path: Path, tell: Tell, given_up: Event) -> Side:
     except OSError as error:
         raise CannotCompareError(f"{path} cannot be read to its end: {error.strerror}") from None
     damage = None if recording.damage is None else f"{name}: {recording.damage}"
-    return Side(name, timeline, damage=damage)
+    return ComparedSide(name, timeline, damage=damage)
 
 
 def _prepared(
-    compared: ComparedRun, terms: Terms, until: Nanoseconds, missing: Callable[[str], None]
+    compared: ComparedRun, terms: ComparisonTerms, until: Nanoseconds, missing: Callable[[str], None]
 ) -> RunSetup:
     """A set-up for the compared's own clock, as fast as it goes; for virtual time, if it gets inputs.
 
@@ -208,22 +210,24 @@ def _prepared(
     if terms.inputs is None:
         return request.setup()
     try:
-        return repeated(terms.inputs, request, tell=missing)
+        return repeated_setup(terms.inputs, request, tell=missing)
     except CannotRepeatError as error:
         raise CannotCompareError(str(error)) from None
 
 
-def _run(compared: ComparedRun, terms: Terms, until: Nanoseconds, tell: Tell, given_up: Event) -> Side:
+def _run(
+    compared: ComparedRun, terms: ComparisonTerms, until: Nanoseconds, tell: Tell, given_up: Event
+) -> ComparedSide:
     name = compared.name
     damage: list[str] = []
     setup = _prepared(compared, terms, until, damage.append)
     timeline = Timeline(until_ending=True)
-    with FollowedRun(setup, Session, given_up) as run:
+    with FollowedRun(setup, ProcessSession, given_up) as run:
         try:
             run.start()
             for batch in run:
                 timeline.extend(batch)
-                tell(Progress(name, "running", timeline.end, setup.until))
+                tell(RunProgress(name, "running", timeline.end, setup.until))
         except EngineLostError as error:
             raise CannotCompareError(f"{name} could not be run to its end: {error}") from None
-    return Side(name, timeline, compared.service, damage=next(iter(damage), None))
+    return ComparedSide(name, timeline, compared.service, damage=next(iter(damage), None))

@@ -12,16 +12,16 @@ from textual.screen import Screen, ScreenResultCallbackType, ScreenResultType
 from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import keymap_of
-from cbtui.looks.theme import Charset, Ink, Role, Run
-from cbtui.runs.compared_runs import Side
+from cbtui.looks.theme import Charset, Ink, Role, TextRun
+from cbtui.runs.compared_runs import ComparedSide
 from cbtui.runs.live.playhead import SPANS, Playhead
 from cbtui.screens.layout import Layout
 from cbtui.screens.parts.bars import BarSelection
 from cbtui.screens.parts.frames import FRAMES_A_SECOND
 from cbtui.screens.parts.navigation import TimeNavigation
-from cbtui.screens.parts.part import Parts
+from cbtui.screens.parts.part import ScreenParts
 from cbtui.screens.sized import SizedScreen
-from cbtui.widgets.comparison import ComparisonHeadings, ComparisonTable, Words
+from cbtui.widgets.comparison import ComparisonHeadings, ComparisonTable, HeadingLine
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.keys import lane_keys
@@ -38,13 +38,13 @@ _FAINT = Ink(Role.FAINT)
 _TABLE_ALONE = "-table-alone"
 _LANES_ALONE = "-lanes-alone"
 """Classes of the screen when the table, or the lanes, fill it."""
-_REST = 9
+_REST_FACTOR = 9
 """How many times as long as a comparison took the next one is put off: it may take a tenth of the time."""
-_SLICE = 0.008
+_TIME_SLICE = 0.008
 """Seconds for which a comparison goes on before the keys have their turn."""
-_BREATH = 0.002
+_YIELD_TIME = 0.002
 """Seconds that they have at least."""
-_SOON = 0.5
+_PROGRESS_AFTER = 0.5
 """Seconds after which it is told that a comparison is being made."""
 _ROWS_A_KEY = 3
 
@@ -63,7 +63,9 @@ class CompareScreen(SizedScreen[None]):
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.COMPARE)]
     AUTO_FOCUS = ""
 
-    def __init__(self, first: Side, second: Side, charset: Charset, bounds: Window | None = None) -> None:
+    def __init__(
+        self, first: ComparedSide, second: ComparedSide, charset: Charset, bounds: Window | None = None
+    ) -> None:
         super().__init__()
         self._sides = (first, second)
         self._charset = charset
@@ -77,7 +79,7 @@ class CompareScreen(SizedScreen[None]):
         self.bars = BarSelection(
             lambda: list(self.query(Lanes)), self.navigation, lambda: self.query_one(KeyBar).changed()
         )
-        self._parts = Parts(self, Scope.COMPARE, self.navigation, self.bars)
+        self._parts = ScreenParts(self, Scope.COMPARE, self.navigation, self.bars)
         self._drawn: tuple[object, ...] = ()
         self._compared: Window | None = None
         self._comparing = False
@@ -85,11 +87,11 @@ class CompareScreen(SizedScreen[None]):
 
     def compose(self) -> ComposeResult:
         """Lay out both runs and the table."""
-        yield Words(self._charset, id="status")
+        yield HeadingLine(self._charset, id="status")
         for number in range(len(self._sides)):
-            yield Words(self._charset, id=f"run{number}")
+            yield HeadingLine(self._charset, id=f"run{number}")
             yield Lanes(id=f"lanes{number}")
-        yield Words(self._charset, ruled="-" if self._charset is Charset.ASCII else "─", id="window")
+        yield HeadingLine(self._charset, ruled="-" if self._charset is Charset.ASCII else "─", id="window")
         yield ComparisonHeadings(self._charset)
         yield ComparisonTable(self._charset)
         yield KeyBar(Scope.COMPARE, self._charset)
@@ -138,13 +140,13 @@ class CompareScreen(SizedScreen[None]):
 
     def _draw_runs(self) -> None:
         at, shown = self.navigation.now, self.navigation.window
-        self.query_one("#status", Words).words = (
-            Run(" Two runs", _STRONG),
-            Run(f"   t {timestamp(at)}", _STRONG),
-            Run(f"   {duration(shown.length)} on screen", _FAINT),
+        self.query_one("#status", HeadingLine).words = (
+            TextRun(" Two runs", _STRONG),
+            TextRun(f"   t {timestamp(at)}", _STRONG),
+            TextRun(f"   {duration(shown.length)} on screen", _FAINT),
         )
         for number, side in enumerate(self._sides):
-            self.query_one(f"#run{number}", Words).words = _about(number, side, at)
+            self.query_one(f"#run{number}", HeadingLine).words = _about(number, side, at)
             lanes = self._lanes(number)
             # Nothing is known of a run after its end, even if that came while a callback ran.
             lanes.window, lanes.now = shown, min(at, side.timeline.end)
@@ -171,20 +173,20 @@ class CompareScreen(SizedScreen[None]):
                 words, shown = over.value
                 break
             now = monotonic()
-            if now - turn >= _SLICE:
+            if now - turn >= _TIME_SLICE:
                 worked += now - turn
-                if now - began >= _SOON:
+                if now - began >= _PROGRESS_AFTER:
                     self._title(f"Comparing, {now - began:.0f} s so far")
-                await asyncio.sleep(_BREATH)
+                await asyncio.sleep(_YIELD_TIME)
                 turn = monotonic()
         self._title(words)
         self.query_one(ComparisonTable).show(shown)
         self._comparing = False
-        self._rest_until = monotonic() + _REST * (worked + monotonic() - turn)
+        self._rest_until = monotonic() + _REST_FACTOR * (worked + monotonic() - turn)
 
     def _title(self, words: str) -> None:
         """Say above the table what it is about."""
-        self.query_one("#window", Words).words = (Run(f" {words} ", _STRONG),)
+        self.query_one("#window", HeadingLine).words = (TextRun(f" {words} ", _STRONG),)
 
     def _forget_comparison(self) -> None:
         """Begin anew: something else is asked for."""
@@ -238,12 +240,12 @@ class CompareScreen(SizedScreen[None]):
                 return self.navigation.now > 0
         return self._parts.offer(action, parameters)
 
-    @on(Lanes.Picked)
-    def _pick_bar(self, message: Lanes.Picked) -> None:
+    @on(Lanes.BarPicked)
+    def _pick_bar(self, message: Lanes.BarPicked) -> None:
         self.bars.pick(message)
 
-    @on(Lanes.Turned)
-    def _turn(self, message: Lanes.Turned) -> None:
+    @on(Lanes.WheelTurned)
+    def _turn(self, message: Lanes.WheelTurned) -> None:
         self.navigation.zoom(message.steps)
 
     def action_deselect(self) -> None:
@@ -290,18 +292,18 @@ class CompareScreen(SizedScreen[None]):
         self.dismiss()
 
 
-def _about(number: int, side: Side, at: Nanoseconds) -> tuple[Run, ...]:
+def _about(number: int, side: ComparedSide, at: Nanoseconds) -> tuple[TextRun, ...]:
     """What the line above a run's lanes tells."""
     timeline = side.timeline
     state = "goes on" if side.alive() else f"ends at {timestamp(timeline.end)}"
     told = [text for text in (executor_label(timeline), f"dropped {timeline.dropped(at)}", state) if text]
     return (
-        Run(f" {RUNS[number]}  {side.name}", _STRONG),
-        Run(f"   {'   '.join(told)}", _PLAIN),
+        TextRun(f" {RUNS[number]}  {side.name}", _STRONG),
+        TextRun(f"   {'   '.join(told)}", _PLAIN),
     )
 
 
-def _shorter(first: Side, second: Side) -> str:
+def _shorter(first: ComparedSide, second: ComparedSide) -> str:
     shorter = second.timeline.end < first.timeline.end
     side = second if shorter else first
     until = "has come to" if side.alive() else "ends at"

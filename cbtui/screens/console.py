@@ -5,7 +5,7 @@ from typing import Any, Protocol, cast
 from textual.screen import Screen
 
 from cbtui.learning.outcome import Observe
-from cbtui.runs.setup.recent import Opened
+from cbtui.runs.setup.recent import RecentEntry
 from lessons.lesson import Lesson
 from lessons.progress import Progress
 
@@ -24,7 +24,7 @@ class Console(Protocol):
     def open_exercise(self, lesson: Lesson) -> None:
         """Run and check the learner's file for a lesson's exercise."""
 
-    def open_file(self, entry: Opened) -> None:
+    def open_file(self, entry: RecentEntry) -> None:
         """Run a program or show a recording.
 
         Raises:

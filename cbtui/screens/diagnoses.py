@@ -15,12 +15,13 @@ from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import Keymap
 from cbtui.looks.theme import GLYPHS, Charset
-from cbtui.runs.live.findings import ExplainedFinding, counted
+from cbtui.runs.live.findings import ExplainedFinding, problem_count_text
 from cbtui.screens.sized import SizedModal
 from cbtui.text.cells import visible
 from cbtui.widgets.key_bar import KeyBar
 from sim.diagnosis import sentence, whereabouts
 from sim.durations import timestamp
+from sim.plural import counted
 
 _ALL_IS_WELL = "✓ Nothing has gone wrong so far: the rules have found no problem, and nothing to remark on."
 _TIME = 10
@@ -100,7 +101,7 @@ def title_of(findings: Sequence[ExplainedFinding]) -> str:
     """Return how many there are of what: ``Diagnoses: 2 problems, 1 remark``."""
     problems = sum(each.is_problem for each in findings)
     counts = ((problems, "problem"), (len(findings) - problems, "remark"))
-    words = [f"{count} {name}{'s'[: count - 1]}" for count, name in counts if count]
+    words = [counted(count, name) for count, name in counts if count]
     return f"Diagnoses: {', '.join(words)}" if words else "Diagnoses"
 
 
@@ -131,6 +132,6 @@ def details_of(each: ExplainedFinding, charset: Charset) -> Content:
 
 def problems_note(findings: Sequence[ExplainedFinding], keymap: Keymap, charset: Charset) -> str:
     """Return how many problems there are, and the key that lists them: ``2 problems · d``; "" for none."""
-    count = counted(findings)
+    count = problem_count_text(findings)
     opens = keymap.sign(Scope.LESSON, "diagnoses", charset)
     return f"{count} {GLYPHS[charset].between} {opens}" if count else ""

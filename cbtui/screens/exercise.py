@@ -15,13 +15,13 @@ from cbtui.keys.action import CHECKS, PANES, Scope
 from cbtui.keys.keymap import STANDARD, Keymap, keymap_of
 from cbtui.learning.lesson_page import page_of_exercise
 from cbtui.looks.theme import Charset
-from cbtui.runs.judged.checking import Observed, over
+from cbtui.runs.judged.checking import ObservedRun, ended_run
 from cbtui.runs.judged.run_budget import RunBudget
 from cbtui.runs.live.file_watch import CANNOT_WATCH, contents
 from cbtui.runs.live.live_recording import LiveRecording
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
-from cbtui.runs.setup.subject import of_exercise
+from cbtui.runs.setup.shown_program import of_exercise
 from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey
 from cbtui.screens.parts.exercise_help import ExerciseHelp
 from cbtui.screens.parts.judging import Judging
@@ -29,12 +29,12 @@ from cbtui.screens.parts.learning import Learning, signs
 from cbtui.screens.parts.restarts import Restarts
 from cbtui.screens.parts.runs import RunController
 from cbtui.screens.run import RunScreen
-from cbtui.widgets.checks import ChecksView, Sheet, Standing
-from cbtui.widgets.checks.exercise_sheet import ExerciseWords, Keys
-from cbtui.widgets.diagnosis import Diagnosis, Weight
+from cbtui.widgets.checks import ChecksSheet, CheckStatus, ChecksView
+from cbtui.widgets.checks.exercise_sheet import ExerciseKeys, ExerciseTexts
+from cbtui.widgets.diagnosis import Diagnosis, DiagnosisLevel
 from lessons.lesson import Lesson
 
-_LOOK = 0.2
+_BUDGET_INTERVAL = 0.2
 """Seconds after which it is looked whether a run has taken too much."""
 
 
@@ -95,7 +95,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
                 self._learning,
                 file,
                 is_readable=lambda _: True,
-                is_done=lambda: self._sheet.standing is Standing.PASSED,
+                is_done=lambda: self._sheet.standing is CheckStatus.PASSED,
             ),
             lesson=lambda: self.console.open_lesson(lesson),
         )
@@ -131,7 +131,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
 
     def on_mount(self) -> None:
         """Watch the file and the run."""
-        self.set_interval(_LOOK, self.look_at_budget)
+        self.set_interval(_BUDGET_INTERVAL, self.look_at_budget)
         self.run_worker(self._watch_file(), group="file")
 
     def draw_pane(self, pane: Widget) -> None:
@@ -150,17 +150,19 @@ class ExerciseScreen(RunScreen[LiveRun]):
         if self.navigation.playhead.at is not None or self.runs.run.alive:
             return super().diagnosis()
         sheet = self._sheet
-        if sheet.standing is Standing.FAILED and not sheet.note:
-            return Diagnosis(sheet.news, Weight.TROUBLE, stays=True)
-        return Diagnosis(sheet.news, Weight.FINE)
+        if sheet.standing is CheckStatus.FAILED and not sheet.note:
+            return Diagnosis(sheet.news, DiagnosisLevel.TROUBLE, stays=True)
+        return Diagnosis(sheet.news, DiagnosisLevel.FINE)
 
     @property
-    def _words(self) -> ExerciseWords:
+    def _words(self) -> ExerciseTexts:
         return self._words_in(keymap_of(self.app), self.charset)
 
-    def _words_in(self, keymap: Keymap, charset: Charset) -> ExerciseWords:
+    def _words_in(self, keymap: Keymap, charset: Charset) -> ExerciseTexts:
         actions = ("open_source", "watch", "lesson", "next_lesson")
-        return self._judging.words(Keys(*(keymap.sign(Scope.LESSON, action, charset) for action in actions)))
+        return self._judging.words(
+            ExerciseKeys(*(keymap.sign(Scope.LESSON, action, charset) for action in actions))
+        )
 
     @property
     def _task_in_words(self) -> str:
@@ -168,7 +170,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
         return self._words_in(STANDARD, Charset.ASCII).page(self._judging.file)
 
     @property
-    def _sheet(self) -> Sheet:
+    def _sheet(self) -> ChecksSheet:
         return self._judging.sheet_at(self.runs.timeline.end, self._words)
 
     # runs
@@ -181,7 +183,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
     @on(RunController.Over)
     def _judge_when_over(self, message: RunController.Over) -> None:
         if message.run == self.runs.number:
-            self._come_to_an_end(over(self.runs.timeline, self._judging.file.name, message.trouble))
+            self._come_to_an_end(ended_run(self.runs.timeline, self._judging.file.name, message.trouble))
 
     def allow(self, budget: RunBudget) -> None:
         """Let the run on screen take this much."""
@@ -199,12 +201,12 @@ class ExerciseScreen(RunScreen[LiveRun]):
         run = self.runs.run
         self.finisher.finish(run.over(sentence))
         self.run_worker(asyncio.to_thread(run.stop), group="stop")
-        self._come_to_an_end(Observed(run.timeline, sentence, broken_off=True))
+        self._come_to_an_end(ObservedRun(run.timeline, sentence, broken_off=True))
 
-    def _come_to_an_end(self, observed: Observed) -> None:
+    def _come_to_an_end(self, observed: ObservedRun) -> None:
         self.run_worker(self._judge(self.runs.number, observed), group="judge", exclusive=True)
 
-    async def _judge(self, number: int, observed: Observed) -> None:
+    async def _judge(self, number: int, observed: ObservedRun) -> None:
         checked = await self._judging.judge(observed)
         if number != self.runs.number:
             return

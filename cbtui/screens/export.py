@@ -16,10 +16,10 @@ from cbtui.keys.keymap import keymap_of
 from cbtui.looks.theme import Charset
 from cbtui.screens.sized import SizedModal
 from cbtui.widgets.key_bar import KeyBar
-from cbtui.widgets.options import Options
+from cbtui.widgets.pageable_option_list import PageableOptionList
 
 
-class Choice(NamedTuple):
+class ExportChoice(NamedTuple):
     """A format of ``exporting.FORMATS``, and whether it is to be of the stretch on screen only."""
 
     form: str
@@ -27,17 +27,17 @@ class Choice(NamedTuple):
 
 
 CHOICES = {
-    "picture": (Choice("svg", on_screen=True), "picture", "the lanes as on screen, for paper (SVG)"),
-    "whole": (Choice("svg"), "whole picture", "the lanes of the whole run (SVG)"),
-    "report": (Choice("markdown"), "report", "set-up, statistics, waits, notices (Markdown)"),
-    "table": (Choice("csv"), "table", "a line for each call, for spreadsheets (CSV)"),
-    "perfetto": (Choice("perfetto"), "Perfetto", "a trace for ui.perfetto.dev"),
-    "chrome": (Choice("chrome"), "Chrome", "a trace for chrome://tracing and Speedscope"),
+    "picture": (ExportChoice("svg", on_screen=True), "picture", "the lanes as on screen, for paper (SVG)"),
+    "whole": (ExportChoice("svg"), "whole picture", "the lanes of the whole run (SVG)"),
+    "report": (ExportChoice("markdown"), "report", "set-up, statistics, waits, notices (Markdown)"),
+    "table": (ExportChoice("csv"), "table", "a line for each call, for spreadsheets (CSV)"),
+    "perfetto": (ExportChoice("perfetto"), "Perfetto", "a trace for ui.perfetto.dev"),
+    "chrome": (ExportChoice("chrome"), "Chrome", "a trace for chrome://tracing and Speedscope"),
 }
 """What can be chosen, by the names that the registry's actions have, with a name and a meaning."""
 
 
-class ExportScreen(SizedModal[Choice]):
+class ExportScreen(SizedModal[ExportChoice]):
     """Gives what was chosen; None if the person thinks better of it."""
 
     SCOPE = Scope.EXPORT
@@ -53,7 +53,7 @@ class ExportScreen(SizedModal[Choice]):
         with Container(classes="window") as window:
             window.border_title = "Export"
             yield Static("What is to be made of the run so far?\nThe file comes into the current folder.")
-            yield Options(*(self._option(name) for name in CHOICES))
+            yield PageableOptionList(*(self._option(name) for name in CHOICES))
             yield KeyBar(Scope.EXPORT, self._charset)
 
     def on_mount(self) -> None:

@@ -14,12 +14,12 @@ from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import keymap_of
 from cbtui.looks.theme import Charset
-from cbtui.runs.setup.changeable import Callback
-from cbtui.runs.setup.changes import WISHES
+from cbtui.runs.setup.changeable import ChangeableCallback
+from cbtui.runs.setup.changes import GROUP_CHOICES
 from cbtui.runs.setup.equivalent_code import code_of_group
 from cbtui.screens.sized import SizedModal
 from cbtui.widgets.key_bar import KeyBar
-from cbtui.widgets.options import Options
+from cbtui.widgets.pageable_option_list import PageableOptionList
 
 UNCHANGED = ""
 """What the screen gives for the group that the program says."""
@@ -34,16 +34,16 @@ _MEANINGS = {
 
 
 class GroupScreen(SizedModal[str]):
-    """Gives one of ``WISHES``, or ``UNCHANGED``; None if the person thinks better of it."""
+    """Gives one of ``GROUP_CHOICES``, or ``UNCHANGED``; None if the person thinks better of it."""
 
     SCOPE = Scope.GROUP
     CSS_PATH = "window.tcss"
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.GROUP)]
 
-    def __init__(self, callback: Callback, chosen: str | None, charset: Charset) -> None:
+    def __init__(self, callback: ChangeableCallback, chosen: str | None, charset: Charset) -> None:
         super().__init__()
         self._callback = callback
-        self._choices = (*WISHES, UNCHANGED)
+        self._choices = (*GROUP_CHOICES, UNCHANGED)
         self._chosen = chosen or UNCHANGED
         self._charset = charset
 
@@ -54,7 +54,7 @@ class GroupScreen(SizedModal[str]):
             now = f"In this run: group {self._callback.group}."
             question = f"Which callback group does {self._callback.name} get?"
             yield Static(f"{question} The run starts again.\n{now}", markup=False)
-            yield Options(*(self._option(choice) for choice in self._choices))
+            yield PageableOptionList(*(self._option(choice) for choice in self._choices))
             yield Static(classes="code")
             yield KeyBar(Scope.GROUP, self._charset)
 

@@ -9,7 +9,7 @@ from textual.containers import Container, VerticalScroll
 from textual.content import Content
 from textual.widgets import Static
 
-from cbtui.keys.action import Action, Scope, together
+from cbtui.keys.action import Action, Scope, group_by
 from cbtui.keys.actions import ACTIONS
 from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import Keymap, keymap_of
@@ -68,7 +68,7 @@ class HelpScreen(SizedModal[None]):
 def _sections(first: Scope | None, keymap: Keymap, charset: Charset) -> Iterator[Content]:
     for scope in sorted(_SHOWN, key=lambda scope: scope is not first):
         actions = keymap.of(action for action in ACTIONS if action.scope is scope)
-        rows = [_row(group, charset) for group in together(actions, "line")]
+        rows = [_row(group, charset) for group in group_by(actions, "line")]
         yield Content("\n").join([Content.styled(scope.value, "bold $text-primary"), *rows, Content("")])
 
 

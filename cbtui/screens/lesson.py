@@ -6,21 +6,20 @@ import msgspec
 from textual import on
 
 from cbtui.engines.session import Deliver, Ended, OpenSession
-from cbtui.learning.lesson_page import Part as PagePart
-from cbtui.learning.lesson_page import page_of
+from cbtui.learning.lesson_page import PageSection, page_of
 from cbtui.looks.theme import Charset
 from cbtui.runs.live.live_recording import LiveRecording
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
-from cbtui.runs.setup.subject import Subject
+from cbtui.runs.setup.shown_program import ShownProgram
 from cbtui.screens.parts.engine_keys import PaceKeys, RecordingKey, TypingKeys, WorldKeys
 from cbtui.screens.parts.exercise_help import ExerciseHelp
 from cbtui.screens.parts.learning import Learning, signs
-from cbtui.screens.parts.part import Part
+from cbtui.screens.parts.part import ScreenPart
 from cbtui.screens.parts.predictions import Predictions
 from cbtui.screens.parts.restarts import Restarts, SetUpKeys
 from cbtui.screens.parts.runs import RunController
-from cbtui.screens.prediction import Way
+from cbtui.screens.prediction import PredictionExit
 from cbtui.screens.run import RunScreen
 from cbtui.widgets.shell import ProgramKeyboard, Prompt, ShellView
 from lessons.lesson import Lesson
@@ -35,7 +34,7 @@ class LessonScreen(RunScreen[LiveRun]):
 
     def __init__(
         self,
-        subject: Subject,
+        subject: ShownProgram,
         open_session: OpenSession,
         charset: Charset,
         changes: Changes | None = None,
@@ -63,7 +62,7 @@ class LessonScreen(RunScreen[LiveRun]):
         )
         runs.begin(speed=1.0)
 
-    def _teaching_parts(self, lesson: Lesson) -> Iterator[Part]:
+    def _teaching_parts(self, lesson: Lesson) -> Iterator[ScreenPart]:
         learning = self._learning = Learning(
             self, self, self.panes, lesson, lambda standing: page_of(lesson, standing, signs())
         )
@@ -109,11 +108,11 @@ class LessonScreen(RunScreen[LiveRun]):
         else:
             super().start()
 
-    async def _start_after(self, way: Way | None) -> None:
+    async def _start_after(self, way: PredictionExit | None) -> None:
         learning = self._learning
-        if way is Way.ON and learning is not None:
+        if way is PredictionExit.ON and learning is not None:
             await learning.learnt()
-            learning.guide.go_to(PagePart.TASK)
+            learning.guide.go_to(PageSection.TASK)
             super().start()
         else:
             self.action_leave()
@@ -135,11 +134,11 @@ class LessonScreen(RunScreen[LiveRun]):
 
     # what is typed
 
-    @on(Prompt.Given)
-    def _give_line(self, message: Prompt.Given) -> None:
+    @on(Prompt.LineSubmitted)
+    def _give_line(self, message: Prompt.LineSubmitted) -> None:
         self.runs.run.give_line(message.text)
 
-    @on(Prompt.Interrupted)
+    @on(Prompt.LineInterrupted)
     def _interrupt_line(self) -> None:
         self.runs.run.interrupt_line()
 
@@ -147,6 +146,6 @@ class LessonScreen(RunScreen[LiveRun]):
     def _complete_line(self, message: Prompt.CompletionWanted) -> None:
         self.runs.run.complete_line(message.text, message.cursor)
 
-    @on(ProgramKeyboard.Given)
-    def _type(self, message: ProgramKeyboard.Given) -> None:
+    @on(ProgramKeyboard.TextTyped)
+    def _type(self, message: ProgramKeyboard.TextTyped) -> None:
         self.runs.run.type(message.text)

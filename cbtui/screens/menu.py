@@ -19,29 +19,29 @@ from cbtui.engines.follow import GivenUpError
 from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import keymap_of
-from cbtui.learning.lesson_page import in_short
-from cbtui.learning.preview import CALLS, LENGTH, CannotPreviewError, PreviewRun, why_not
-from cbtui.learning.stage import Stage, in_words, stage_of
+from cbtui.learning.lesson_page import short_description
+from cbtui.learning.preview import CALLS, LENGTH, CannotPreviewError, PreviewRun, why_no_preview
+from cbtui.learning.stage import Stage, stage_of, stage_text
 from cbtui.looks.theme import Charset
-from cbtui.runs.setup.recent import Opened, Recents
+from cbtui.runs.setup.recent import RecentEntry, RecentList
 from cbtui.screens.console import console_of
 from cbtui.screens.layout import Layout
 from cbtui.screens.sized import SizedScreen
-from cbtui.widgets.about import About, Description, of_file, of_lesson
 from cbtui.widgets.banner import Banner
-from cbtui.widgets.choices import Choices, Rows, WideRows, with_words
+from cbtui.widgets.description_pane import DescriptionPane, EntryDescription, of_file, of_lesson
 from cbtui.widgets.key_bar import KeyBar
+from cbtui.widgets.menu_list import MenuList, MenuRows, WideMenuRows, with_words
 from cbtui.widgets.menu_search import MenuSearch
-from cbtui.widgets.miniature import Miniature, Subject
+from cbtui.widgets.miniature import Miniature, PreviewPicture
 from lessons.lesson import Lesson
 from lessons.progress import Progress
 
 if TYPE_CHECKING:
     from cbtui.engines.session import OpenSession
 
-_REST = 0.3
+_HOVER_DELAY = 0.3
 """Seconds that the highlight has to rest on a lesson before it is run for its picture."""
-_PATIENCE = 1.0
+_EXIT_TIMEOUT = 1.0
 """Seconds that the console waits at its end for an engine that draws; it is killed before."""
 _CALLED = " and ".join(f"{at / 1e9:g}" for at in CALLS)
 _TITLE = f"first {LENGTH / 1e9:g} s, {{key}} pressed at {_CALLED} s"
@@ -62,7 +62,7 @@ class MenuScreen(SizedScreen[None]):
     class Drawn(Message):
         """A lesson's short run is over: ``subject`` is what to draw, a sentence, or None if given up."""
 
-        def __init__(self, lesson: Lesson, subject: Subject | str | None) -> None:
+        def __init__(self, lesson: Lesson, subject: PreviewPicture | str | None) -> None:
             super().__init__()
             self.lesson = lesson
             self.subject = subject
@@ -70,7 +70,7 @@ class MenuScreen(SizedScreen[None]):
     def __init__(
         self,
         lessons: Sequence[Lesson],
-        recents: Recents,
+        recents: RecentList,
         progress: Progress,
         open_session: "OpenSession",
         charset: Charset,
@@ -83,7 +83,7 @@ class MenuScreen(SizedScreen[None]):
         self._open_session = open_session
         self._charset = charset
         self._now = now
-        self._subjects: dict[str, Subject | str] = {}
+        self._subjects: dict[str, PreviewPicture | str] = {}
         self._run: PreviewRun | None = None
         self._rest: Timer | None = None
         self._filled_with: object = None
@@ -93,8 +93,8 @@ class MenuScreen(SizedScreen[None]):
         """Lay out head, list, description and keys."""
         yield Banner()
         with Container(id="choice"):
-            yield Choices(id="lessons")
-            yield About()
+            yield MenuList(id="lessons")
+            yield DescriptionPane()
             yield Miniature()
         yield KeyBar(Scope.MENU, self._charset)
 
@@ -120,7 +120,7 @@ class MenuScreen(SizedScreen[None]):
         """Leave no engine behind."""
         if self._run is not None:
             self._run.give_up()
-            await asyncio.to_thread(self._run.wait, _PATIENCE)
+            await asyncio.to_thread(self._run.wait, _EXIT_TIMEOUT)
 
     def laid_out(self) -> None:
         """Tell more in the list where there is room."""
@@ -145,7 +145,7 @@ class MenuScreen(SizedScreen[None]):
 
     def _fill(self) -> None:
         self._filled_with = self._contents
-        kind = WideRows if self.layout_now is Layout.GRID else Rows
+        kind = WideMenuRows if self.layout_now is Layout.GRID else MenuRows
         rows = kind(self._lessons, self._stages, self._now())
         wanted = with_words(self._words)
         self._list.show(filter(wanted, self._lessons), filter(wanted, self._recents.files), rows)
@@ -159,12 +159,12 @@ class MenuScreen(SizedScreen[None]):
     def _describe(self) -> None:
         """Tell about what is highlighted, and draw it, if it is a lesson, when it stays so."""
         chosen = self._list.chosen
-        about = self.query_one(About)
+        about = self.query_one(DescriptionPane)
         about.description = self._description
         about.set_class(not isinstance(chosen, Lesson), "-alone")
         self._miniature.display = isinstance(chosen, Lesson)
         key = keymap_of(self.app).sign(Scope.LESSON, "call_service", self._charset)
-        reason = why_not(chosen) if isinstance(chosen, Lesson) else None
+        reason = why_no_preview(chosen) if isinstance(chosen, Lesson) else None
         self._miniature.border_title = Text(_TITLE.format(key=key) if reason is None else _NO_PICTURE)
         if isinstance(chosen, Lesson) and reason is not None:
             self._subjects[chosen.id] = f"It is not run for its picture: {reason}."
@@ -172,21 +172,21 @@ class MenuScreen(SizedScreen[None]):
         if self._rest is not None:
             self._rest.stop()
         if isinstance(chosen, Lesson) and chosen.id not in self._subjects:
-            self._rest = self.set_timer(_REST, self._draw)
+            self._rest = self.set_timer(_HOVER_DELAY, self._draw)
         self.query_one(KeyBar).changed()
 
     @property
-    def _description(self) -> Description:
+    def _description(self) -> EntryDescription:
         chosen = self._list.chosen
         if isinstance(chosen, Lesson):
-            text = in_short(chosen, self._progress.of(chosen.id))
+            text = short_description(chosen, self._progress.of(chosen.id))
             opened = self._recents.lessons.get(chosen.id)
-            so_far = in_words(self._stages[chosen.id])
+            so_far = stage_text(self._stages[chosen.id])
             return of_lesson(chosen, text, opened, self._now(), so_far, keymap_of(self.app))
         if chosen is not None:
             forget = keymap_of(self.app).sign(Scope.MENU, "forget", self._charset)
             return of_file(chosen, self._now(), forget)
-        return Description("Nothing found", "No lesson and no recent file has all of these words.")
+        return EntryDescription("Nothing found", "No lesson and no recent file has all of these words.")
 
     @on(OptionList.OptionHighlighted)
     def _show_highlighted(self) -> None:
@@ -212,7 +212,7 @@ class MenuScreen(SizedScreen[None]):
 
     def _draw_with(self, run: PreviewRun, lesson: Lesson) -> None:
         """Run a lesson, on a thread of its own."""
-        subject: Subject | str | None
+        subject: PreviewPicture | str | None
         try:
             timeline = run.run()
         except CannotPreviewError as error:
@@ -220,10 +220,12 @@ class MenuScreen(SizedScreen[None]):
         except GivenUpError:
             subject = None
         else:
-            from cbtui.widgets.lanes import Painter  # on this thread: the screen must not stand still for it
+            from cbtui.widgets.lanes import (
+                LanePainter,  # on this thread: the screen must not stand still for it
+            )
 
             key = keymap_of(self.app).sign(Scope.LESSON, "call_service", self._charset)
-            subject = Subject(timeline, Painter(self._charset, lesson.service.name, call_key=key))
+            subject = PreviewPicture(timeline, LanePainter(self._charset, lesson.service.name, call_key=key))
         self.post_message(self.Drawn(lesson, subject))
 
     @on(Drawn)
@@ -238,7 +240,7 @@ class MenuScreen(SizedScreen[None]):
         chosen = self._list.chosen
         subject = self._subjects.get(chosen.id) if isinstance(chosen, Lesson) else None
         self._miniature.sentence = subject if isinstance(subject, str) else _WAIT
-        self._miniature.subject = subject if isinstance(subject, Subject) else None
+        self._miniature.subject = subject if isinstance(subject, PreviewPicture) else None
 
     def _give_up(self) -> None:
         if self._run is not None:
@@ -256,14 +258,14 @@ class MenuScreen(SizedScreen[None]):
     def _open_found(self) -> None:
         self._list.action_select()
 
-    @on(MenuSearch.Moved)
-    def _move(self, message: MenuSearch.Moved) -> None:
+    @on(MenuSearch.HighlightMoved)
+    def _move(self, message: MenuSearch.HighlightMoved) -> None:
         if message.step < 0:
             self.action_previous()
         else:
             self.action_next()
 
-    @on(MenuSearch.GivenUp)
+    @on(MenuSearch.SearchCleared)
     def action_end_search(self) -> None:
         """Show everything again."""
         self._list.focus()
@@ -290,7 +292,7 @@ class MenuScreen(SizedScreen[None]):
             case "open" | "submit":
                 return self._list.chosen is not None
             case "forget":
-                return isinstance(self._list.chosen, Opened)
+                return isinstance(self._list.chosen, RecentEntry)
             case "end_search":
                 return bool(self._words)
         return True
@@ -322,14 +324,14 @@ class MenuScreen(SizedScreen[None]):
 
     def action_open_file(self) -> None:
         """Ask for a file."""
-        from cbtui.screens.opening import OpeningScreen
+        from cbtui.screens.open_file import OpenFileScreen
 
-        self.app.push_screen(OpeningScreen(self._charset))
+        self.app.push_screen(OpenFileScreen(self._charset))
 
     def action_forget(self) -> None:
         """Take the highlighted file off the list."""
         chosen = self._list.chosen
-        if isinstance(chosen, Opened):
+        if isinstance(chosen, RecentEntry):
             self._recents.forget(chosen)
             self._fill()
 
@@ -338,14 +340,14 @@ class MenuScreen(SizedScreen[None]):
         self.app.exit()
 
     @property
-    def _list(self) -> Choices:
-        return self.query_one(Choices)
+    def _list(self) -> MenuList:
+        return self.query_one(MenuList)
 
     @property
     def _miniature(self) -> Miniature:
         return self.query_one(Miniature)
 
-    def _open(self, choice: Lesson | Opened) -> None:
+    def _open(self, choice: Lesson | RecentEntry) -> None:
         app = console_of(self)
         if isinstance(choice, Lesson):
             app.open_lesson(choice)

@@ -23,7 +23,7 @@ from cbtui.widgets.prose import Prose
 from lessons.description import Prediction
 
 
-class Way(Enum):
+class PredictionExit(Enum):
     """Where a person wants to go from the questions."""
 
     ON = auto()
@@ -31,7 +31,7 @@ class Way(Enum):
     BACK = auto()
 
 
-class PredictionScreen(SizedModal[Way]):
+class PredictionScreen(SizedModal[PredictionExit]):
     """Asks the questions that are not answered yet, one after the other.
 
     ``answered`` is how many are; ``answer`` takes the place of a question and that of its answer at the
@@ -139,18 +139,18 @@ class PredictionScreen(SizedModal[Way]):
             return
         self._answer(self._place, chosen)
         if self._place + 1 == len(self._predictions):
-            self.dismiss(Way.ON)
+            self.dismiss(PredictionExit.ON)
         else:
             self._place += 1
             self._ask()
 
     def action_skip(self) -> None:
         """Go on without an answer."""
-        self.dismiss(Way.ON)
+        self.dismiss(PredictionExit.ON)
 
     def action_close(self) -> None:
         """Go back to where the person came from."""
-        self.dismiss(Way.BACK)
+        self.dismiss(PredictionExit.BACK)
 
 
 class Answers(OptionList, inherit_bindings=False):

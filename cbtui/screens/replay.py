@@ -10,7 +10,7 @@ from cbtui.runs.setup.changes import Changes, changes_in
 from cbtui.screens.parts.engine_keys import PaceKeys
 from cbtui.screens.parts.frames import FRAMES_A_SECOND
 from cbtui.screens.parts.navigation import TimeNavigation
-from cbtui.screens.parts.part import Host
+from cbtui.screens.parts.part import ScreenHost
 from cbtui.screens.parts.runs import RunController
 from cbtui.screens.run import RunScreen
 from sim.recording import Recording
@@ -24,7 +24,7 @@ class Playback(PaceKeys):
 
     def __init__(
         self,
-        host: Host,
+        host: ScreenHost,
         runs: RunController[RecordedRun],
         navigation: TimeNavigation,
         clock: Callable[[], int],

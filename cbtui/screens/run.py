@@ -21,7 +21,7 @@ from cbtui.looks.theme import Charset
 from cbtui.runs.live.live_recording import LiveRecording
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
-from cbtui.runs.setup.subject import Subject
+from cbtui.runs.setup.shown_program import ShownProgram
 from cbtui.screens.console import Console, console_of
 from cbtui.screens.diagnoses import problems_note
 from cbtui.screens.layout import Layout
@@ -30,20 +30,20 @@ from cbtui.screens.parts.bars import BarSelection
 from cbtui.screens.parts.copying import DetailsCopy
 from cbtui.screens.parts.exporting import Exports
 from cbtui.screens.parts.finishing import FileFinisher
-from cbtui.screens.parts.frames import FRAMES_A_SECOND, Extent, FrameSchedule
+from cbtui.screens.parts.frames import FRAMES_A_SECOND, FrameContent, FrameSchedule
 from cbtui.screens.parts.keys import OfferedKeys
 from cbtui.screens.parts.navigation import TimeNavigation
 from cbtui.screens.parts.panes import PaneLayout
-from cbtui.screens.parts.part import Part, Parts
+from cbtui.screens.parts.part import ScreenPart, ScreenParts
 from cbtui.screens.parts.runs import RunController, RunT_co
 from cbtui.screens.parts.selection import LaneSelection
 from cbtui.screens.sized import SizedScreen
 from cbtui.terminal.compositing import SparingCompositor
-from cbtui.terminal.garbage_collector import collect_now, let_go_of_screen
-from cbtui.terminal.processor import not_computing, waited
+from cbtui.terminal.garbage_collector import collect_now, unfreeze_screen
+from cbtui.terminal.processor import cpu_wait, time_off_cpu
 from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.code import CodeView
-from cbtui.widgets.diagnosis import Diagnosis, call_note, verdict, way_on, with_worst
+from cbtui.widgets.diagnosis import Diagnosis, call_note, diagnosis_on_screen, way_on, with_worst_problem
 from cbtui.widgets.diagnosis_line import DiagnosisLine
 from cbtui.widgets.factory import FactoryView
 from cbtui.widgets.guide import Guide
@@ -81,7 +81,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
 
     def __init__(
         self,
-        subject: Subject,
+        subject: ShownProgram,
         charset: Charset,
         runs: RunController[RunT_co],
         live: Callable[[], LiveRun | None] = lambda: None,
@@ -104,13 +104,13 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         self._exports = Exports(self, runs, self.navigation, self.finisher)
         self._copy = DetailsCopy(self, self, runs, self.navigation, subject.heading)
 
-    def put_together(self, *parts: Part, **more: Callable[[], object]) -> None:
+    def put_together(self, *parts: ScreenPart, **more: Callable[[], object]) -> None:
         """Add a screen's own parts, and actions by their ids, to those that every run's screen has."""
         following = self.subject.following
         if following is not None:
             more["next_lesson"] = lambda: self.console.open_lesson(following)
         every = (self.navigation, self.panes, self.bars, self.selection, self._exports, self._copy)
-        self._parts = Parts(self, Scope.LESSON, *every, *parts, **more)
+        self._parts = ScreenParts(self, Scope.LESSON, *every, *parts, **more)
         self._keys = OfferedKeys(self, self._parts, self._charset)
 
     def post(self, message: Message) -> None:
@@ -178,7 +178,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
     def diagnosis(self) -> Diagnosis:
         """Return what to say of the moment on screen."""
         runs = self.runs
-        return verdict(runs.run, self.navigation.playhead, runs.concurrency, keymap_of(self.app))
+        return diagnosis_on_screen(runs.run, self.navigation.playhead, runs.concurrency, keymap_of(self.app))
 
     def begun_anew(self) -> None:
         """Show another run from its beginning, which is not started yet."""
@@ -225,7 +225,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         self.panes.show(self.panes.current)
         self.start()
         self.set_interval(1 / FRAMES_A_SECOND, self._draw_if_due)
-        self.set_interval(exporting.EVERY, self._exports.look)
+        self.set_interval(exporting.PROGRESS_INTERVAL, self._exports.look)
         self.set_interval(_DISK, self.query_one(CodeView).look_at_disk)
         for name in self.PANES_HERE:
             pane = self.panes.pane(name)
@@ -244,7 +244,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         """End the run, every recording and every export, whatever way the screen is left."""
         self._exports.leave()
         self.finisher.tell = self.console.tell_saved
-        let_go_of_screen()
+        unfreeze_screen()
         saved = await asyncio.to_thread(self.runs.run.stop)
         if saved is not None:
             self.console.tell_saved(saved)
@@ -273,13 +273,13 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
 
     def draw(self) -> None:
         """Show the moment that the playhead is at."""
-        self._draw(Extent.ALL, self.PANES_HERE)
+        self._draw(FrameContent.ALL, self.PANES_HERE)
 
     def _draw_all_but_texts(self) -> None:
         names = [name for name in self.PANES_HERE if not isinstance(self.panes.pane(name), _TEXTS)]
-        self._draw(Extent.ALL_BUT_TEXTS, names)
+        self._draw(FrameContent.ALL_BUT_TEXTS, names)
 
-    def _draw(self, extent: Extent, panes: Iterable[str]) -> None:
+    def _draw(self, extent: FrameContent, panes: Iterable[str]) -> None:
         self._frames.drawn(extent)
         if self.layout_now is Layout.SMALL:
             return
@@ -295,7 +295,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         )
         self.query_one(CodeView).over = not run.alive
         line = self.query_one(DiagnosisLine)
-        line.diagnosis = with_worst(self.diagnosis(), told, way_on(run, keymap))
+        line.diagnosis = with_worst_problem(self.diagnosis(), told, way_on(run, keymap))
         line.note = call_note(run.timeline, self.navigation.now)
         line.problems = problems_note(told, keymap, self._charset)
         for name in panes:
@@ -339,18 +339,18 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         if self.runs.findings.look_when_due():
             self.redraw()
         match self._frames.next():
-            case Extent.ALL:
+            case FrameContent.ALL:
                 self.draw()
-            case Extent.ALL_BUT_TEXTS:
+            case FrameContent.ALL_BUT_TEXTS:
                 self._draw_all_but_texts()
-            case Extent.LANES if self.layout_now is not Layout.SMALL:
+            case FrameContent.LANES if self.layout_now is not Layout.SMALL:
                 self.draw_lanes()
             case _:
                 return
-        self.call_after_refresh(self._rest, not_computing())
+        self.call_after_refresh(self._rest, time_off_cpu())
 
     def _rest(self, before: float) -> None:
-        self._frames.rest(waited(before))
+        self._frames.rest(cpu_wait(before))
 
     # keys
 
@@ -369,16 +369,16 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         self.panes.follow_focus(event.widget)
         self._keys.follow_focus()
 
-    @on(Tabs.Picked)
-    def _pick_pane(self, message: Tabs.Picked) -> None:
+    @on(Tabs.TabPicked)
+    def _pick_pane(self, message: Tabs.TabPicked) -> None:
         self.panes.show(message.pane)
 
-    @on(Lanes.Turned)
-    def _turn(self, message: Lanes.Turned) -> None:
+    @on(Lanes.WheelTurned)
+    def _turn(self, message: Lanes.WheelTurned) -> None:
         self.navigation.zoom(message.steps)
 
-    @on(Lanes.Picked)
-    def _pick_bar(self, message: Lanes.Picked) -> None:
+    @on(Lanes.BarPicked)
+    def _pick_bar(self, message: Lanes.BarPicked) -> None:
         self.bars.pick(message)
 
     @on(LogLines.MomentPicked)

@@ -15,14 +15,14 @@ from textual.widgets.option_list import Option
 from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.looks.theme import Charset
-from cbtui.runs.setup.changeable import Changeable
+from cbtui.runs.setup.changeable import ChangeableSetup
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.equivalent_code import code_of
-from cbtui.screens.setup_rows import Row, rows_of
+from cbtui.screens.setup_rows import SettingRow, rows_of
 from cbtui.screens.sized import SizedModal
 from cbtui.text.cells import fit
 from cbtui.widgets.key_bar import KeyBar
-from cbtui.widgets.options import Options
+from cbtui.widgets.pageable_option_list import PageableOptionList
 
 _COLUMNS = (19, 7, 30, 12)
 """Of a row: what it is about, which aspect of it, how it is, what it was changed to."""
@@ -39,7 +39,7 @@ class SetupScreen(SizedModal[Changes]):
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.SETUP)]
 
     def __init__(
-        self, about: Changeable, changes: Changes, first: Callable[[Row], bool], charset: Charset
+        self, about: ChangeableSetup, changes: Changes, first: Callable[[SettingRow], bool], charset: Charset
     ) -> None:
         super().__init__()
         self._about = about
@@ -53,7 +53,7 @@ class SetupScreen(SizedModal[Changes]):
         with Container(classes="window") as window:
             window.border_title = "Set-up"
             yield Static(Content.styled(self._line("", "", "in this run", "changed to"), "$text-muted"))
-            yield Options()
+            yield PageableOptionList()
             with VerticalScroll(can_focus=False):
                 yield Static(classes="code")
             yield KeyBar(Scope.SETUP, self._charset)
@@ -73,7 +73,7 @@ class SetupScreen(SizedModal[Changes]):
         row = self._rows[event.option_index]
         self.app.push_screen(row.ask(self._changes, self._charset), partial(self._take, row))
 
-    def _take(self, row: Row, answer: Any) -> None:
+    def _take(self, row: SettingRow, answer: Any) -> None:
         if answer is not None:
             self._changes = row.take(self._changes, answer)
             self._show()
@@ -104,7 +104,7 @@ class SetupScreen(SizedModal[Changes]):
         self.query_one(".code", Static).update(Content("\n".join(code)))
         self.query_one(KeyBar).changed()
 
-    def _option(self, row: Row) -> Option:
+    def _option(self, row: SettingRow) -> Option:
         changed_to = row.changed_to(self._changes)
         line = self._line(row.what, row.aspect, row.now, changed_to)
         kept = len(line) - _COLUMNS[-1]

@@ -8,17 +8,18 @@ from typing import Any, Protocol
 from textual.screen import ModalScreen
 
 from cbtui.looks.theme import Charset
-from cbtui.runs.setup.changeable import Argument, Callback, Changeable
+from cbtui.runs.setup.changeable import ChangeableArgument, ChangeableCallback, ChangeableSetup
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.equivalent_code import code_of_argument, code_of_period, code_of_sensor_rate
 from cbtui.runs.setup.quantities import PERIOD, SENSOR_RATE, Quantity
 from cbtui.screens.group import UNCHANGED, GroupScreen
 from cbtui.screens.number import NumberScreen
 from cbtui.screens.threads import ThreadsScreen
+from sim.plural import counted
 from sim.units import SECOND, nearest_ns
 
 
-class Row(Protocol):
+class SettingRow(Protocol):
     """One thing that can be changed: ``what`` of it, and how the run on screen has it ``now``."""
 
     @property
@@ -47,7 +48,7 @@ class Row(Protocol):
 class ThreadsRow:
     """How many threads the executor gets."""
 
-    about: Changeable
+    about: ChangeableSetup
     what = "executor"
     aspect = "threads"
 
@@ -58,7 +59,7 @@ class ThreadsRow:
 
     def changed_to(self, changes: Changes) -> str:
         """The number that was chosen."""
-        return "" if changes.threads is None else f"{changes.threads} thread{'s'[: changes.threads - 1]}"
+        return "" if changes.threads is None else counted(changes.threads, "thread")
 
     def ask(self, changes: Changes, charset: Charset) -> ModalScreen[Any]:
         """Ask for a number."""
@@ -73,7 +74,7 @@ class ThreadsRow:
 class GroupRow:
     """Which group a callback is in."""
 
-    callback: Callback
+    callback: ChangeableCallback
     aspect = "group"
 
     @property
@@ -132,9 +133,9 @@ class NumberRow:
         return self.changed(changes, answer[0])
 
 
-def rows_of(about: Changeable) -> list[Row]:
+def rows_of(about: ChangeableSetup) -> list[SettingRow]:
     """Return everything that can be changed."""
-    rows: list[Row] = [ThreadsRow(about)]
+    rows: list[SettingRow] = [ThreadsRow(about)]
     rows += [GroupRow(callback) for callback in about.callbacks]
     rows += [_period_row(callback) for callback in about.callbacks if callback.period]
     rows += [_argument_row(argument) for argument in about.arguments]
@@ -143,7 +144,7 @@ def rows_of(about: Changeable) -> list[Row]:
     return rows
 
 
-def _period_row(callback: Callback) -> NumberRow:
+def _period_row(callback: ChangeableCallback) -> NumberRow:
     place = callback.place
 
     def chosen(changes: Changes) -> float | None:
@@ -164,7 +165,7 @@ def _period_row(callback: Callback) -> NumberRow:
     )
 
 
-def _argument_row(argument: Argument) -> NumberRow:
+def _argument_row(argument: ChangeableArgument) -> NumberRow:
     return NumberRow(
         argument.quantity.name,
         "number",

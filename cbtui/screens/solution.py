@@ -15,17 +15,18 @@ from cbtui.keys.bindings import bindings_of
 from cbtui.looks.theme import Charset
 from cbtui.screens.sized import SizedModal
 from cbtui.text.cells import visible
-from cbtui.widgets.code.highlight import Kind, highlight
+from cbtui.widgets.code.highlight import TokenKind, highlight
 from cbtui.widgets.key_bar import KeyBar
+from sim.plural import counted
 
 _STYLES = {
-    Kind.PLAIN: "$text",
-    Kind.KEYWORD: "$text-accent",
-    Kind.NAME: "bold $text-primary",
-    Kind.BUILTIN: "$text-primary",
-    Kind.STRING: "$text-success",
-    Kind.NUMBER: "$text-warning",
-    Kind.COMMENT: "italic $text-muted",
+    TokenKind.PLAIN: "$text",
+    TokenKind.KEYWORD: "$text-accent",
+    TokenKind.NAME: "bold $text-primary",
+    TokenKind.BUILTIN: "$text-primary",
+    TokenKind.STRING: "$text-success",
+    TokenKind.NUMBER: "$text-warning",
+    TokenKind.COMMENT: "italic $text-muted",
 }
 _CHANGED = {"+": "$text-success", "-": "$text-error", "@": "$text-muted"}
 
@@ -88,7 +89,7 @@ class SolutionScreen(SizedModal[None]):
         self.query_one(KeyBar).changed()
 
 
-class AskingScreen(SizedModal[bool]):
+class ConfirmSolutionScreen(SizedModal[bool]):
     """Asks whether the solution is to be shown."""
 
     SCOPE = Scope.ASKING
@@ -103,7 +104,7 @@ class AskingScreen(SizedModal[bool]):
     def compose(self) -> ComposeResult:
         """Lay out the question."""
         left = self._hints_left
-        there_are = f"{left} hint{'s'[: left - 1]} {'is' if left == 1 else 'are'} left." if left else ""
+        there_are = f"{counted(left, 'hint')} {'is' if left == 1 else 'are'} left." if left else ""
         with Container(classes="window") as window:
             window.border_title = "Look at the solution?"
             yield Static(f"What you find yourself stays with you longer. {there_are}".rstrip(), markup=False)

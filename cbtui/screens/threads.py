@@ -14,11 +14,12 @@ from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import keymap_of
 from cbtui.looks.theme import Charset
-from cbtui.runs.setup.changeable import Changeable
+from cbtui.runs.setup.changeable import ChangeableSetup
 from cbtui.runs.setup.equivalent_code import code_of_threads
 from cbtui.screens.sized import SizedModal
 from cbtui.widgets.key_bar import KeyBar
-from cbtui.widgets.options import Options
+from cbtui.widgets.pageable_option_list import PageableOptionList
+from sim.plural import counted
 
 MOST = 8
 
@@ -30,7 +31,7 @@ class ThreadsScreen(SizedModal[int]):
     CSS_PATH = "window.tcss"
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.THREADS)]
 
-    def __init__(self, about: Changeable, chosen: int | None, charset: Charset) -> None:
+    def __init__(self, about: ChangeableSetup, chosen: int | None, charset: Charset) -> None:
         super().__init__()
         self._charset = charset
         self._about = about
@@ -41,7 +42,7 @@ class ThreadsScreen(SizedModal[int]):
         with Container(classes="window") as window:
             window.border_title = "Threads"
             yield Static("How many threads does the executor get?\nThe run starts again with them.")
-            yield Options(*self._options())
+            yield PageableOptionList(*self._options())
             yield Static(classes="code")
             yield KeyBar(Scope.THREADS, self._charset)
 
@@ -69,7 +70,7 @@ class ThreadsScreen(SizedModal[int]):
 
     def _options(self) -> list[Option]:
         own = f"  the program's own: {self._about.executor}"
-        texts = [own, *(f"  {number} thread{'s'[: number - 1]}" for number in range(1, MOST + 1))]
+        texts = [own, *(f"  {counted(number, 'thread')}" for number in range(1, MOST + 1))]
         return [
             Option(Content.assemble((self._key(number), "bold $text-accent"), text))
             for number, text in enumerate(texts)

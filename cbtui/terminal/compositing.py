@@ -13,7 +13,7 @@ from textual.strip import Strip
 from textual.widget import Widget
 
 
-class Part(NamedTuple):
+class ScreenPatch(NamedTuple):
     """Some columns of a line of the screen, and what stands in them."""
 
     x: int
@@ -21,10 +21,10 @@ class Part(NamedTuple):
     strip: Strip
 
 
-class Parts(CompositorUpdate):
+class PatchUpdate(CompositorUpdate):
     """The parts of a picture that differ from the one before."""
 
-    def __init__(self, parts: Sequence[Part]) -> None:
+    def __init__(self, parts: Sequence[ScreenPatch]) -> None:
         self.parts = parts
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
@@ -42,7 +42,7 @@ class Parts(CompositorUpdate):
         )
 
 
-class _Shown(NamedTuple):
+class _VisibleWidget(NamedTuple):
     """A widget, where it lies, and what of that is in sight."""
 
     widget: Widget
@@ -50,10 +50,10 @@ class _Shown(NamedTuple):
     sight: Region
 
 
-class _Stretch(NamedTuple):
+class _LineSegment(NamedTuple):
     """Neighbouring columns of a line in which the same widget lies in front."""
 
-    shown: _Shown
+    shown: _VisibleWidget
     y: int
     start: int
     end: int
@@ -72,7 +72,7 @@ class SparingCompositor(Compositor):
     what is new. Of Textual 8; a test holds it to the same picture.
     """
 
-    def render_partial_update(self) -> Parts | None:  # type: ignore[override]  # an update of another kind
+    def render_partial_update(self) -> PatchUpdate | None:  # type: ignore[override]  # an update of another kind
         """Return what changed; None if nothing did."""
         changed = self._dirty_regions.copy()
         self._dirty_regions.clear()
@@ -81,27 +81,27 @@ class SparingCompositor(Compositor):
         screen = self.size.region
         spans = self._regions_to_spans(region.intersection(screen) for region in changed)
         every = [
-            _Shown(widget, region, region.intersection(clip))
+            _VisibleWidget(widget, region, region.intersection(clip))
             for widget, (region, clip) in self.visible_widgets.items()
         ]
-        return Parts(_drawn([stretch for span in spans for stretch in self._stretches(span, every)]))
+        return PatchUpdate(_drawn([stretch for span in spans for stretch in self._stretches(span, every)]))
 
-    def _stretches(self, span: tuple[int, int, int], every: Sequence[_Shown]) -> list[_Stretch]:
+    def _stretches(self, span: tuple[int, int, int], every: Sequence[_VisibleWidget]) -> list[_LineSegment]:
         """Share out part of a line among the widgets in front; ``every`` begins with the foremost."""
         y, start, end = span
-        stretches: list[_Stretch] = []
+        stretches: list[_LineSegment] = []
         for left, right in pairwise([start, *(cut for cut in self.cuts[y] if start < cut < end), end]):
             shown = next(shown for shown in every if shown.sight.contains(left, y))
             if stretches and stretches[-1].shown is shown:
                 stretches[-1] = stretches[-1]._replace(end=right)
             else:
-                stretches.append(_Stretch(shown, y, left, right))
+                stretches.append(_LineSegment(shown, y, left, right))
         return stretches
 
 
-def _drawn(stretches: Iterable[_Stretch]) -> list[Part]:
+def _drawn(stretches: Iterable[_LineSegment]) -> list[ScreenPatch]:
     """Have every widget draw its lines from the first to the last that is wanted, in one go."""
-    wanted: dict[Widget, list[_Stretch]] = {}
+    wanted: dict[Widget, list[_LineSegment]] = {}
     for stretch in stretches:
         wanted.setdefault(stretch.shown.widget, []).append(stretch)
     parts = []
@@ -110,5 +110,5 @@ def _drawn(stretches: Iterable[_Stretch]) -> list[Part]:
         first, region = min(lines), its[0].shown.region
         strips = widget.render_lines(Region(0, first, region.width, max(lines) + 1 - first))
         for line, (_, y, start, end) in zip(lines, its, strict=True):
-            parts.append(Part(start, y, strips[line - first].crop(start - region.x, end - region.x)))
+            parts.append(ScreenPatch(start, y, strips[line - first].crop(start - region.x, end - region.x)))
     return parts

@@ -13,7 +13,7 @@ class TerminalDriver(LinuxDriver):
     def __init__(self, *args: Any, **options: Any) -> None:
         super().__init__(*args, **options)
         terminal: Any = self._file
-        self._file = cast("Any", _Lasting(terminal))
+        self._file = cast("Any", _SurvivingFile(terminal))
 
     def _sigcont_application(self, *signal_and_frame: Any) -> None:
         """Go on; what was stopped without notice (SIGSTOP) has to give the terminal back before it takes it.
@@ -27,7 +27,7 @@ class TerminalDriver(LinuxDriver):
         super()._sigcont_application(*signal_and_frame)
 
 
-class _Lasting:
+class _SurvivingFile:
     """A file of a terminal that takes what is written even when the terminal is gone."""
 
     def __init__(self, file: IO[str]) -> None:

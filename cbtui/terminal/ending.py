@@ -13,9 +13,9 @@ from textual.css.query import NoMatches
 from textual.widget import MountError
 from textual.worker import WorkerFailed
 
-from cbtui.terminal.garbage_collector import survivors_set_aside
-from cbtui.terminal.interrupts import Interruption, ending_heard, whole
-from cbtui.terminal.pending_keys import LONGEST, PatientApp
+from cbtui.terminal.garbage_collector import survivors_frozen
+from cbtui.terminal.interrupts import Interruption, deferred_interrupt, ending_signals_on_loop
+from cbtui.terminal.pending_keys import MOUNT_TIMEOUT, PatientApp
 from cbtui.text.output import shown
 from cbtui.version import own_version
 from lessons.personal import state_folder
@@ -24,7 +24,7 @@ FAULT = "fault.txt"
 """The file in the state folder that a fault of the console itself is written to."""
 _MISSED = (NoMatches, MountError)
 """Errors of widgets that start while an app ends: Textual no longer mounts their children."""
-_AGAIN = 0.02
+_RETRY = 0.02
 """Seconds between two checks whether everything is mounted."""
 
 
@@ -33,7 +33,7 @@ class EndingApp(PatientApp):
 
     def __init__(self) -> None:
         super().__init__()
-        self._unheard = Interruption()
+        self._interruption = Interruption()
         self._told_at: float | None = None
         self._leaving = False
         self.saved: list[str] = []
@@ -45,7 +45,7 @@ class EndingApp(PatientApp):
 
         Raises KeyboardInterrupt where Ctrl-C came before the app hears it, or after.
         """
-        with whole() as self._unheard:
+        with deferred_interrupt() as self._interruption:
             result = super().run(*args, **options)
             said = [*self.saved, *([] if self._fault is None else [self._fault])]
             sys.stderr.writelines(shown(f"{sentence}\n") for sentence in said)
@@ -56,15 +56,15 @@ class EndingApp(PatientApp):
 
         It is by Ctrl-C from elsewhere, by ``kill``, and by the terminal itself when its window is closed.
         """
-        with ending_heard(lambda number: self.exit(None, 128 + number)), survivors_set_aside():
-            return None if self._unheard.came else await super().run_async(*args, **options)
+        with ending_signals_on_loop(lambda number: self.exit(None, 128 + number)), survivors_frozen():
+            return None if self._interruption.came else await super().run_async(*args, **options)
 
     def exit(self, result: None = None, return_code: int = 0, message: RenderableType | None = None) -> None:
         """End as soon as all widgets have mounted their children."""
         self._told_at = self._told_at or monotonic()
-        if self.is_mounting and monotonic() < self._told_at + LONGEST:
+        if self.is_mounting and monotonic() < self._told_at + MOUNT_TIMEOUT:
             again = partial(self.exit, result, return_code, message)
-            asyncio.get_running_loop().call_later(_AGAIN, again)
+            asyncio.get_running_loop().call_later(_RETRY, again)
         else:
             self._leaving = True
             super().exit(result, return_code, message)

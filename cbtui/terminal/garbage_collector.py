@@ -16,7 +16,7 @@ _FULL = 2
 
 
 @contextmanager
-def survivors_set_aside() -> Iterator[None]:
+def survivors_frozen() -> Iterator[None]:
     """Freeze all objects that exist now and, until the end, those that survive a full collection."""
     gc.callbacks.append(_set_survivors_aside)
     gc.freeze()
@@ -28,12 +28,12 @@ def survivors_set_aside() -> Iterator[None]:
 
 
 def collect_now() -> None:
-    """Make a full collection while nobody waits for a key; without ``survivors_set_aside`` none is due."""
+    """Make a full collection while nobody waits for a key; without ``survivors_frozen`` none is due."""
     if _set_survivors_aside in gc.callbacks:
         gc.collect()
 
 
-def let_go_of_screen() -> None:
+def unfreeze_screen() -> None:
     """Have the next full collection look at everything: a screen's objects are of no use any more."""
     forget_drawn_styles()
     if _set_survivors_aside in gc.callbacks:

@@ -21,9 +21,9 @@ ENDING: Sequence[signal.Signals] = [
 ]
 """What a command is told to end by: Ctrl-C, ``kill``, and a terminal that is closed."""
 
-_SOON = 0.005
+_RETRY = 0.005
 """Seconds after which an interruption is tried again."""
-_LONGEST_IMPORT = 2.0
+_IMPORT_TIMEOUT = 2.0
 """Seconds that something may take to be imported; a lesson's checks can be anything."""
 _FRAGILE = ("<frozen importlib._bootstrap>", typing.__file__)
 """Where the code is of what is imported, and of what libraries in C ask about types."""
@@ -43,7 +43,7 @@ class Interruption:
 
 
 @contextmanager
-def whole() -> Iterator[Interruption]:
+def deferred_interrupt() -> Iterator[Interruption]:
     """Defer Ctrl-C to the end of the block, which is short or checks whether Ctrl-C came."""
     waiting = Interruption()
     if threading.current_thread() is not threading.main_thread():
@@ -59,7 +59,7 @@ def whole() -> Iterator[Interruption]:
 
 
 @contextmanager
-def ending_heard(tell: Callable[[signal.Signals], None]) -> Iterator[None]:
+def ending_signals_on_loop(tell: Callable[[signal.Signals], None]) -> Iterator[None]:
     """Have the running event loop call ``tell`` at each of ``ENDING``; what Ctrl-C did before, it does after.
 
     The loop by itself leaves Python's own way with Ctrl-C behind, which breaks off what it comes upon.
@@ -83,7 +83,7 @@ def ending_heard(tell: Callable[[signal.Signals], None]) -> Iterator[None]:
 
 
 @contextmanager
-def heard(tell: Callable[[signal.Signals], None]) -> Iterator[None]:
+def ending_signals(tell: Callable[[signal.Signals], None]) -> Iterator[None]:
     """Have ``tell`` called, on the main thread, at the first of ``ENDING``; the next is KeyboardInterrupt.
 
     A signal that is ignored, as under ``nohup``, stays ignored.
@@ -127,10 +127,10 @@ def install() -> None:
 
     sys.unraisablehook = hook
     signal.signal(signal.SIGALRM, lambda *_: signal.raise_signal(signal.SIGINT))
-    signal.signal(signal.SIGINT, _Interrupt())
+    signal.signal(signal.SIGINT, _InterruptHandler())
 
 
-class _Interrupt:
+class _InterruptHandler:
     """Raises KeyboardInterrupt, though not in the middle of what does not bear it."""
 
     def __init__(self) -> None:
@@ -139,7 +139,7 @@ class _Interrupt:
     def __call__(self, _number: int, frame: FrameType | None) -> None:
         now = time.monotonic()
         self._since = self._since or now
-        if _is_fragile(frame) and now - self._since < _LONGEST_IMPORT:
+        if _is_fragile(frame) and now - self._since < _IMPORT_TIMEOUT:
             _try_again_soon()
         else:
             self._since = None
@@ -155,7 +155,7 @@ def _is_fragile(frame: FrameType | None) -> bool:
 
 
 def _try_again_soon() -> None:
-    signal.setitimer(signal.ITIMER_REAL, _SOON)
+    signal.setitimer(signal.ITIMER_REAL, _RETRY)
 
 
 def ignore() -> None:

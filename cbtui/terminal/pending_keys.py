@@ -14,9 +14,9 @@ from textual.widget import Widget
 
 from cbtui.terminal.textual_internals import is_mounted
 
-LONGEST = 3.0
+MOUNT_TIMEOUT = 3.0
 """Seconds that widgets may take to be mounted; then nothing waits for them any more."""
-_AGAIN = 0.005
+_POLL_INTERVAL = 0.005
 """Seconds after which it is looked again."""
 
 
@@ -36,9 +36,9 @@ class PatientApp(App[None]):
     async def on_event(self, event: Event) -> None:
         """Deal with an event; with what a person did, when the screen is whole."""
         if isinstance(event, InputEvent):
-            patient_until = monotonic() + LONGEST
+            patient_until = monotonic() + MOUNT_TIMEOUT
             while self.is_mounting and monotonic() < patient_until:
-                await asyncio.sleep(_AGAIN)
+                await asyncio.sleep(_POLL_INTERVAL)
         if not (isinstance(event, MouseDown) and self._is_gone(event)):
             await super().on_event(event)
 

@@ -10,7 +10,7 @@ _NAMES = ("stdin", "stdout", "stderr")
 _LAST = 2
 
 
-def make_whole() -> None:
+def repair_streams() -> None:
     """Open to nowhere what is closed of standard input, output and error, and let every text be written.
 
     The next file to be opened would else get the number of a stream that is closed, and whatever engines and
@@ -32,7 +32,7 @@ def _fill_descriptors() -> None:
     os.close(descriptor)
 
 
-def unwritable() -> OSError | None:
+def flush_streams() -> OSError | None:
     """Write out what waits in standard output and error, and drop what takes no more.
 
     Returns why standard output does not, if so.

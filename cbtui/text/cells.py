@@ -6,7 +6,7 @@ from itertools import groupby
 
 from rich.cells import cell_len
 
-from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, Run
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
 
 BLANK = Ink(Role.TEXT)
 
@@ -71,7 +71,7 @@ def fit(text: str, width: int, charset: Charset) -> str:
     return "".join(kept) + GLYPHS[charset].ellipsis
 
 
-class Row:
+class CellRow:
     """One line of a picture while it is painted: a glyph and an ink for each column."""
 
     __slots__ = ("cells", "charset", "inks")
@@ -108,12 +108,12 @@ class Row:
         """Tell whether the columns from ``start`` to before ``end`` lie in the row and are untouched."""
         return start >= 0 and end <= len(self.cells) and all(ink is BLANK for ink in self.inks[start:end])
 
-    def runs(self) -> list[Run]:
+    def runs(self) -> list[TextRun]:
         """Return the row as runs of one ink each."""
-        runs: list[Run] = []
+        runs: list[TextRun] = []
         at = 0
         for ink, same in groupby(self.inks):
             end = at + sum(1 for _ in same)
-            runs.append(Run("".join(self.cells[at:end]), ink))
+            runs.append(TextRun("".join(self.cells[at:end]), ink))
             at = end
         return runs

@@ -11,7 +11,7 @@ def say(text: str) -> None:
     _write(sys.stdout, shown(text))
 
 
-def hand_over(data: str) -> None:
+def say_data(data: str) -> None:
     """Write what another program reads to standard output, as it is but for what a terminal would obey."""
     from sim.export.texts import printable
 
@@ -39,7 +39,7 @@ class CannotSayError(OSError):
 
 
 @contextmanager
-def saying() -> Iterator[None]:
+def writing_to_stream() -> Iterator[None]:
     """Have an error of what is written inside, to a standard stream, told from those of files.
 
     Raises:
@@ -60,7 +60,7 @@ def _write(stream: TextIO, text: str) -> None:
         from cbtui.text.ascii_filter import in_ascii  # with Textual, so only where it is needed
 
         text = in_ascii(text)
-    with saying():
+    with writing_to_stream():
         stream.write(text)
         stream.flush()
 

@@ -10,7 +10,7 @@ from ipaddress import ip_address
 from urllib.parse import urlsplit
 
 
-class Guard:
+class HostGuard:
     """Knows the names of the server. Numbers are let pass: nobody else can make a name of one."""
 
     def __init__(self, host: str, public_url: str | None) -> None:

@@ -10,9 +10,9 @@ from aiohttp import web
 from textual_serve.app_service import AppService
 from textual_serve.server import Server, to_int
 
-from cbtui.terminal.interrupts import Interruption, ending_heard
-from cbtui.web.guard import Guard
-from cbtui.web.token import PARAMETER, Token
+from cbtui.terminal.interrupts import Interruption, ending_signals_on_loop
+from cbtui.web.guard import HostGuard
+from cbtui.web.token import PARAMETER, AccessToken
 from cbtui.web.visitor import Visitor
 
 _HEARTBEAT = 15.0
@@ -47,19 +47,19 @@ class ConsoleServer(Server):
         self._words = command
         self._most = most
         self._outside = public_url
-        self._guard = Guard(host, public_url)
-        self._token = Token(token)
+        self._guard = HostGuard(host, public_url)
+        self._token = AccessToken(token)
         self._query = f"/?{PARAMETER}={quote(token, safe='')}"
         self._visitors: set[Visitor] = set()
 
-    async def serve_until_told(self, ready: Callable[[str], None], unheard: Interruption) -> None:
+    async def serve_until_signal(self, ready: Callable[[str], None], interruption: Interruption) -> None:
         """Serve until a signal ends it, and end every visitor's console then; not if Ctrl-C came before.
 
         ``ready`` is told the address, with the token, once there is one. Raises OSError if it cannot be had.
         """
         over = asyncio.Event()
-        with ending_heard(lambda _: over.set()):
-            if not unheard.came:
+        with ending_signals_on_loop(lambda _: over.set()):
+            if not interruption.came:
                 await self._serve_until(over, ready)
 
     async def _serve_until(self, over: asyncio.Event, ready: Callable[[str], None]) -> None:

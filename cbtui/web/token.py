@@ -10,7 +10,7 @@ from aiohttp import web
 PARAMETER = "token"
 
 
-class Token:
+class AccessToken:
     """Compares what a request shows with the one token of a server."""
 
     def __init__(self, text: str) -> None:

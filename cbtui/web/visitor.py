@@ -12,7 +12,7 @@ from textual_serve.download_manager import DownloadManager
 
 from cbtui.terminal.capabilities import BROWSER_DRIVER
 
-_GRACE = 6.0
+_EXIT_TIMEOUT = 6.0
 """Seconds that a console has to end by itself, and its program in it."""
 _FRAMES_A_SECOND = "30"
 _MOST_COLUMNS, _MOST_ROWS = 500, 200
@@ -72,7 +72,7 @@ class Visitor(AppService):
         if self._process is None:
             return
         try:
-            async with asyncio.timeout(_GRACE):
+            async with asyncio.timeout(_EXIT_TIMEOUT):
                 await self._download_manager.cancel_app_downloads(app_service_id=self.app_service_id)
                 await self.send_meta({"type": "quit"})
                 await self._process.wait()

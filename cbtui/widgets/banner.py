@@ -4,9 +4,9 @@ from collections.abc import Sequence
 
 from textual.geometry import Size
 
-from cbtui.looks.theme import Charset, Ink, Role, Run
-from cbtui.text.cells import Row
-from cbtui.widgets.painted import Painted
+from cbtui.looks.theme import Charset, Ink, Role, TextRun
+from cbtui.text.cells import CellRow
+from cbtui.widgets.painted_widget import PaintedWidget
 
 _TITLES = ("cbtui", "Callback groups and executors,", "live. No ROS 2 needed.")
 _TITLE_WIDTH = 34
@@ -14,17 +14,17 @@ _BARS = ((5, 31), (44, 49), (58, 63), (72, 98))
 _STEPS = (6, 6)
 
 
-class Banner(Painted):
+class Banner(PaintedWidget):
     """Three lanes: one long callback, and two that go on beside it."""
 
-    def rows(self, size: Size) -> Sequence[Sequence[Run]]:
+    def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the three rows."""
         return banner(size.width)
 
 
-def banner(width: int) -> list[list[Run]]:
+def banner(width: int) -> list[list[TextRun]]:
     """Return the head, three rows of ``width`` columns."""
-    rows = [Row(width, Charset.BRAILLE) for _ in range(3)]
+    rows = [CellRow(width, Charset.BRAILLE) for _ in range(3)]
     for number, (row, title) in enumerate(zip(rows, _TITLES, strict=True)):
         row.write(2, title, Ink(Role.FAINT if number else Role.STRONG))
         row.write(_TITLE_WIDTH, "ABC"[number], Ink(Role.LETTER, number))
@@ -37,7 +37,7 @@ def banner(width: int) -> list[list[Run]]:
     return [row.runs() for row in rows]
 
 
-def _bar(row: Row, columns: Sequence[int]) -> None:
+def _bar(row: CellRow, columns: Sequence[int]) -> None:
     """Draw a callback of the first group; a long one carries its name."""
     if not columns:
         return

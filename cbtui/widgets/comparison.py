@@ -7,55 +7,55 @@ from textual.geometry import Size
 from textual.reactive import reactive
 from textual.strip import Strip
 
-from cbtui.looks.theme import Charset, Ink, Role, Run
+from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.text.cells import fit
-from cbtui.widgets.comparison_painter import Line, headings, table
-from cbtui.widgets.inked import Inked
-from cbtui.widgets.painted import Painted
+from cbtui.widgets.comparison_painter import StyledLine, headings, table
+from cbtui.widgets.inked_view import InkedView
+from cbtui.widgets.painted_widget import PaintedWidget
 from sim.trace.figures.comparison_rows import Section
 
 _RULE = Ink(Role.FAINT)
 
 
-class Words(Painted):
+class HeadingLine(PaintedWidget):
     """One line of words; what does not fit is cut. ``ruled`` draws a line from their end to the edge."""
 
-    words: reactive[tuple[Run, ...]] = reactive((), repaint=False)
+    words: reactive[tuple[TextRun, ...]] = reactive((), repaint=False)
 
     def __init__(self, charset: Charset, *, ruled: str = "", id: str | None = None) -> None:  # noqa: A002
         super().__init__(id=id)
         self._charset = charset
         self._ruled = ruled
 
-    def rows(self, size: Size) -> Sequence[Sequence[Run]]:
+    def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the line."""
         room = size.width
-        line: list[Run] = []
+        line: list[TextRun] = []
         for text, ink in self.words:
             shown = fit(text, room, self._charset).rstrip() if len(text) > room else text
-            line.append(Run(shown, ink))
+            line.append(TextRun(shown, ink))
             room -= len(shown)
-        return [[*line, Run((self._ruled or " ") * room, _RULE)]]
+        return [[*line, TextRun((self._ruled or " ") * room, _RULE)]]
 
     def watch_words(self) -> None:
         """Say something else."""
         self.changed()
 
 
-class ComparisonHeadings(Painted):
+class ComparisonHeadings(PaintedWidget):
     """Names the columns of the table, which scrolls below it."""
 
     def __init__(self, charset: Charset) -> None:
         super().__init__()
         self._charset = charset
 
-    def rows(self, size: Size) -> Sequence[Sequence[Run]]:
+    def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the names."""
-        bar = Run(" " * ComparisonTable.BAR, _RULE)
+        bar = TextRun(" " * ComparisonTable.BAR, _RULE)
         return [[*headings(size.width - ComparisonTable.BAR, self._charset), bar]]
 
 
-class ComparisonTable(Inked):
+class ComparisonTable(InkedView):
     """The figures of two runs; scrolls where they have no room. ``show`` gives it others."""
 
     BAR = 1
@@ -67,7 +67,7 @@ class ComparisonTable(Inked):
         super().__init__()
         self._charset = charset
         self._sections: tuple[Section, ...] = ()
-        self._lines: list[Line] = []
+        self._lines: list[StyledLine] = []
 
     def show(self, sections: tuple[Section, ...]) -> None:
         """Show the sections; the place that the person scrolled to stays."""

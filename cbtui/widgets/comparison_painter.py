@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, Run
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
 from cbtui.text.cells import fit
 from sim.trace.figures.comparison_rows import DIFFERENCE, RUNS, Assessment, ComparisonRow, Section
 
@@ -19,18 +19,18 @@ _DIFFERENCES = {
 _LABEL, _FIGURE, _DIFFERENCE = 18, 16, 19
 BLOCK = _LABEL + 2 * _FIGURE + _DIFFERENCE
 """Columns that a section needs at least."""
-_GAP = Run(" ", _PLAIN)
+_GAP = TextRun(" ", _PLAIN)
 
-Line = list[Run]
+StyledLine = list[TextRun]
 
 
-def headings(width: int, charset: Charset) -> Line:
+def headings(width: int, charset: Charset) -> StyledLine:
     """Return the line that names the columns, in exactly ``width`` columns."""
     row = ComparisonRow("", RUNS, DIFFERENCE)
     return _side_by_side([[_cells(row, each, charset)] for each in _blocks(width)], width)[0]
 
 
-def table(sections: Sequence[Section], width: int, charset: Charset) -> list[Line]:
+def table(sections: Sequence[Section], width: int, charset: Charset) -> list[StyledLine]:
     """Return the lines of a comparison, each in exactly ``width`` columns."""
     blocks = _blocks(width)
     columns = _shared_out([(section, _height(section)) for section in sections], len(blocks))
@@ -74,16 +74,16 @@ def _filled(sections: Sequence[tuple[Section, int]], limit: int) -> list[list[Se
     return columns
 
 
-def _section(section: Section, width: int, charset: Charset) -> Iterator[Line]:
-    yield [Run(fit(section.title, width, charset), _STRONG)]
+def _section(section: Section, width: int, charset: Charset) -> Iterator[StyledLine]:
+    yield [TextRun(fit(section.title, width, charset), _STRONG)]
     for row in section.rows:
         yield _cells(row, width, charset)
     for note in section.notes:
-        yield [Run(fit(f" {note}", width, charset), _FAINT)]
-    yield [Run(" " * width, _PLAIN)]
+        yield [TextRun(fit(f" {note}", width, charset), _FAINT)]
+    yield [TextRun(" " * width, _PLAIN)]
 
 
-def _cells(row: ComparisonRow, width: int, charset: Charset) -> Line:
+def _cells(row: ComparisonRow, width: int, charset: Charset) -> StyledLine:
     """A row in exactly ``width`` columns; the difference has what the others leave."""
     first, second = row.figures
     cells = (
@@ -92,11 +92,11 @@ def _cells(row: ComparisonRow, width: int, charset: Charset) -> Line:
         (second, _FIGURE, _PLAIN),
         (row.difference, width, _DIFFERENCES[row.assessment]),
     )
-    line: Line = []
+    line: StyledLine = []
     room = width
     for text, wanted, ink in cells:
         taken = min(wanted, room)
-        line.append(Run(fit(_shown(text, charset), taken, charset), ink))
+        line.append(TextRun(fit(_shown(text, charset), taken, charset), ink))
         room -= taken
     return line
 
@@ -105,15 +105,15 @@ def _shown(text: str, charset: Charset) -> str:
     return text.replace("°", GLYPHS[charset].degree)
 
 
-def _side_by_side(columns: Sequence[Sequence[Line]], width: int) -> list[Line]:
+def _side_by_side(columns: Sequence[Sequence[StyledLine]], width: int) -> list[StyledLine]:
     widths = _blocks(width)
     lines = []
     for place in range(max(map(len, columns))):
-        line: Line = []
+        line: StyledLine = []
         for column, block in zip(columns, widths, strict=True):
-            line += column[place] if place < len(column) else [Run(" " * block, _PLAIN)]
+            line += column[place] if place < len(column) else [TextRun(" " * block, _PLAIN)]
             line.append(_GAP)
         line.pop()
         taken = sum(widths) + len(widths) - 1
-        lines.append([*line, Run(" " * (width - taken), _PLAIN)])
+        lines.append([*line, TextRun(" " * (width - taken), _PLAIN)])
     return lines

@@ -8,7 +8,7 @@ from cbtui.keys.action import Scope
 from cbtui.keys.keymap import STANDARD, Keymap
 from cbtui.looks.theme import Charset
 from cbtui.runs.live.findings import ExplainedFinding
-from cbtui.runs.live.live_run import ShownRun, State
+from cbtui.runs.live.live_run import RunState, ShownRun
 from cbtui.runs.live.playhead import Playhead
 from sim.durations import duration
 from sim.trace.descriptions import name_of
@@ -26,7 +26,7 @@ _NOTICE_STAYS: Nanoseconds = 5_000_000_000
 _REPLY_STAYS: Nanoseconds = 5_000_000_000
 
 
-class Weight(Enum):
+class DiagnosisLevel(Enum):
     """How much a diagnosis matters."""
 
     FINE = auto()
@@ -43,12 +43,12 @@ class Diagnosis:
     """
 
     text: str
-    weight: Weight
+    level: DiagnosisLevel
     stays: bool = field(default=False, compare=False)
     at_length: str = ""
 
 
-def verdict(
+def diagnosis_on_screen(
     run: ShownRun, playhead: Playhead, concurrency: Concurrency, keymap: Keymap = STANDARD
 ) -> Diagnosis:
     """Return what to say of the moment on screen; at a run's end, how it ended and how to go on."""
@@ -56,14 +56,14 @@ def verdict(
     if playhead.at is None:
         if run.loss is not None:
             return _of_a_loss(run.loss, _key("run_again", keymap))
-        if run.state is State.SILENT:
+        if run.state is RunState.SILENT:
             return _of_silence(timeline, _key("run_again", keymap))
-        if run.state is State.ENDED:
+        if run.state is RunState.ENDED:
             return _of_the_end(timeline, f"press {_key('run_again', keymap)} to run again")
-        if run.state is State.REPLAY_STANDS and timeline.ended is not None:
+        if run.state is RunState.REPLAY_STANDS and timeline.ended is not None:
             return _of_the_end(timeline, f"{_key('resume', keymap)} plays it from its beginning")
     at = playhead.now(timeline.end)
-    moment = diagnose(timeline, at, concurrency, keymap)
+    moment = diagnosis_at(timeline, at, concurrency, keymap)
     notice = _latest_notice(timeline, at)
     if playhead.at is None and run.alive and notice is not None and notice.kind is NoticeKind.NO_PROGRESS:
         return replace(moment, text=f"{moment.text}; {_key('start_over', keymap)} starts over")
@@ -75,21 +75,23 @@ def way_on(run: ShownRun, keymap: Keymap) -> str:
     return f"{_key('start_over', keymap)} starts over" if run.alive else ""
 
 
-def with_worst(moment: Diagnosis, findings: Sequence[ExplainedFinding], way_on: str = "") -> Diagnosis:
+def with_worst_problem(
+    moment: Diagnosis, findings: Sequence[ExplainedFinding], way_on: str = ""
+) -> Diagnosis:
     """Replace a verdict without a problem by the worst problem that the rules found in the run.
 
     What stays is said in any case; of what lasts for ever also the ``way_on``, where there is room.
     """
     worst = next((each for each in findings if each.is_problem), None)
-    if worst is None or moment.stays or moment.weight is not Weight.FINE:
+    if worst is None or moment.stays or moment.level is not DiagnosisLevel.FINE:
         return moment
     explanation = worst.explanation
     what = explanation.what
     if worst.at is None:
-        return Diagnosis(what, Weight.TROUBLE, at_length=f"{worst.name}: {what}")
+        return Diagnosis(what, DiagnosisLevel.TROUBLE, at_length=f"{worst.name}: {what}")
     text = f"at {worst.at / 1e9:.1f} s: {what}"
     further = f"; {way_on}" if way_on and explanation.for_ever else ""
-    return Diagnosis(text, Weight.TROUBLE, at_length=f"{worst.name} {text}{further}")
+    return Diagnosis(text, DiagnosisLevel.TROUBLE, at_length=f"{worst.name} {text}{further}")
 
 
 def _key(action: str, keymap: Keymap) -> str:
@@ -99,34 +101,34 @@ def _key(action: str, keymap: Keymap) -> str:
 def _of_a_loss(loss: str, key: str) -> Diagnosis:
     """Say it so briefly that one line of 80 columns has room for it and for the number of problems."""
     how = loss.rstrip(".").removeprefix("the engine ").removeprefix("was ")
-    return Diagnosis(f"engine lost: {how}; {key} runs again", Weight.TROUBLE, stays=True)
+    return Diagnosis(f"engine lost: {how}; {key} runs again", DiagnosisLevel.TROUBLE, stays=True)
 
 
 def _of_silence(timeline: Timeline, key: str) -> Diagnosis:
     what = timeline.notices[-1].text.removeprefix("the ")
-    return Diagnosis(f"{what}; {key} runs again", Weight.TROUBLE, stays=True)
+    return Diagnosis(f"{what}; {key} runs again", DiagnosisLevel.TROUBLE, stays=True)
 
 
 def _of_the_end(timeline: Timeline, way_on: str) -> Diagnosis:
     ended = timeline.ended
     if ended is None:
-        return Diagnosis(f"the run is over; {way_on}", Weight.FINE, stays=True)
-    weight = Weight.TROUBLE if ended.failed else Weight.FINE
-    return Diagnosis(f"the run is over: {ended.reason.rstrip('.')}; {way_on}", weight, stays=True)
+        return Diagnosis(f"the run is over; {way_on}", DiagnosisLevel.FINE, stays=True)
+    level = DiagnosisLevel.TROUBLE if ended.failed else DiagnosisLevel.FINE
+    return Diagnosis(f"the run is over: {ended.reason.rstrip('.')}; {way_on}", level, stays=True)
 
 
-def diagnose(
+def diagnosis_at(
     timeline: Timeline, at: Nanoseconds, concurrency: Concurrency, keymap: Keymap = STANDARD
 ) -> Diagnosis:
     """Return what matters most at a moment."""
     notice = _latest_notice(timeline, at)
     if notice is not None:
-        return Diagnosis(notice.text, Weight.TROUBLE, stays=True)
+        return Diagnosis(notice.text, DiagnosisLevel.TROUBLE, stays=True)
     asked = timeline.asked(at)
     if asked is not None and not timeline.entities:
-        return Diagnosis(_of_keyboard(asked, keymap), Weight.FINE)
+        return Diagnosis(_of_keyboard(asked, keymap), DiagnosisLevel.FINE)
     if not timeline.entities:
-        return Diagnosis("no callback yet: the node is starting", Weight.FINE)
+        return Diagnosis("no callback yet: the node is starting", DiagnosisLevel.FINE)
     moment = timeline.moment(at)
     waits = [wait for wait in moment.waiting.values() if at - wait.since >= WORTH_TELLING]
     for_others = sorted((wait for wait in waits if wait.holder != wait.entity), key=_since)
@@ -135,9 +137,9 @@ def diagnose(
     for_itself = min(waits, key=_since, default=None)
     overdue = "" if for_itself is None else f"; {_overdue(for_itself, at, timeline)}"
     if asked is not None:
-        return Diagnosis(_of_keyboard(asked, keymap), Weight.FINE)
+        return Diagnosis(_of_keyboard(asked, keymap), DiagnosisLevel.FINE)
     threads = _threads_needed(timeline, concurrency.peak(at))
-    return Diagnosis(f"nothing waits; {threads}{overdue}", Weight.FINE)
+    return Diagnosis(f"nothing waits; {threads}{overdue}", DiagnosisLevel.FINE)
 
 
 def _of_keyboard(asked: KeyboardAsked, keymap: Keymap) -> str:
@@ -189,8 +191,8 @@ def _of_waits(waits: list[Wait], moment: Moment, timeline: Timeline) -> Diagnosi
         f"; {len(waits) - 1} more wait" if len(waits) > 2 else "; 1 more waits" if len(waits) == 2 else ""
     )
     text = f"{name_of(longest.entity, timeline)} waits {duration(waited)}: {_why(longest, moment, timeline)}"
-    weight = Weight.TROUBLE if waited >= _SERIOUS else Weight.WAITS
-    return Diagnosis(text, weight, at_length=text + others)
+    level = DiagnosisLevel.TROUBLE if waited >= _SERIOUS else DiagnosisLevel.WAITS
+    return Diagnosis(text, level, at_length=text + others)
 
 
 def _why(wait: Wait, moment: Moment, timeline: Timeline) -> str:

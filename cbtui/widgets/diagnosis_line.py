@@ -8,15 +8,15 @@ from textual.geometry import Size
 from textual.message import Message
 from textual.reactive import reactive
 
-from cbtui.looks.theme import Charset, Ink, Role, Run
+from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.text.cells import fit
-from cbtui.widgets.diagnosis import Diagnosis, Weight
-from cbtui.widgets.painted import Painted
+from cbtui.widgets.diagnosis import Diagnosis, DiagnosisLevel
+from cbtui.widgets.painted_widget import PaintedWidget
 
 _INKS = {
-    Weight.FINE: Ink(Role.TEXT),
-    Weight.WAITS: Ink(Role.STRONG),
-    Weight.TROUBLE: Ink(Role.WARN),
+    DiagnosisLevel.FINE: Ink(Role.TEXT),
+    DiagnosisLevel.WAITS: Ink(Role.STRONG),
+    DiagnosisLevel.TROUBLE: Ink(Role.WARN),
 }
 _INDENT = 3
 _GAP = 2
@@ -24,20 +24,20 @@ _GAP = 2
 _LEAST_NOTE = 12
 _MOST = 4
 """Lines that a sentence may take."""
-_SIGNS = {Weight.FINE: "✓", Weight.WAITS: "·", Weight.TROUBLE: "!"}
+_SIGNS = {DiagnosisLevel.FINE: "✓", DiagnosisLevel.WAITS: "·", DiagnosisLevel.TROUBLE: "!"}
 
 
-class DiagnosisLine(Painted):
+class DiagnosisLine(PaintedWidget):
     """Shows a diagnosis; at the right how the latest service call stands, and the number of problems."""
 
-    diagnosis: reactive[Diagnosis] = reactive(Diagnosis("", Weight.FINE), repaint=False)
+    diagnosis: reactive[Diagnosis] = reactive(Diagnosis("", DiagnosisLevel.FINE), repaint=False)
     note: reactive[str] = reactive("", repaint=False)
     problems: reactive[str] = reactive("", repaint=False)
 
     class Clicked(Message):
         """The person clicked on the line."""
 
-    def rows(self, size: Size) -> Sequence[Sequence[Run]]:
+    def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the line; the note gives way when there is not room for all."""
         return diagnosis_rows(self.diagnosis, self.note, self.problems, size.width)
 
@@ -69,33 +69,33 @@ class DiagnosisLine(Painted):
             self.styles.height = len(rows)
 
 
-def diagnosis_rows(diagnosis: Diagnosis, note: str, problems: str, width: int) -> list[list[Run]]:
+def diagnosis_rows(diagnosis: Diagnosis, note: str, problems: str, width: int) -> list[list[TextRun]]:
     """Return the lines, each in exactly ``width`` columns: one, but for a sentence that stays."""
     taken = " " * (_GAP + len(problems) + 1 if problems else 0)
     first, *others = wrap(diagnosis.text, max(20, width - _INDENT), initial_indent=taken) or [""]
     if not diagnosis.stays or not others:
         return [diagnosis_row(diagnosis, note, problems, width)]
-    ink = _INKS[diagnosis.weight]
-    head = diagnosis_row(Diagnosis(first.strip(), diagnosis.weight), "", problems, width)
-    kept = [Run(fit(" " * _INDENT + line, width, Charset.BRAILLE), ink) for line in others[: _MOST - 1]]
+    ink = _INKS[diagnosis.level]
+    head = diagnosis_row(Diagnosis(first.strip(), diagnosis.level), "", problems, width)
+    kept = [TextRun(fit(" " * _INDENT + line, width, Charset.BRAILLE), ink) for line in others[: _MOST - 1]]
     return [head, *([run] for run in kept)]
 
 
-def diagnosis_row(diagnosis: Diagnosis, note: str, problems: str, width: int) -> list[Run]:
+def diagnosis_row(diagnosis: Diagnosis, note: str, problems: str, width: int) -> list[TextRun]:
     """Return the line in exactly ``width`` columns; at its right only the problems are there in any case."""
-    ink = _INKS[diagnosis.weight]
+    ink = _INKS[diagnosis.level]
     at_right = f"{problems} " if problems else ""
     gap = _GAP if problems else 0
     room = width - len(at_right) - gap
-    sign = _SIGNS[diagnosis.weight]
+    sign = _SIGNS[diagnosis.level]
     text, at_length = (f" {sign} {each}" for each in (diagnosis.text, diagnosis.at_length))
     if diagnosis.at_length and len(at_length) <= room:
         text = at_length
     shown_note = _fitting(note, room - len(text) - _INDENT)
     runs = [
-        Run(fit(text, room - len(shown_note), Charset.BRAILLE), ink),
-        Run(shown_note + " " * gap, Ink(Role.FAINT)),
-        Run(at_right, Ink(Role.STRONG)),
+        TextRun(fit(text, room - len(shown_note), Charset.BRAILLE), ink),
+        TextRun(shown_note + " " * gap, Ink(Role.FAINT)),
+        TextRun(at_right, Ink(Role.STRONG)),
     ]
     return [run for run in runs if run.text]
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cbtui.looks.theme import Charset, Ink
-from cbtui.text.cells import Row
+from cbtui.text.cells import CellRow
 
 Floats = NDArray[np.float64]
 
@@ -18,7 +18,7 @@ DOTS_PER_CELL = {Charset.BRAILLE: (2, 4), Charset.BLOCK: (2, 2), Charset.ASCII: 
 """Dots across and down in one cell."""
 
 
-class Dots:
+class DotGrid:
     """A grid of dots over cells, each blank or of one layer; the highest layer in a cell gives its ink.
 
     Coordinates count dots from the top left, as floats; what lies outside the grid is left out.
@@ -46,7 +46,7 @@ class Dots:
         steps = min(steps, 4 * sum(self._layers.shape))
         self.plot(np.linspace(start[0], end[0], steps), np.linspace(start[1], end[1], steps), layer)
 
-    def rows(self, inks: Sequence[Ink], signs: str) -> list[Row]:
+    def rows(self, inks: Sequence[Ink], signs: str) -> list[CellRow]:
         """Return the picture; ``inks`` and ``signs`` (for ASCII) are those of layers 0, 1, …; 0 is blank.
 
         Blank cells take the ink of what stands before them: the fewer runs, the less a terminal is sent.
@@ -56,7 +56,7 @@ class Dots:
         tops = cells.max(axis=(1, 3))
         rows = []
         for glyphs, layers in zip(self._glyphs(cells, tops, signs), _carried_on(tops).tolist(), strict=True):
-            row = Row(len(layers), self._charset)
+            row = CellRow(len(layers), self._charset)
             row.cells = list(glyphs)
             row.inks = [inks[layer] for layer in layers]
             rows.append(row)

@@ -6,13 +6,13 @@ from dataclasses import dataclass
 from textual.events import Click
 from textual.geometry import Size
 
-from cbtui.keys.action import Action, Scope, method_of, together
+from cbtui.keys.action import Action, Scope, group_by, method_of
 from cbtui.keys.actions import actions_of
 from cbtui.keys.bindings import perform
 from cbtui.keys.keymap import keymap_of
 from cbtui.keys.signs import signs_of
-from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, Run
-from cbtui.widgets.painted import Painted
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
+from cbtui.widgets.painted_widget import PaintedWidget
 
 _KEY = Ink(Role.STRONG)
 _LABEL = Ink(Role.FAINT)
@@ -21,7 +21,7 @@ _ALWAYS = ("leave", "leave_prompt", "close", "help")
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class KeyBarEntry:
     """Keys that share a label."""
 
     keys: str
@@ -34,7 +34,7 @@ class Entry:
         return len(self.keys) + 1 + len(self.label) + len(_GAP)
 
 
-class KeyBar(Painted):
+class KeyBar(PaintedWidget):
     """Shows the keys of a scope; a click on one does what it does. Call ``changed`` when others work.
 
     ``first`` are labels of actions that come before all others.
@@ -58,7 +58,7 @@ class KeyBar(Painted):
         working.sort(key=lambda action: action.label not in self.first)
         return keymap_of(self.app).of(working)
 
-    def rows(self, size: Size) -> Sequence[Sequence[Run]]:
+    def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the keys."""
         return [key_row(self._entries(size.width), size.width)]
 
@@ -77,38 +77,40 @@ class KeyBar(Painted):
                 return
             start += entry.width
 
-    def _entries(self, width: int) -> list[Entry]:
-        return choose(entries(self.working(), self._charset), width - 1)
+    def _entries(self, width: int) -> list[KeyBarEntry]:
+        return fitting_entries(key_bar_entries(self.working(), self._charset), width - 1)
 
     def _works(self, action: Action) -> bool:
         return self.screen.check_action(*method_of(action)) is not False
 
 
-def entries(actions: Iterable[Action], charset: Charset) -> list[Entry]:
+def key_bar_entries(actions: Iterable[Action], charset: Charset) -> list[KeyBarEntry]:
     """Return what the bar says of some actions."""
-    return [Entry(signs_of(group, charset), group[0].label, group) for group in together(actions, "label")]
+    return [
+        KeyBarEntry(signs_of(group, charset), group[0].label, group) for group in group_by(actions, "label")
+    ]
 
 
 def hint(actions: Iterable[Action], charset: Charset) -> str:
     """Return what the frame of a widget says of some actions: ``zoom < >``, parted by dots."""
     between = f" {GLYPHS[charset].between} "
-    return between.join(f"{entry.label} {entry.keys}" for entry in entries(actions, charset))
+    return between.join(f"{entry.label} {entry.keys}" for entry in key_bar_entries(actions, charset))
 
 
-def key_row(shown: Iterable[Entry], width: int) -> list[Run]:
+def key_row(shown: Iterable[KeyBarEntry], width: int) -> list[TextRun]:
     """Return the line of the entries in exactly ``width`` columns."""
-    runs: list[Run] = []
+    runs: list[TextRun] = []
     for entry in shown:
         runs += [
-            Run(" " if not runs else _GAP, _LABEL),
-            Run(entry.keys, _KEY),
-            Run(f" {entry.label}", _LABEL),
+            TextRun(" " if not runs else _GAP, _LABEL),
+            TextRun(entry.keys, _KEY),
+            TextRun(f" {entry.label}", _LABEL),
         ]
     taken = sum(len(run.text) for run in runs)
-    return [*runs, Run(" " * (width - taken), _LABEL)]
+    return [*runs, TextRun(" " * (width - taken), _LABEL)]
 
 
-def choose(every: list[Entry], width: int) -> list[Entry]:
+def fitting_entries(every: list[KeyBarEntry], width: int) -> list[KeyBarEntry]:
     """Return the entries that fit: the way out and the help always, then the first ones."""
     last = [entry for entry in every if entry.actions[0].id in _ALWAYS]
     room = width - sum(entry.width for entry in last) + len(_GAP)

@@ -15,10 +15,10 @@ class MenuSearch(Input):
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.SEARCH)]
 
-    class GivenUp(Message):
+    class SearchCleared(Message):
         """Everything is to be shown again."""
 
-    class Moved(Message):
+    class HighlightMoved(Message):
         """The highlight of the list is to go up (``step`` < 0) or down."""
 
         def __init__(self, step: int) -> None:
@@ -30,12 +30,12 @@ class MenuSearch(Input):
 
     def action_above(self) -> None:
         """Go up the list."""
-        self.post_message(self.Moved(-1))
+        self.post_message(self.HighlightMoved(-1))
 
     def action_below(self) -> None:
         """Go down the list."""
-        self.post_message(self.Moved(1))
+        self.post_message(self.HighlightMoved(1))
 
     def action_give_up(self) -> None:
         """Look for nothing."""
-        self.post_message(self.GivenUp())
+        self.post_message(self.SearchCleared())

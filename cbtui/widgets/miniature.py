@@ -10,12 +10,12 @@ from textual.geometry import Size
 from textual.reactive import reactive
 from textual.timer import Timer
 
-from cbtui.looks.theme import Charset, Ink, Role, Run
+from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.text.cells import fit, visible
-from cbtui.widgets.painted import Painted
+from cbtui.widgets.painted_widget import PaintedWidget
 
 if TYPE_CHECKING:
-    from cbtui.widgets.lanes.painter import Painter
+    from cbtui.widgets.lanes.painter import LanePainter
     from sim.trace.timeline import Timeline
 
 FRAMES_A_SECOND = 5
@@ -26,17 +26,17 @@ _STATUSES = (25, 16, 10, 0)
 
 
 @dataclass(frozen=True)
-class Subject:
+class PreviewPicture:
     """A run that is over, and the painter that draws it and knows its past."""
 
     timeline: "Timeline"
-    painter: "Painter"
+    painter: "LanePainter"
 
 
-class Miniature(Painted):
+class Miniature(PaintedWidget):
     """Draws ``subject``, faintly what comes after ``now`` (nanoseconds), or says a sentence."""
 
-    subject: reactive[Subject | None] = reactive(None, repaint=False)
+    subject: reactive[PreviewPicture | None] = reactive(None, repaint=False)
     now: reactive[int] = reactive(0, repaint=False)
     sentence: reactive[str] = reactive("", repaint=False)
     """What stands there while there is nothing to draw."""
@@ -44,13 +44,13 @@ class Miniature(Painted):
     _began = 0.0
     _sweep: Timer | None = None
 
-    def rows(self, size: Size) -> Sequence[Sequence[Run]]:
+    def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the lanes, or the sentence."""
         if self.subject is None or not size.width:
             return sentence_rows(self.sentence, size)
         return miniature(self.subject, self.now, size)
 
-    def watch_subject(self, subject: Subject | None) -> None:
+    def watch_subject(self, subject: PreviewPicture | None) -> None:
         """Begin to go through another run; where nothing is animated, stand at its end."""
         if self._sweep is not None:
             self._sweep.stop()
@@ -82,7 +82,7 @@ class Miniature(Painted):
             self._sweep = None
 
 
-def miniature(subject: Subject, now: int, size: Size) -> list[Sequence[Run]]:
+def miniature(subject: PreviewPicture, now: int, size: Size) -> list[Sequence[TextRun]]:
     """Paint a whole run in a size, without what the lanes say at their right: there is no room for it."""
     from cbtui.widgets.lanes.picture import layout_for  # here whoever has a subject has imported it
     from sim.trace.model import Window
@@ -94,9 +94,9 @@ def miniature(subject: Subject, now: int, size: Size) -> list[Sequence[Run]]:
     return [row[:-1] if picture.layout.statuses else row for row in picture.rows]
 
 
-def sentence_rows(sentence: str, size: Size) -> list[Sequence[Run]]:
+def sentence_rows(sentence: str, size: Size) -> list[Sequence[TextRun]]:
     """Paint a sentence, wrapped; ``size`` may be nothing."""
     if not size.width:
         return []
     lines = wrap(visible(sentence, Charset.BRAILLE), size.width)[: size.height]
-    return [[Run(fit(line, size.width, Charset.BRAILLE), Ink(Role.FAINT))] for line in lines]
+    return [[TextRun(fit(line, size.width, Charset.BRAILLE), Ink(Role.FAINT))] for line in lines]

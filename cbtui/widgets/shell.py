@@ -23,7 +23,7 @@ from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import Keymap, keymap_of
 from cbtui.looks.theme import Charset
 from cbtui.text.cells import visible, without_tabs
-from cbtui.widgets.following import Following
+from cbtui.widgets.following_view import FollowingView
 from sim.engine.commands import INTERRUPT
 from sim.trace.events import KeyboardAsked, LineEnded, LineGiven, LineSaid, Printed, Reading, Typed
 from sim.trace.model import Nanoseconds
@@ -49,13 +49,13 @@ _SEQUENCES = {
 """What a terminal sends for keys that stand for no character, or not for the one that Textual names."""
 
 
-class _Row(NamedTuple):
+class _OutputRow(NamedTuple):
     t: Nanoseconds
     text: str
     component: str
 
 
-class ShellOutput(Following):
+class ShellOutput(FollowingView):
     """The lines that were given and what they wrote, up to a moment."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {"shell--given", "shell--said", "shell--error", "shell--status"}
@@ -63,7 +63,7 @@ class ShellOutput(Following):
     def __init__(self) -> None:
         super().__init__()
         self._timeline = Timeline()
-        self._rows: list[_Row] = []
+        self._rows: list[_OutputRow] = []
         self._read = 0
         self._line_begun = False
 
@@ -76,7 +76,7 @@ class ShellOutput(Following):
             self._widest = 0
         new = timeline.shell[self._read :]
         self._read += len(new)
-        rows: list[_Row] = []
+        rows: list[_OutputRow] = []
         for event in new:
             if isinstance(event, Typed) and self._line_begun:
                 begun = (rows or self._rows).pop()
@@ -102,20 +102,22 @@ class ShellOutput(Following):
         return text.crop(left, left + width).adjust_cell_length(width, self.in_class(""))
 
 
-def _rows_of(event: ShellEvent) -> Iterator[_Row]:
+def _rows_of(event: ShellEvent) -> Iterator[_OutputRow]:
     match event:
         case LineGiven(t=t, text=text):
             for part in f"$ {text}".split("\n"):
-                yield _Row(t, visible(part, Charset.BRAILLE), "shell--given")
+                yield _OutputRow(t, visible(part, Charset.BRAILLE), "shell--given")
         case LineSaid(t=t, text=text, error=error):
             for part in without_tabs(text).split("\n"):
-                yield _Row(t, visible(part, Charset.BRAILLE), "shell--error" if error else "shell--said")
+                yield _OutputRow(
+                    t, visible(part, Charset.BRAILLE), "shell--error" if error else "shell--said"
+                )
         case Printed(t=t, text=text, error=error):
-            yield _Row(t, _shown(text), "shell--error" if error else "shell--said")
+            yield _OutputRow(t, _shown(text), "shell--error" if error else "shell--said")
         case Typed(t=t, text=text):
-            yield _Row(t, _shown(text.removesuffix("\n")), "shell--given")
+            yield _OutputRow(t, _shown(text.removesuffix("\n")), "shell--given")
         case LineEnded(t=t, status=status) if status:
-            yield _Row(t, f"(ended with status {status})", "shell--status")
+            yield _OutputRow(t, f"(ended with status {status})", "shell--status")
 
 
 def _shown(text: str) -> str:
@@ -127,14 +129,14 @@ class Prompt(Input):
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.PROMPT)]
 
-    class Given(Message):
+    class LineSubmitted(Message):
         """A line is to be carried out."""
 
         def __init__(self, text: str) -> None:
             super().__init__()
             self.text = text
 
-    class Interrupted(Message):
+    class LineInterrupted(Message):
         """The line that goes on is to end."""
 
     class CompletionWanted(Message):
@@ -161,7 +163,7 @@ class Prompt(Input):
         self._history = [*[each for each in self._history if each != text][-_HISTORY:], text]
         self._place = len(self._history)
         self.value = ""
-        self.post_message(self.Given(text))
+        self.post_message(self.LineSubmitted(text))
 
     def action_older(self) -> None:
         """Bring back the line before."""
@@ -183,7 +185,7 @@ class Prompt(Input):
 
     def action_interrupt(self) -> None:
         """End the line that goes on."""
-        self.post_message(self.Interrupted())
+        self.post_message(self.LineInterrupted())
 
     def action_leave_prompt(self) -> None:
         """Let the keys mean what they mean elsewhere again."""
@@ -212,7 +214,7 @@ class ProgramKeyboard(Input):
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.KEYBOARD)]
     reads: reactive[Reading] = reactive(Reading.NOTHING)
 
-    class Given(Message):
+    class TextTyped(Message):
         """Text was typed."""
 
         def __init__(self, text: str) -> None:
@@ -235,7 +237,7 @@ class ProgramKeyboard(Input):
             return
         event.stop()
         event.prevent_default()
-        self.post_message(self.Given(text))
+        self.post_message(self.TextTyped(text))
 
     @property
     def _ways_out(self) -> Collection[str]:
@@ -245,12 +247,12 @@ class ProgramKeyboard(Input):
     def on_input_submitted(self, event: Input.Submitted) -> None:
         """Give the line."""
         event.stop()
-        self.post_message(self.Given(f"{self.value}\n"))
+        self.post_message(self.TextTyped(f"{self.value}\n"))
         self.value = ""
 
     def action_interrupt(self) -> None:
         """Press ctrl+c in the program's terminal."""
-        self.post_message(self.Given(INTERRUPT))
+        self.post_message(self.TextTyped(INTERRUPT))
 
     def action_leave_keyboard(self) -> None:
         """Let the keys mean what they mean elsewhere again."""

@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from textual.geometry import Size
 from textual.reactive import reactive
 
-from cbtui.looks.theme import Charset, Ink, Role, Run
+from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.runs.live.live_recording import LiveRecording
-from cbtui.runs.live.live_run import ShownRun, State
+from cbtui.runs.live.live_run import RunState, ShownRun
 from cbtui.runs.live.playhead import Playhead
 from cbtui.text.cells import fit
-from cbtui.widgets.painted import Painted
+from cbtui.widgets.painted_widget import PaintedWidget
 from sim.durations import duration, timestamp
 from sim.trace.descriptions import executor_label
 from sim.trace.model import Nanoseconds
@@ -20,7 +20,7 @@ _PLAIN = Ink(Role.TEXT)
 _STRONG = Ink(Role.STRONG)
 _FAINT = Ink(Role.FAINT)
 _WARN = Ink(Role.WARN)
-_GAP = Run("   ", _PLAIN)
+_GAP = TextRun("   ", _PLAIN)
 _LEAST_TITLE = 5
 """Columns of the title that are worth more than what is told of a recording."""
 _WORTH_TELLING = 10_000_000
@@ -28,7 +28,7 @@ _WORTH_TELLING = 10_000_000
 
 
 @dataclass(frozen=True, slots=True)
-class Status:
+class RunStatus:
     """What the line tells.
 
     ``back`` is how long before the end the moment on screen lies, 0 for live; ``recorded`` how many events
@@ -38,7 +38,7 @@ class Status:
     """
 
     title: str
-    state: State
+    state: RunState
     pace: str
     at: Nanoseconds
     back: Nanoseconds
@@ -58,11 +58,11 @@ def status_of(
     usual_executor: str,
     recording: LiveRecording | None = None,
     exported: int | None = None,
-) -> Status:
+) -> RunStatus:
     """Return what the line tells of a run; until its executor appears, what the lesson says of it."""
     timeline = run.timeline
     at = playhead.now(timeline.end)
-    return Status(
+    return RunStatus(
         title=title,
         state=run.state,
         pace=_pace(run),
@@ -82,16 +82,16 @@ def _pace(run: ShownRun) -> str:
     if run.setup.real is not None:
         return "real ROS 2"
     if not run.virtual:
-        return "real: computing goes on" if run.state is State.PAUSED else f"real ×{run.speed:.1f}"
+        return "real: computing goes on" if run.state is RunState.PAUSED else f"real ×{run.speed:.1f}"
     return "virtual max" if run.speed is None else f"virtual ×{run.speed:.1f}"
 
 
-class StatusLine(Painted):
+class StatusLine(PaintedWidget):
     """Shows a status."""
 
-    status: reactive[Status | None] = reactive(None, repaint=False)
+    status: reactive[RunStatus | None] = reactive(None, repaint=False)
 
-    def rows(self, size: Size) -> Sequence[Sequence[Run]]:
+    def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the line."""
         return [] if self.status is None else [status_row(self.status, size.width)]
 
@@ -100,16 +100,16 @@ class StatusLine(Painted):
         self.changed()
 
 
-def status_row(status: Status, width: int) -> list[Run]:
+def status_row(status: RunStatus, width: int) -> list[TextRun]:
     """Return the line in exactly ``width`` columns; the executor gives way first, then pace and recording.
 
     Last of all, what the trace lost is told and messages are not.
     """
-    title = Run(f" {status.title}", _STRONG)
+    title = TextRun(f" {status.title}", _STRONG)
     state = _state(status)
-    pace = Run(f"  {status.pace}", _PLAIN)
-    time = Run(f"t {timestamp(status.at)}", _STRONG)
-    executor = Run(status.executor, _PLAIN)
+    pace = TextRun(f"  {status.pace}", _PLAIN)
+    time = TextRun(f"t {timestamp(status.at)}", _STRONG)
+    executor = TextRun(status.executor, _PLAIN)
     losses = _losses(status)
     recording = [*_export(status), *_recording(status)]
     whole = len(title.text) + 2
@@ -124,42 +124,48 @@ def status_row(status: Status, width: int) -> list[Run]:
         if room >= least:
             break
     shown = f"{fit(title.text, room - 1, Charset.BRAILLE)} " if room > 1 else " " * room
-    return [Run(shown, _STRONG), *parts, Run(" ", _PLAIN)]
+    return [TextRun(shown, _STRONG), *parts, TextRun(" ", _PLAIN)]
 
 
-def _state(status: Status) -> Run:
-    if status.back and status.state in (State.STARTING, State.LIVE, State.PAUSED, State.SILENT, State.ENDED):
-        paused = ", paused" if status.state is State.PAUSED else ""
-        return Run(f"◂ BACK {duration(status.back)}{paused}", _WARN)
+def _state(status: RunStatus) -> TextRun:
+    if status.back and status.state in (
+        RunState.STARTING,
+        RunState.LIVE,
+        RunState.PAUSED,
+        RunState.SILENT,
+        RunState.ENDED,
+    ):
+        paused = ", paused" if status.state is RunState.PAUSED else ""
+        return TextRun(f"◂ BACK {duration(status.back)}{paused}", _WARN)
     return _STATES[status.state]
 
 
 _STATES = {
-    State.STARTING: Run("○ STARTING", _FAINT),
-    State.LIVE: Run("● LIVE", _STRONG),
-    State.PAUSED: Run("‖ PAUSED", _WARN),
-    State.SILENT: Run("✗ SILENT", _WARN),
-    State.ENDED: Run("■ ENDED", _STRONG),
-    State.LOST: Run("✗ LOST", _WARN),
-    State.REPLAY_STANDS: Run("‖ REPLAY", _STRONG),
-    State.REPLAY_PLAYS: Run("▶ REPLAY", _STRONG),
+    RunState.STARTING: TextRun("○ STARTING", _FAINT),
+    RunState.LIVE: TextRun("● LIVE", _STRONG),
+    RunState.PAUSED: TextRun("‖ PAUSED", _WARN),
+    RunState.SILENT: TextRun("✗ SILENT", _WARN),
+    RunState.ENDED: TextRun("■ ENDED", _STRONG),
+    RunState.LOST: TextRun("✗ LOST", _WARN),
+    RunState.REPLAY_STANDS: TextRun("‖ REPLAY", _STRONG),
+    RunState.REPLAY_PLAYS: TextRun("▶ REPLAY", _STRONG),
 }
 
 
-def _export(status: Status) -> list[Run]:
-    return [] if status.exported is None else [Run(f"EXPORT {status.exported} %", _WARN), _GAP]
+def _export(status: RunStatus) -> list[TextRun]:
+    return [] if status.exported is None else [TextRun(f"EXPORT {status.exported} %", _WARN), _GAP]
 
 
-def _recording(status: Status) -> list[Run]:
+def _recording(status: RunStatus) -> list[TextRun]:
     if status.recorded is None:
         return []
     lost = f", lost {status.unrecorded:,}" if status.unrecorded else ""
     size = f" {status.recorded_bytes // 1_000_000:,} MB" if status.recorded_bytes >= _WORTH_TELLING else ""
-    return [Run(f"REC {status.recorded:,}{size}{lost}", _WARN), _GAP]
+    return [TextRun(f"REC {status.recorded:,}{size}{lost}", _WARN), _GAP]
 
 
-def _losses(status: Status) -> list[Run]:
-    losses = [Run(f"dropped {status.dropped}", _WARN if status.dropped else _FAINT)]
+def _losses(status: RunStatus) -> list[TextRun]:
+    losses = [TextRun(f"dropped {status.dropped}", _WARN if status.dropped else _FAINT)]
     if status.lost:
-        losses += [_GAP, Run(f"trace lost {status.lost}", _WARN)]
+        losses += [_GAP, TextRun(f"trace lost {status.lost}", _WARN)]
     return losses

@@ -9,16 +9,16 @@ from textual.message import Message
 from textual.reactive import reactive
 
 from cbtui.keys.action import CHECKS, PANES
-from cbtui.looks.theme import Charset, Ink, Role, Run
+from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.text.cells import fit
-from cbtui.widgets.painted import Painted
+from cbtui.widgets.painted_widget import PaintedWidget
 
 _LINE = Ink(Role.FAINT)
 _NOTE = Ink(Role.TEXT)
-_BETWEEN = " · "
+_SEPARATOR = " · "
 
 
-class Tabs(Painted):
+class Tabs(PaintedWidget):
     """Names the panes with their numbers, the one that is shown in brackets."""
 
     def __init__(self, panes: Sequence[str] = PANES) -> None:
@@ -29,22 +29,22 @@ class Tabs(Painted):
     note: reactive[str] = reactive("", repaint=False)
     """What the pane that is shown says of itself, the weightiest first; stands at the right."""
 
-    class Picked(Message):
+    class TabPicked(Message):
         """A pane was clicked."""
 
         def __init__(self, pane: str) -> None:
             super().__init__()
             self.pane = pane
 
-    def rows(self, size: Size) -> Sequence[Sequence[Run]]:
+    def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the line."""
-        runs = [Run("─", _LINE)]
+        runs = [TextRun("─", _LINE)]
         for pane, text in self._labels():
             shown = pane == self.current
-            runs.append(Run(text, Ink(Role.STRONG if shown else Role.TEXT)))
+            runs.append(TextRun(text, Ink(Role.STRONG if shown else Role.TEXT)))
         room = max(0, size.width - sum(len(run.text) for run in runs))
-        note = _shortened(self.note, room - 2)
-        return [[*runs, Run("─" * (room - cell_len(note)), _LINE), Run(note, _NOTE)]]
+        note = _shortened_note(self.note, room - 2)
+        return [[*runs, TextRun("─" * (room - cell_len(note)), _LINE), TextRun(note, _NOTE)]]
 
     def watch_current(self) -> None:
         """Show another one in brackets."""
@@ -59,7 +59,7 @@ class Tabs(Painted):
         start = 1
         for pane, text in self._labels():
             if start <= event.x < start + len(text):
-                self.post_message(self.Picked(pane))
+                self.post_message(self.TabPicked(pane))
             start += len(text)
 
     def _labels(self) -> Iterator[tuple[str, str]]:
@@ -67,12 +67,12 @@ class Tabs(Painted):
             yield pane, f"[{title_of(pane)}]" if pane == self.current else f" {title_of(pane)} "
 
 
-def _shortened(note: str, room: int) -> str:
+def _shortened_note(note: str, room: int) -> str:
     """Return a note with as many of its parts as there is room for, the first one cut off if need be."""
-    parts = note.split(_BETWEEN)
-    while len(parts) > 1 and cell_len(_BETWEEN.join(parts)) > room:
+    parts = note.split(_SEPARATOR)
+    while len(parts) > 1 and cell_len(_SEPARATOR.join(parts)) > room:
         parts.pop()
-    text = _BETWEEN.join(parts)
+    text = _SEPARATOR.join(parts)
     return f" {fit(text, min(cell_len(text), room), Charset.BRAILLE)} " if text and room > 0 else ""
 
 

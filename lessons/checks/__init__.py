@@ -23,7 +23,7 @@ from lessons.checks.reading import (
     runs_long,
     seconds,
     spans_of,
-    whole,
+    whole_run,
 )
 from lessons.checks.robot import data_never_older, turns
 from lessons.checks.services import every_call_answered, log_never_says, log_says, replies_within
@@ -61,5 +61,5 @@ __all__ = [
     "ticks_on_time",
     "turns",
     "uses_threads",
-    "whole",
+    "whole_run",
 ]

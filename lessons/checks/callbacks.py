@@ -4,7 +4,8 @@ from collections.abc import Iterable, Iterator
 from heapq import merge
 
 from lessons.checks.check import Check, Verdict
-from lessons.checks.reading import Stretch, calls_of, entities_named, seconds, spans_of, whole
+from lessons.checks.reading import Stretch, calls_of, entities_named, seconds, spans_of, whole_run
+from sim.plural import counted
 from sim.trace.events import GroupKind
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Nanoseconds, Span, Window
@@ -28,10 +29,12 @@ def keeps_coming(callback: str, while_: Stretch, at_least: float) -> Check:
         long_enough = [each for each in while_.windows(run) if each.length * at_least >= 2 * SECOND]
         if not long_enough:
             return Verdict(False, expected, f"no time at which {while_.words}")
-        counted = [(len(calls_of(run, callback, window)), window) for window in long_enough]
-        count, window = min(counted, key=lambda pair: pair[0] / pair[1].length)
+        rates = [(len(calls_of(run, callback, window)), window) for window in long_enough]
+        count, window = min(rates, key=lambda pair: pair[0] / pair[1].length)
         passed = count * SECOND >= at_least * window.length
-        return Verdict(passed, expected, f"{_calls(count)} in {seconds(window.length)}", window.start)
+        return Verdict(
+            passed, expected, f"{counted(count, 'call')} in {seconds(window.length)}", window.start
+        )
 
     return Check(f"{callback} keeps coming while {while_.words}", judge)
 
@@ -80,7 +83,7 @@ def exclusive_groups_hold() -> Check:
 
     def judge(run: Timeline) -> Verdict:
         exclusive = [group.id for group in run.groups.values() if group.kind is GroupKind.EXCLUSIVE]
-        found = [_first_overlap(run, [run.spans_in(group, whole(run))]) for group in exclusive]
+        found = [_first_overlap(run, [run.spans_in(group, whole_run(run))]) for group in exclusive]
         first = min(filter(None, found), key=lambda pair: pair[1].start, default=None)
         return _alone(run, first, expected)
 
@@ -98,7 +101,7 @@ def ticks_on_time(timer: str, within: float) -> Check:
         latest = max(calls, key=lambda span: span.age)
         passed = latest.age <= within * SECOND
         if not latest.age:
-            return Verdict(True, expected, f"{_calls(len(calls))}, none late")
+            return Verdict(True, expected, f"{counted(len(calls), 'call')}, none late")
         return Verdict(passed, expected, f"{seconds(latest.age)} late", latest.start)
 
     return Check(f"{timer} is called on time", judge)
@@ -106,13 +109,13 @@ def ticks_on_time(timer: str, within: float) -> Check:
 
 def is_called_often(callback: str, at_least: int) -> Check:
     """A callback is called ``at_least`` times in the run."""
-    expected = f"at least {_calls(at_least)}"
+    expected = f"at least {counted(at_least, 'call')}"
 
     def judge(run: Timeline) -> Verdict:
         calls = calls_of(run, callback)
         if not calls:
             return _missing(callback, expected)
-        return Verdict(len(calls) >= at_least, expected, _calls(len(calls)), calls[-1].start)
+        return Verdict(len(calls) >= at_least, expected, counted(len(calls), "call"), calls[-1].start)
 
     return Check(f"{callback} is called", judge)
 
@@ -123,7 +126,7 @@ def never_raises() -> Check:
 
     def judge(run: Timeline) -> Verdict:
         for each in run.entities.values():
-            for span in run.spans_of(each.id, whole(run)):
+            for span in run.spans_of(each.id, whole_run(run)):
                 if span.error:
                     return Verdict(False, expected, f"{each.spoken_name}: {span.error}", span.start)
         return Verdict(True, expected, "none")
@@ -133,7 +136,7 @@ def never_raises() -> Check:
 
 def uses_threads(at_least: int) -> Check:
     """At some moment callbacks run on ``at_least`` threads."""
-    expected = f"callbacks on at least {at_least} thread{'s' * (at_least > 1)} at once"
+    expected = f"callbacks on at least {counted(at_least, 'thread')} at once"
 
     def judge(run: Timeline) -> Verdict:
         most = Concurrency(run).peak(run.end)
@@ -144,10 +147,6 @@ def uses_threads(at_least: int) -> Check:
 
 def _missing(name: str, expected: str) -> Verdict:
     return Verdict(False, expected, f"no call of {name}")
-
-
-def _calls(count: int) -> str:
-    return "1 call" if count == 1 else f"{count} calls"
 
 
 def _alone(run: Timeline, found: tuple[Span, Span] | None, expected: str) -> Verdict:

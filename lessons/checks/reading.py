@@ -9,7 +9,7 @@ from sim.trace.timeline import Timeline
 from sim.units import SECOND
 
 
-def whole(run: Timeline) -> Window:
+def whole_run(run: Timeline) -> Window:
     """All of a run."""
     return Window(0, run.end + 1)
 
@@ -21,14 +21,14 @@ def entities_named(run: Timeline, name: str) -> list[EntityId]:
 
 def calls_of(run: Timeline, name: str, window: Window | None = None) -> list[Span]:
     """The calls of a callback, topic or service that began in a window, or ever; in order of start."""
-    within = whole(run) if window is None else window
+    within = whole_run(run) if window is None else window
     found = [span for each in entities_named(run, name) for span in run.calls_begun(each, within)]
     return sorted(found, key=lambda span: span.start)
 
 
 def spans_of(run: Timeline, name: str) -> list[Span]:
     """What a callback, topic or service had run when; a call that awaited something is several spans."""
-    found = [span for each in entities_named(run, name) for span in run.spans_of(each, whole(run))]
+    found = [span for each in entities_named(run, name) for span in run.spans_of(each, whole_run(run))]
     return sorted(found, key=lambda span: span.start)
 
 
@@ -52,7 +52,7 @@ def rotations(run: Timeline) -> list[Window]:
 
 def _rotations(run: Timeline) -> Iterator[Window]:
     begun: VelocityCommanded | None = None
-    for command in run.commands(whole(run)):
+    for command in run.commands(whole_run(run)):
         if begun is None and command.angular:
             begun = command
         elif begun is not None and not command.angular:

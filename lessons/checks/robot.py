@@ -4,6 +4,7 @@ from collections.abc import Iterator
 
 from lessons.checks.check import Check, Verdict
 from lessons.checks.reading import calls_of, rotations, seconds, spans_of
+from sim.plural import counted
 from sim.trace.model import Nanoseconds, Span
 from sim.trace.timeline import Timeline
 from sim.units import SECOND
@@ -11,12 +12,12 @@ from sim.units import SECOND
 
 def turns(times: int) -> Check:
     """The robot turns so many times; a turn goes from a command to turn to the first one not to."""
-    expected = _turns(times)
+    expected = counted(times, "turn")
 
     def judge(run: Timeline) -> Verdict:
         found = rotations(run)
         at = found[min(times, len(found) - 1)].start if found else None
-        return Verdict(len(found) == times, expected, _turns(len(found)), at)
+        return Verdict(len(found) == times, expected, counted(len(found), "turn"), at)
 
     return Check(f"the robot makes {expected}", judge)
 
@@ -48,7 +49,3 @@ def _ages(taken: list[Span], decisions: list[Span]) -> Iterator[tuple[Nanosecond
             newest = published if newest is None else max(newest, published)
         if newest is not None:
             yield decision.start - newest, decision.start
-
-
-def _turns(times: int) -> str:
-    return "1 turn" if times == 1 else f"{times} turns"

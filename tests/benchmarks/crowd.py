@@ -4,11 +4,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 from cbtui.runs.live.findings import FindingsMonitor
-from cbtui.widgets.code.files import SourceFiles
 from cbtui.widgets.code.marks import marks_at
-from cbtui.widgets.diagnosis import diagnose
+from cbtui.widgets.code.source_files import SourceFiles
+from cbtui.widgets.diagnosis import diagnosis_at
 from cbtui.widgets.factory.painter import FactoryPainter
-from cbtui.widgets.lanes import LOOKS_A_FRAME, Painter
+from cbtui.widgets.lanes import LOOKS_PER_FRAME, LanePainter
 from sim.trace import events as ev
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Window
@@ -51,7 +51,7 @@ class Drawn:
     def __init__(self, number: int, in_groups: bool) -> None:
         self._timeline = Timeline()
         self._timeline.extend(timers(number, in_groups))
-        self._lanes = Painter(looks=LOOKS_A_FRAME)
+        self._lanes = LanePainter(looks=LOOKS_PER_FRAME)
         self._factory = FactoryPainter()
         self._watch = FindingsMonitor(self._timeline)
         self._concurrency = Concurrency(self._timeline)
@@ -70,7 +70,7 @@ class Drawn:
         return {
             "lanes": lambda: self._lanes.paint(timeline, window, end, _WIDTH, _HEIGHT),
             "factory": lambda: self._factory.paint(timeline, end, _WIDTH, _HEIGHT),
-            "sentence": lambda: diagnose(timeline, end, self._concurrency),
+            "sentence": lambda: diagnosis_at(timeline, end, self._concurrency),
             "code": lambda: marks_at(timeline, end, self._files),
             "rules": self._watch.look,
         }

@@ -12,7 +12,7 @@ from typing import Any
 
 import msgspec
 
-from cbtui.engines.session import Session
+from cbtui.engines.session import ProcessSession
 from cbtui.runs.setup.lesson_setup import RunRequest, setup_for
 from lessons.catalogue import find
 from sim.engine.setup import RobotUse, RunSetup
@@ -149,7 +149,7 @@ def encoding(message: Any, calls: int) -> float:
 def _run(setup: RunSetup, take: Callable[[list[AnyEvent]], object]) -> float:
     """Run an engine to its end; returns the seconds from its first events to its last."""
     news: Queue[list[AnyEvent] | str | None] = Queue(64)
-    session = Session(setup, news.put, news.put)
+    session = ProcessSession(setup, news.put, news.put)
     session.start()
     batch = news.get()
     began = time.perf_counter()

@@ -13,7 +13,7 @@ from types import FrameType
 import pytest
 
 from cbtui.runs.live.live_run import LiveRun
-from cbtui.widgets.lanes import LOOKS_A_FRAME, Painter
+from cbtui.widgets.lanes import LOOKS_PER_FRAME, LanePainter
 from sim.engine.setup import RunSetup
 from sim.trace.model import Window
 from sim.trace.roster import MOST
@@ -48,7 +48,7 @@ def calls_of(work: Callable[[], object]) -> int:
 
 def following_frame(seconds: int) -> int:
     """The calls of a frame that shows the last ten seconds of so long a run, after one before it."""
-    timeline, painter = long_run(seconds, _SELDOM), Painter()
+    timeline, painter = long_run(seconds, _SELDOM), LanePainter()
     first = ns(seconds - 1)
 
     def frame(now: int) -> None:
@@ -66,10 +66,10 @@ def test_the_first_frame_after_zooming_out_looks_at_a_part_of_what_there_is() ->
     end = ns(300)
     timeline = long_run(301)
 
-    def paint(painter: Painter) -> int:
+    def paint(painter: LanePainter) -> int:
         return calls_of(lambda: painter.paint(timeline, Window(0, end), end, 140, 20))
 
-    assert paint(Painter(looks=LOOKS_A_FRAME)) < 0.5 * paint(Painter())
+    assert paint(LanePainter(looks=LOOKS_PER_FRAME)) < 0.5 * paint(LanePainter())
 
 
 def test_a_callback_costs_the_same_among_five_hundred_entities_as_alone() -> None:

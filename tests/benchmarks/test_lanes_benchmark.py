@@ -5,7 +5,7 @@ from itertools import count
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from cbtui.widgets.lanes import Painter
+from cbtui.widgets.lanes import LanePainter
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.benchmarks.drawing import FRAME, long_run
@@ -23,7 +23,7 @@ def hour() -> Timeline:
 def test_a_following_frame_of_sixteen_lanes(
     benchmark: BenchmarkFixture, hour: Timeline, seconds: int
 ) -> None:
-    painter = Painter()
+    painter = LanePainter()
     frames = count()
 
     def frame() -> None:
@@ -38,4 +38,4 @@ def test_a_following_frame_of_sixteen_lanes(
 def test_the_first_frame_after_zooming(benchmark: BenchmarkFixture, hour: Timeline, seconds: int) -> None:
     end = ns(HOUR - 60)
     window = Window(end - ns(seconds), end)
-    benchmark(lambda: Painter().paint(hour, window, end, 140, 20))
+    benchmark(lambda: LanePainter().paint(hour, window, end, 140, 20))

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import pytest
 from pytest_benchmark.fixture import BenchmarkFixture
 
-from cbtui.widgets.robot import Look
-from cbtui.widgets.robot.film import half_blocks
+from cbtui.widgets.robot import RobotViewMode
+from cbtui.widgets.robot.camera_picture import half_blocks
 from cbtui.widgets.robot.painter import RobotPainter
 from sim.camera import Picture
 from sim.camera.renderer import Renderer
@@ -26,8 +26,10 @@ def renderer() -> Iterator[Renderer]:
 
 
 @pytest.mark.parametrize(("width", "height"), [(44, 18), (78, 9), (138, 30)])
-@pytest.mark.parametrize("look", Look)
-def test_a_frame_of_the_robot_pane(benchmark: BenchmarkFixture, width: int, height: int, look: Look) -> None:
+@pytest.mark.parametrize("look", RobotViewMode)
+def test_a_frame_of_the_robot_pane(
+    benchmark: BenchmarkFixture, width: int, height: int, look: RobotViewMode
+) -> None:
     timeline = told(shared_group_run())
     painter = RobotPainter()
     benchmark(lambda: painter.paint(timeline, ns(29.25), width, height, look))

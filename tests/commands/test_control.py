@@ -13,10 +13,10 @@ import pytest
 from cbtui import cli
 from cbtui.engines.control_socket import (
     ControlServer,
-    Done,
+    LineOutput,
+    LineResult,
     NoEngine,
     RemoteLine,
-    Said,
     UnusableFolderError,
     connect,
     runtime_folder,
@@ -63,8 +63,12 @@ def test_a_line_reaches_the_run_and_gets_its_own_answers(
         [LineSaid(0, one, "/odom", False), LineSaid(0, two, "/node", False), LineSaid(0, 1, "x", False)]
     )
     server.take([LineSaid(1, one, "oh", True), LineEnded(1, one, 0), LineEnded(1, two, 1)])
-    assert [first.next_answer() for _ in range(3)] == [Said("/odom", False), Said("oh", True), Done(0)]
-    assert [second.next_answer() for _ in range(2)] == [Said("/node", False), Done(1)]
+    assert [first.next_answer() for _ in range(3)] == [
+        LineOutput("/odom", False),
+        LineOutput("oh", True),
+        LineResult(0),
+    ]
+    assert [second.next_answer() for _ in range(2)] == [LineOutput("/node", False), LineResult(1)]
 
 
 def test_an_interruption_and_a_client_that_goes_away_end_the_line(
@@ -75,7 +79,7 @@ def test_an_interruption_and_a_client_that_goes_away_end_the_line(
     asked.interrupt()
     assert sent.get(timeout=PATIENCE) == InterruptLine(line)
     server.take([LineEnded(0, line, 2)])
-    assert asked.next_answer() == Done(2)
+    assert asked.next_answer() == LineResult(2)
     left = connect(None)
     RemoteLine(left, "ros2 topic echo /odom")
     line = given(sent).line
@@ -87,7 +91,7 @@ def test_the_end_of_the_run_ends_every_line(server: ControlServer, sent: "Queue[
     asked = RemoteLine(connect(None), "ros2 topic echo /odom")
     given(sent)
     server.stop()
-    assert asked.next_answer() == Done(None)
+    assert asked.next_answer() == LineResult(None)
 
 
 def test_nonsense_on_the_socket_does_no_harm(server: ControlServer, sent: "Queue[Command]") -> None:

@@ -11,13 +11,13 @@ import pytest
 from cbtui import cli
 from cbtui.doctor import engines
 from cbtui.doctor.engines import engine
+from cbtui.doctor.examination import Examination, Sign, fault, note, well
 from cbtui.doctor.extras import browser, editor, ros
+from cbtui.doctor.files import configuration, folders, lessons_found, progress
 from cbtui.doctor.packages import bullet, dependencies, python
-from cbtui.doctor.places import configuration, folders, lessons_found, progress
-from cbtui.doctor.probes import Outcome, Probe
+from cbtui.doctor.probes import ProbeProcess, ProbeResult
 from cbtui.doctor.requirements import Requirement, in_range, read_requirement, requirements
-from cbtui.doctor.screen import Screen, screen
-from cbtui.doctor.verdict import Sign, Verdict, fault, note, well
+from cbtui.doctor.terminal import TerminalFacts, screen
 from cbtui.text.installing import install_command
 from tests.support.nobody import without_home
 
@@ -69,19 +69,19 @@ def test_the_exit_code_is_1_only_if_something_is_at_fault(
     assert "b            is less: do this" in out
 
 
-class _Ended(Probe):
+class _Ended(ProbeProcess):
     """A probe that has ended with a certain outcome."""
 
-    def __init__(self, outcome: Outcome) -> None:
+    def __init__(self, outcome: ProbeResult) -> None:
         self._outcome = outcome
 
-    def outcome(self) -> Outcome:
+    def outcome(self) -> ProbeResult:
         return self._outcome
 
 
 def test_a_package_that_cannot_be_imported_is_named_with_why_and_so_is_one_that_crashes() -> None:
     said = "begin yaml\nbad yaml: ImportError: no libyaml\nbegin numpy\n"
-    found = list(dependencies(_Ended(Outcome(said, "", -11, "it crashed by SIGSEGV"))))
+    found = list(dependencies(_Ended(ProbeResult(said, "", -11, "it crashed by SIGSEGV"))))
     assert [each.subject for each in found] == ["numpy", "pyyaml"]
     assert all(each.sign is Sign.FAULT for each in found)
     assert "it crashed by SIGSEGV" in found[0].what
@@ -93,7 +93,7 @@ def test_a_package_that_is_missing_or_too_old_is_told_with_the_command_that_mend
 ) -> None:
     needed = (Requirement("rich", ">=99"), Requirement("no-such-thing", ">=1"))
     monkeypatch.setattr("cbtui.doctor.packages.requirements", lambda: needed)
-    old, missing = dependencies(_Ended(Outcome("", "", 0, "")))
+    old, missing = dependencies(_Ended(ProbeResult("", "", 0, "")))
     assert "cbtui needs >=99" in old.what
     assert "is not installed" in missing.what
     assert "-m pip install 'no-such-thing>=1'" in missing.remedy
@@ -140,7 +140,7 @@ def test_what_cbtui_says_that_it_needs_is_looked_at() -> None:
 def test_where_pybullet_has_no_wheel_one_is_told_how_it_is_built_or_spared(
     running: tuple[int, int], machine: str, older_does: bool, is_built: bool
 ) -> None:
-    found = bullet(_Ended(Outcome("", "No module named 'pybullet'\n", 1, "")), running, machine)
+    found = bullet(_Ended(ProbeResult("", "No module named 'pybullet'\n", 1, "")), running, machine)
     assert "No module named 'pybullet'" in found.what
     assert ("use Python 3.11" in found.remedy) is older_does
     assert ("C++ compiler" in found.remedy) is is_built
@@ -169,7 +169,7 @@ def test_an_engine_that_cannot_be_started_is_a_fault(monkeypatch: pytest.MonkeyP
 
         def stop(self) -> None: ...
 
-    monkeypatch.setattr(engines, "Session", Broken)
+    monkeypatch.setattr(engines, "ProcessSession", Broken)
     assert engine().sign is Sign.FAULT
     assert "No usable temporary directory" in engine().what
 
@@ -185,11 +185,11 @@ def test_an_engine_that_is_lost_is_a_fault_with_what_became_of_it(monkeypatch: p
 
         def stop(self) -> None: ...
 
-    monkeypatch.setattr(engines, "Session", Lost)
+    monkeypatch.setattr(engines, "ProcessSession", Lost)
     assert engine().what == "does not run (the engine was killed by signal 9)"
 
 
-def _of(verdicts: Iterator[Verdict], subject: str) -> Verdict:
+def _of(verdicts: Iterator[Examination], subject: str) -> Examination:
     return next(each for each in verdicts if each.subject == subject)
 
 
@@ -214,18 +214,18 @@ _BIG = os.terminal_size((120, 40))
 def test_the_terminal_is_known_by_its_environment(
     environment: dict[str, str], subject: str, sign: Sign, said: str
 ) -> None:
-    found = _of(screen(Screen(environment, "braille", _BIG)), subject)
+    found = _of(screen(TerminalFacts(environment, "braille", _BIG)), subject)
     assert found.sign is sign
     assert said in found.what
 
 
 def test_a_terminal_that_cannot_show_the_console_is_given_no_advice_on_colours() -> None:
-    found = list(screen(Screen({"TERM": "dumb"}, "braille", _BIG)))
+    found = list(screen(TerminalFacts({"TERM": "dumb"}, "braille", _BIG)))
     assert "colours" not in {each.subject for each in found}
 
 
 def test_a_terminal_that_is_too_small_or_none_is_noted() -> None:
-    small = Screen({"TERM": "xterm"}, "ascii", os.terminal_size((60, 20)))
+    small = TerminalFacts({"TERM": "xterm"}, "ascii", os.terminal_size((60, 20)))
     assert "80 columns and 24 rows" in _of(screen(small), "terminal").remedy
     assert "no terminal" in _of(screen(small._replace(size=None)), "terminal").what
     assert _of(screen(small), "signs").sign is Sign.NOTE
@@ -257,7 +257,7 @@ def test_no_folder_for_temporary_files_is_a_fault(monkeypatch: pytest.MonkeyPatc
     def refuse() -> str:
         raise FileNotFoundError(2, "No usable temporary directory")
 
-    monkeypatch.setattr("cbtui.doctor.places.tempfile.gettempdir", refuse)
+    monkeypatch.setattr("cbtui.doctor.files.tempfile.gettempdir", refuse)
     assert _of(folders(Path.cwd), "temp folder").sign is Sign.FAULT
 
 

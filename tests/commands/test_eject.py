@@ -14,7 +14,7 @@ from msgspec import structs
 
 from cbtui import cli
 from cbtui.eject.ament_package import AmentPackage, LessonProgram
-from cbtui.eject.eject import EjectError, Unit, chosen, package_of, units_of
+from cbtui.eject.eject import CourseUnit, EjectError, chosen, package_of, units_of
 from lessons.catalogue import find, lessons, lessons_in
 from lessons.lesson import Lesson
 from sim.launch import LaunchRun
@@ -32,7 +32,7 @@ def ejected(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def _package(folder: Path, unit: Unit) -> Package:
+def _package(folder: Path, unit: CourseUnit) -> Package:
     return find_packages(folder).package(unit.package)
 
 
@@ -62,7 +62,9 @@ def _lesson_in(folder: Path, source: bytes) -> Lesson:
 
 
 @pytest.mark.parametrize("unit", UNITS, ids=lambda unit: unit.package)
-def test_every_lesson_is_an_executable_with_its_own_node_word_for_word(ejected: Path, unit: Unit) -> None:
+def test_every_lesson_is_an_executable_with_its_own_node_word_for_word(
+    ejected: Path, unit: CourseUnit
+) -> None:
     package = _package(ejected, unit)
     for lesson in unit.lessons:
         executable = package.executable(lesson.id.replace("-", "_"))
@@ -72,7 +74,7 @@ def test_every_lesson_is_an_executable_with_its_own_node_word_for_word(ejected: 
 
 
 @pytest.mark.parametrize("unit", UNITS, ids=lambda unit: unit.package)
-def test_every_lesson_has_a_launch_file_that_gives_it_its_arguments(ejected: Path, unit: Unit) -> None:
+def test_every_lesson_has_a_launch_file_that_gives_it_its_arguments(ejected: Path, unit: CourseUnit) -> None:
     package = _package(ejected, unit)
     for lesson in unit.lessons:
         launch_file = package.launch_file(f"{lesson.id.replace('-', '_')}.launch.py")
@@ -87,7 +89,9 @@ def test_a_launch_file_takes_another_value_for_an_argument(ejected: Path) -> Non
 
 
 @pytest.mark.parametrize("unit", UNITS, ids=lambda unit: unit.package)
-def test_lines_for_the_packages_beside_the_lessons_mean_the_same_at_home(ejected: Path, unit: Unit) -> None:
+def test_lines_for_the_packages_beside_the_lessons_mean_the_same_at_home(
+    ejected: Path, unit: CourseUnit
+) -> None:
     package = _package(ejected, unit)
     for folder in {lesson.folder.parent / unit.package for lesson in unit.lessons}:
         beside = Package(unit.package, folder)
@@ -118,7 +122,7 @@ def test_an_executable_beside_lessons_that_is_no_lesson_is_named(tmp_path: Path)
 
 
 @pytest.mark.parametrize("unit", UNITS, ids=lambda unit: unit.package)
-def test_a_package_has_all_that_colcon_and_the_ament_index_look_for(ejected: Path, unit: Unit) -> None:
+def test_a_package_has_all_that_colcon_and_the_ament_index_look_for(ejected: Path, unit: CourseUnit) -> None:
     root = _package(ejected, unit).root
     assert re.fullmatch(r"[a-z](_?[a-z0-9]+)*", root.name)
     manifest = ElementTree.fromstring((root / "package.xml").read_bytes())

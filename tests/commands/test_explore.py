@@ -15,7 +15,7 @@ from cbtui import cli
 from cbtui.commands import explore as command
 from cbtui.runs.judged import exploring
 from cbtui.runs.judged.exploration_text import exploration_text
-from cbtui.runs.judged.exploring import Exploration, Failure, Result
+from cbtui.runs.judged.exploring import Exploration, ScheduleFailure, ScheduleResult
 from lessons.catalogue import find
 from sim.engine.setup import RunSetup
 from tests.commands.exploring_files import CHECK_THEN_ACT, IN_ONE_GROUP, LOCK_ORDER
@@ -163,12 +163,12 @@ def test_who_has_read_enough_of_it_is_no_trouble(file: Path) -> None:
     assert done.stderr == "ended with 141\n"
 
 
-DEADLOCK = Result((Failure("deadlock", "a waits for b"),), ("no-free-worker",))
-WELL = Result()
+DEADLOCK = ScheduleResult((ScheduleFailure("deadlock", "a waits for b"),), ("no-free-worker",))
+WELL = ScheduleResult()
 
 
 def test_outcomes_that_failed_come_first_each_with_its_first_seed() -> None:
-    later = Result((Failure("deadlock", "b waits for a"),), ("no-free-worker",))
+    later = ScheduleResult((ScheduleFailure("deadlock", "b waits for a"),), ("no-free-worker",))
     text = exploration_text("mine.py", {5: WELL, 6: DEADLOCK, 7: later}, ["cbtui run mine.py -- -x"])
     assert text == (
         "mine.py: 3 schedules, 2 outcomes, 2 schedules failed\n"
@@ -200,7 +200,7 @@ def test_a_terminal_is_told_how_far_it_has_come(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setattr(sys.stderr, "isatty", lambda: True)
-    found: dict[int, Result] = {}
+    found: dict[int, ScheduleResult] = {}
     command._explore(FINISHED, range(1, 3), found)
     assert found == {1: WELL, 2: DEADLOCK}
     assert capsys.readouterr().err == ("\r1 of 2 schedules, 1 failed \r2 of 2 schedules, 1 failed \r\033[K")

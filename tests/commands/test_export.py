@@ -10,7 +10,7 @@ import perfetto.protos.perfetto.trace.perfetto_trace_pb2 as pb
 import pytest
 
 from cbtui import cli
-from cbtui.runs.recorded.exporting import ExportError, Wish, export
+from cbtui.runs.recorded.exporting import ExportError, ExportRequest, export
 from sim.recording import About, Recorder
 from sim.trace.events import AnyEvent, EntityAppeared, GroupAppeared, RunStarted, ThreadAppeared
 from tests.export.examples import small_run
@@ -149,16 +149,16 @@ def test_a_cut_recording_gives_what_it_holds_and_one_sentence(
 def test_events_without_their_beginning_are_exported(tmp_path: Path) -> None:
     beginnings = (RunStarted, ThreadAppeared, GroupAppeared, EntityAppeared)
     events = [event for event in small_run() if not isinstance(event, beginnings)]
-    export(Events(events), Wish({name: tmp_path / file for name, file in OUTPUTS.items()}))
+    export(Events(events), ExportRequest({name: tmp_path / file for name, file in OUTPUTS.items()}))
     assert_all_readable(tmp_path)
 
 
 def test_a_source_that_breaks_off_is_told_of(tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="the recording cannot be read: Input/output error"):
-        export(Events(small_run(), breaks_after=2), Wish({"csv": tmp_path / "out.csv"}))
+        export(Events(small_run(), breaks_after=2), ExportRequest({"csv": tmp_path / "out.csv"}))
 
 
 def test_a_recording_without_events_is_told_of(tmp_path: Path) -> None:
     with pytest.raises(ExportError, match="no events"):
-        export(Events([]), Wish({"csv": tmp_path / "out.csv"}))
+        export(Events([]), ExportRequest({"csv": tmp_path / "out.csv"}))
     assert not (tmp_path / "out.csv").exists()

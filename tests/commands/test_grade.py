@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from cbtui import cli
-from cbtui.grading.grading import papers_in
+from cbtui.grading.grading import hand_ins_in
 from tests.commands.exercise_files import LEAVES, LESSON, SOLUTION, STARTER, SYNTAX_ERROR
 
 
@@ -96,7 +96,7 @@ def test_what_a_program_says_is_no_formula_in_a_spreadsheet(
 def test_a_file_is_told_by_its_name_before_or_behind_the_learners(tmp_path: Path) -> None:
     for name in ("split_groups-ann.py", "bob.split_groups.py", "split_groups.py"):
         (tmp_path / name).touch()
-    found = [(paper.learner, paper.lesson) for paper in papers_in(tmp_path, [LESSON], None)]
+    found = [(paper.learner, paper.lesson) for paper in hand_ins_in(tmp_path, [LESSON], None)]
     assert sorted(found, key=lambda pair: pair[0]) == [
         ("ann", LESSON),
         ("bob", LESSON),

@@ -6,7 +6,7 @@ import pytest
 
 from cbtui import cli
 from cbtui.runs.recorded.recording_file import about
-from cbtui.runs.recorded.repeat import CannotRepeatError, repeated
+from cbtui.runs.recorded.repeat import CannotRepeatError, repeated_setup
 from cbtui.runs.setup.lesson_setup import RunRequest
 from sim.engine.setup import ProgramSetup, RunSetup
 from tests.recording.files import write
@@ -93,13 +93,13 @@ def test_a_program_is_as_it_was_whatever_its_line_ends_and_coding(tmp_path: Path
         (tmp_path / "node.py").write_bytes(source)
         (tmp_path / "run.mcap").unlink(missing_ok=True)
         path = recording_of(tmp_path, "virtual", tmp_path / "node.py")
-        repeated(path, RunRequest(), tell=pytest.fail)
+        repeated_setup(path, RunRequest(), tell=pytest.fail)
     (tmp_path / "node.py").write_bytes(b"x = 1\ny = 2\n")
     (tmp_path / "run.mcap").unlink()
     path = recording_of(tmp_path, "virtual", tmp_path / "node.py")
     (tmp_path / "node.py").write_bytes(b"x = 1\r\ny = 2\r\n")
     with pytest.raises(CannotRepeatError, match="has changed since it was recorded"):
-        repeated(path, RunRequest(), tell=pytest.fail)
+        repeated_setup(path, RunRequest(), tell=pytest.fail)
 
 
 def test_inputs_that_may_be_missing_are_told_of(tmp_path: Path) -> None:
@@ -107,7 +107,7 @@ def test_inputs_that_may_be_missing_are_told_of(tmp_path: Path) -> None:
     path = recording_of(tmp_path, "virtual", tmp_path / "node.py")
     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
     told: list[str] = []
-    repeated(path, RunRequest(), tell=told.append)
+    repeated_setup(path, RunRequest(), tell=told.append)
     (sentence,) = told
     assert sentence.startswith(f"{path}: it breaks off at byte ")
 

@@ -7,7 +7,7 @@ from typing import Any
 import msgspec
 import pytest
 
-from cbtui.engines.session import Session
+from cbtui.engines.session import ProcessSession
 from sim.engine.commands import KeepContents
 from sim.interfaces import from_cdr, message
 from sim.ros.middleware.contents import Contents
@@ -76,7 +76,7 @@ def test_contents_can_be_asked_for_while_a_run_goes_on(tmp_path: Path) -> None:
     path.write_text(CHANGES_WHAT_IT_GETS)
     news: Queue[list[AnyEvent] | str | None] = Queue()
     endless = msgspec.structs.replace(program_setup(path, 60.0), until=None, speed=1.0)
-    session = Session(endless, news.put, news.put)
+    session = ProcessSession(endless, news.put, news.put)
 
     def until(kind: type[AnyEvent]) -> list[AnyEvent]:
         """What comes up to the next event of a kind, and with it."""

@@ -9,7 +9,7 @@ from queue import Queue
 import msgspec
 import pytest
 
-from cbtui.engines.session import Session
+from cbtui.engines.session import ProcessSession
 from cbtui.runs.setup.lesson_setup import setup_for
 from lessons.catalogue import find
 from sim.engine.commands import CallService, Pause, ResetWorld, Resume, SetSpeed
@@ -174,7 +174,7 @@ class _Console:
     def __init__(self, lesson: str, speed: float | None = 1.0) -> None:
         self.events: list[AnyEvent] = []
         self._news: Queue[list[AnyEvent] | str | None] = Queue()
-        self.session = Session(setup_for(find(lesson), speed=speed), self._news.put, self._news.put)
+        self.session = ProcessSession(setup_for(find(lesson), speed=speed), self._news.put, self._news.put)
         self.session.start()
 
     def until(self, kind: type[AnyEvent], count: int = 1) -> AnyEvent:

@@ -7,7 +7,7 @@ import msgspec
 import pytest
 
 from cbtui.engines.forking import forking_context
-from cbtui.engines.session import Session
+from cbtui.engines.session import ProcessSession
 from cbtui.runs.setup.lesson_setup import setup_to_judge
 from lessons.catalogue import find
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
@@ -25,7 +25,7 @@ def seeded(seed: int | None) -> list[AnyEvent]:
 def forked(seed: int) -> list[AnyEvent]:
     """The events of a run in a copy of a process that has imported all."""
     news: Queue[list[AnyEvent] | str | None] = Queue()
-    session = Session(
+    session = ProcessSession(
         msgspec.structs.replace(SETUP, seed=seed),
         news.put,
         news.put,

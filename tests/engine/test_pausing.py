@@ -9,7 +9,7 @@ from queue import Queue
 
 import msgspec
 
-from cbtui.engines.session import Session
+from cbtui.engines.session import ProcessSession
 from cbtui.runs.setup.lesson_setup import setup_for
 from lessons.catalogue import find
 from sim.engine.commands import (
@@ -48,7 +48,7 @@ class Console:
     def __init__(self, setup: RunSetup) -> None:
         self.events: list[AnyEvent] = []
         self._news: Queue[list[AnyEvent] | str | None] = Queue()
-        self._session = Session(setup, self._news.put, self._news.put)
+        self._session = ProcessSession(setup, self._news.put, self._news.put)
         self._session.start()
 
     def give(self, *orders: Command) -> None:

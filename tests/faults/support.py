@@ -17,11 +17,11 @@ import pytest
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
-from cbtui.engines.session import Session
+from cbtui.engines.session import ProcessSession
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.live.playhead import Playhead
 from cbtui.screens.lesson import LessonScreen
-from cbtui.widgets.diagnosis import verdict
+from cbtui.widgets.diagnosis import diagnosis_on_screen
 from cbtui.widgets.diagnosis_line import DiagnosisLine
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
 from sim.recording import Recording, read
@@ -90,7 +90,7 @@ class Provoked:
     over: bool = False
 
     def __post_init__(self) -> None:
-        self.live = LiveRun(self.setup, Session, self.news.put, self.news.put)
+        self.live = LiveRun(self.setup, ProcessSession, self.news.put, self.news.put)
 
     def until(self, condition: Callable[[LiveRun], bool]) -> None:
         """Take what the engine tells until something is so, or the engine is gone."""
@@ -118,7 +118,7 @@ class Provoked:
     @property
     def sentence(self) -> str:
         """What the line of the diagnosis says."""
-        return verdict(self.live, Playhead(), Concurrency(self.live.timeline)).text
+        return diagnosis_on_screen(self.live, Playhead(), Concurrency(self.live.timeline)).text
 
     @property
     def notices(self) -> list[str]:

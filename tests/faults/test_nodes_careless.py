@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import pytest
 
-from cbtui.runs.live.live_run import State
+from cbtui.runs.live.live_run import RunState
 from sim.engine.setup import RobotUse
 from sim.trace.events import AnyEvent, Notice, RunEnded
 from sim.trace.model import Window
@@ -135,7 +135,7 @@ def test_a_file_that_is_gone_is_told_of_when_it_is_run_again(folder: Path) -> No
     with provoked(path) as again:
         again.to_its_end()
         assert again.sentence.startswith("the run is over: node.py cannot be read: No such file or directory")
-        assert again.live.state is State.ENDED
+        assert again.live.state is RunState.ENDED
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ import pytest
 from cbtui import cli
 from cbtui.engines import resource_guard
 from cbtui.engines.memory_limit import MEMORY_LIMIT, memory_limit
-from cbtui.runs.live.live_run import State
+from cbtui.runs.live.live_run import RunState
 from tests.faults.support import FIRST, node_with, provoked, still_here
 from tests.support.processes import wait_until_gone
 
@@ -30,7 +30,7 @@ def test_a_node_that_takes_memory_without_end_is_ended_and_told_with_its_place(
         assert run.live.loss is not None
         assert run.live.loss.startswith("the node used more than 0.3 GB of memory and was ended (node.py:")
         assert run.live.loss.endswith("in fault)")
-        assert run.live.state is State.LOST
+        assert run.live.state is RunState.LOST
 
 
 def test_the_memory_of_what_a_node_starts_counts(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -128,4 +128,4 @@ def test_nothing_that_a_node_started_outlives_its_crash(folder: Path) -> None:
     )
     with provoked(node_with(folder, fault)) as run:
         run.to_its_end()
-        assert run.live.state is State.LOST
+        assert run.live.state is RunState.LOST

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import pytest
 
 from cbtui.engines.memory_limit import MEMORY_LIMIT
-from cbtui.runs.live.live_run import LiveRun, State
+from cbtui.runs.live.live_run import LiveRun, RunState
 from sim.recording import read
 from tests.faults.support import ANSWERED, FIRST, console_on, node_with, provoked, still_here
 from tests.recording.files import timeline_of
@@ -123,7 +123,7 @@ async def test_a_node_that_took_too_much_memory_can_be_run_again_with_the_key(
     monkeypatch.setenv(MEMORY_LIMIT, "0.4")
     path = node_with(folder, "self.kept = b'x' * 3_000_000_000")
     async with console_on(path) as console:
-        await console.until(lambda live: live.state is State.LOST)
+        await console.until(lambda live: live.state is RunState.LOST)
         assert "the node used more than 0.4 GB of memory" in str(console.screen.live_run.loss)
         first = console.screen.live_run
         node_with(folder, "pass")

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import pytest
 
-from cbtui.runs.live.live_run import State
+from cbtui.runs.live.live_run import RunState
 from tests.faults.support import FIRST, node_with, provoked
 
 
@@ -14,7 +14,7 @@ class Ends(NamedTuple):
 
     fault: str
     sentence: str
-    state: State = State.LOST
+    state: RunState = RunState.LOST
 
 
 AT = f"node.py:{FIRST}"
@@ -22,7 +22,7 @@ IN_FAULT = f"({AT}, in fault)"
 
 FAULTS = {
     "sys.exit": Ends(
-        "sys.exit(3)", f"the run is over: the program ended with exit code 3 ({AT})", State.ENDED
+        "sys.exit(3)", f"the run is over: the program ended with exit code 3 ({AT})", RunState.ENDED
     ),
     "os._exit": Ends("os._exit(3)", f"engine lost: ended with exit code 3 {IN_FAULT}"),
     "os.abort": Ends("os.abort()", f"engine lost: the program crashed by SIGABRT {IN_FAULT}"),
@@ -38,7 +38,7 @@ FAULTS = {
     "a recursion without end": Ends(
         "self.fault()",
         f"the run is over: {AT}: the program raised RecursionError: maximum recursion depth exceeded",
-        State.ENDED,
+        RunState.ENDED,
     ),
     "SIGKILL": Ends("os.kill(os.getpid(), 9)", "engine lost: killed by signal 9"),
     "files closed that are not its own": Ends(
@@ -50,12 +50,12 @@ FAULTS = {
         "call = self.create_client(SetBool, 's').call_async(SetBool.Request())\n"
         "call.add_done_callback(lambda _: 1 / 0)",
         f"the run is over: node.py:{FIRST + 2}: the program raised ZeroDivisionError: division by zero",
-        State.ENDED,
+        RunState.ENDED,
     ),
     "rclpy.shutdown in a callback": Ends(
         "rclpy.shutdown()",
         f"the run is over: the program returned, as rclpy was shut down {IN_FAULT}",
-        State.ENDED,
+        RunState.ENDED,
     ),
 }
 

@@ -14,7 +14,7 @@ from threading import Barrier
 import pytest
 
 from cbtui.runs.live.live_recording import LiveRecording
-from cbtui.runs.live.live_run import State
+from cbtui.runs.live.live_run import RunState
 from sim.engine.setup import RunSetup
 from sim.recording import read
 from tests.faults.support import ANSWERED, PATIENCE, console_on, node_with, nothing_left, still_here
@@ -74,7 +74,7 @@ async def test_a_disk_that_fills_up_ends_the_recording_and_the_run_goes_on(folde
             await console.until(lambda _: any("not whole" in text for text in said()))
             assert console.screen.live_run.recording.count is None
             assert await console.answers() < ANSWERED
-        assert console.screen.live_run.state is State.LIVE
+        assert console.screen.live_run.state is RunState.LIVE
         (path,) = folder.glob("*.mcap")
         assert f"The recording {path.name} is not whole: File too large" in said()
     assert events_in(path) > 0

@@ -16,8 +16,8 @@ from threading import Event
 import pytest
 
 from cbtui.engines.hang_detector import HangDetector
-from cbtui.engines.session import Session
-from cbtui.runs.live.live_run import State
+from cbtui.engines.session import ProcessSession
+from cbtui.runs.live.live_run import RunState
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
 from sim.recording import read
 from sim.trace.events import AnyEvent, Logged, Notice, NoticeKind, Printed, RunStarted, Severity
@@ -71,7 +71,7 @@ async def test_an_engine_that_is_killed_is_told_of_and_can_be_run_again(folder: 
     async with console_on(node_with(folder, "pass")) as console:
         await console.until(still_here)
         os.kill(engine(), signal.SIGKILL)
-        await console.until(lambda live: live.state is State.LOST)
+        await console.until(lambda live: live.state is RunState.LOST)
         assert await console.answers() < ANSWERED
         assert console.said == "engine lost: killed by signal 9; r runs again"
         await console.pilot.press("r")
@@ -81,44 +81,44 @@ async def test_an_engine_that_is_killed_is_told_of_and_can_be_run_again(folder: 
 async def test_an_engine_that_is_stopped_is_told_of_and_goes_on_when_it_may(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("cbtui.engines.session.LOOK", 0.05)
+    monkeypatch.setattr("cbtui.engines.session.POLL_INTERVAL", 0.05)
     async with console_on(node_with(folder, "pass")) as console:
         await console.until(still_here)
         stopped = engine()
         os.kill(stopped, signal.SIGSTOP)
-        await console.until(lambda live: live.state is State.SILENT)
+        await console.until(lambda live: live.state is RunState.SILENT)
         assert await console.answers() < ANSWERED
         assert console.said == "engine does not answer: its process was stopped; r runs again"
         os.kill(stopped, signal.SIGCONT)
-        await console.until(lambda live: live.state is State.LIVE)
+        await console.until(lambda live: live.state is RunState.LIVE)
         os.kill(stopped, signal.SIGSTOP)
-        await console.until(lambda live: live.state is State.SILENT)
+        await console.until(lambda live: live.state is RunState.SILENT)
         await console.pilot.press("r")
-        await console.until(lambda live: live.state is State.LIVE and still_here(live))
+        await console.until(lambda live: live.state is RunState.LIVE and still_here(live))
         assert engine() != stopped
 
 
 async def test_an_engine_that_code_in_c_keeps_is_told_of(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("cbtui.engines.session.LOOK", 0.05)
+    monkeypatch.setattr("cbtui.engines.session.POLL_INTERVAL", 0.05)
     async with console_on(node_with(folder, IN_C)) as console:
-        await console.until(lambda live: live.state is State.SILENT)
+        await console.until(lambda live: live.state is RunState.SILENT)
         assert await console.answers() < ANSWERED
         assert console.said.startswith("engine does not answer: code in C keeps it")
 
 
 def test_a_machine_that_slept_says_nothing_of_the_engine() -> None:
     hang_detector = HangDetector()
-    hang_detector.came([RunStarted(0, "", "real", 0), Printed(7, "last", error=False)])
-    assert [hang_detector.nothing_came(lambda: "why") for _ in range(9)] == [[]] * 9
-    (notice,) = hang_detector.nothing_came(lambda: "why")
+    hang_detector.received([RunStarted(0, "", "real", 0), Printed(7, "last", error=False)])
+    assert [hang_detector.polled_nothing(lambda: "why") for _ in range(9)] == [[]] * 9
+    (notice,) = hang_detector.polled_nothing(lambda: "why")
     assert isinstance(notice, Notice)
     assert (notice.t, notice.severity) == (7, Severity.WARN)
     assert notice.kind is NoticeKind.ENGINE_SILENT
-    assert hang_detector.nothing_came(lambda: "why") == []
-    assert hang_detector.came([]) == [Notice(7, Severity.INFO, "the engine answers again")]
-    assert hang_detector.came([]) == []
+    assert hang_detector.polled_nothing(lambda: "why") == []
+    assert hang_detector.received([]) == [Notice(7, Severity.INFO, "the engine answers again")]
+    assert hang_detector.received([]) == []
 
 
 def test_a_pipe_that_breaks_in_the_middle_of_a_message_gives_what_came_whole(folder: Path) -> None:
@@ -133,7 +133,7 @@ def test_a_pipe_that_breaks_in_the_middle_of_a_message_gives_what_came_whole(fol
 
     programs = (ProgramSetup(str(path)),)
     setup = RunSetup(title="", programs=programs, clock="real", robot=RobotUse.NEVER)
-    session = Session(setup, deliver, news.put)
+    session = ProcessSession(setup, deliver, news.put)
     with nothing_left():
         session.start()
         assert comes_true(lambda: b"x" * 100 in _waiting(session._pipe.fileno()))

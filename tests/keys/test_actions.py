@@ -4,7 +4,7 @@ import pytest
 from textual.dom import DOMNode
 
 from cbtui.app import CbtuiApp
-from cbtui.keys.action import Action, Scope, method_of, together
+from cbtui.keys.action import Action, Scope, group_by, method_of
 from cbtui.keys.actions import ACTIONS, actions_of
 from cbtui.keys.bindings import bindings_of
 from cbtui.keys.signs import signs_of
@@ -16,10 +16,10 @@ from cbtui.screens.help import HelpScreen
 from cbtui.screens.menu import MenuScreen
 from cbtui.screens.moment import MomentScreen
 from cbtui.screens.number import NumberScreen
-from cbtui.screens.opening import OpeningScreen
+from cbtui.screens.open_file import OpenFileScreen
 from cbtui.screens.prediction import PredictionScreen
 from cbtui.screens.setup import SetupScreen
-from cbtui.screens.solution import AskingScreen, SolutionScreen
+from cbtui.screens.solution import ConfirmSolutionScreen, SolutionScreen
 from cbtui.screens.threads import ThreadsScreen
 from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.code import CodeView
@@ -31,7 +31,7 @@ HOMES: dict[Scope, type[DOMNode]] = {
     Scope.EVERYWHERE: CbtuiApp,
     Scope.MENU: MenuScreen,
     Scope.SEARCH: MenuSearch,
-    Scope.OPENING: OpeningScreen,
+    Scope.OPENING: OpenFileScreen,
     Scope.LOG: LogLines,
     Scope.FILTER: LogFilter,
     Scope.CODE: CodeView,
@@ -45,7 +45,7 @@ HOMES: dict[Scope, type[DOMNode]] = {
     Scope.DIAGNOSES: DiagnosesScreen,
     Scope.PREDICTION: PredictionScreen,
     Scope.SOLUTION: SolutionScreen,
-    Scope.ASKING: AskingScreen,
+    Scope.ASKING: ConfirmSolutionScreen,
     Scope.NUMBER: NumberScreen,
     Scope.MOMENT: MomentScreen,
     Scope.HELP: HelpScreen,
@@ -93,7 +93,7 @@ def test_a_window_offers_only_its_own_actions() -> None:
 
 
 def test_neighbouring_keys_are_written_together() -> None:
-    groups = {group[0].label: group for group in together(actions_of(Scope.LESSON), "label")}
+    groups = {group[0].label: group for group in group_by(actions_of(Scope.LESSON), "label")}
     assert signs_of(groups["pane"], Charset.BRAILLE) == "1-7"
     assert signs_of(groups["speed"], Charset.BRAILLE) == "- +"
 

@@ -3,14 +3,22 @@
 import msgspec
 import pytest
 
-from cbtui.learning.lesson_page import Part, Signs, Standing, introduction, page_of, page_of_exercise, tally
-from cbtui.learning.outcome import Outcome, run_in_words
+from cbtui.learning.lesson_page import (
+    PageKeys,
+    PageSection,
+    PageState,
+    introduction,
+    page_of,
+    page_of_exercise,
+    tally,
+)
+from cbtui.learning.outcome import PredictionOutcome, run_text
 from cbtui.learning.stage import Stage, stage_of
 from lessons.catalogue import find, lessons
 from lessons.lesson import Lesson
 from lessons.progress import LessonProgress
 
-SIGNS = Signs("P", "a", "h", "H", "e")
+SIGNS = PageKeys("P", "a", "h", "H", "e")
 EVERY = pytest.mark.parametrize("lesson", lessons(), ids=lambda lesson: lesson.id)
 
 
@@ -25,23 +33,29 @@ def rightly(lesson: Lesson) -> tuple[int, ...]:
 @EVERY
 def test_a_page_says_why_only_after_the_run(lesson: Lesson) -> None:
     for answers in ((), rightly(lesson)[:1], rightly(lesson)):
-        page = page_of(lesson, Standing(known(lesson, answers)), SIGNS)
-        assert not page.keys() & {Part.SHOWN, Part.EXPLANATION, Part.EXERCISE, Part.HINTS, Part.NEXT}
+        page = page_of(lesson, PageState(known(lesson, answers)), SIGNS)
+        assert not page.keys() & {
+            PageSection.SHOWN,
+            PageSection.EXPLANATION,
+            PageSection.EXERCISE,
+            PageSection.HINTS,
+            PageSection.NEXT,
+        }
         text = "\n".join(page.values())
         assert not any(prediction.because in text for prediction in lesson.predictions)
-        assert (Part.GUIDE in page) == (len(answers) == len(lesson.predictions))
+        assert (PageSection.GUIDE in page) == (len(answers) == len(lesson.predictions))
 
 
 @EVERY
 def test_a_page_leaves_out_nothing_of_a_lesson_that_was_watched(lesson: Lesson) -> None:
-    outcome = Outcome(rightly(lesson))
-    page = page_of(lesson, Standing(known(lesson, rightly(lesson), seen=True), outcome), SIGNS)
+    outcome = PredictionOutcome(rightly(lesson))
+    page = page_of(lesson, PageState(known(lesson, rightly(lesson), seen=True), outcome), SIGNS)
     text = "\n".join(page.values())
     lines = f"{lesson.guide}\n{lesson.explanation}".splitlines()
     told = {line.lstrip("# ") for line in text.splitlines()}
     assert [line for line in lines if line and line.lstrip("# ") not in told] == []
     assert all(prediction.because in text for prediction in lesson.predictions)
-    assert list(page) == [part for part in Part if part in page]
+    assert list(page) == [part for part in PageSection if part in page]
 
 
 @EVERY
@@ -53,16 +67,16 @@ def test_what_is_read_before_the_question_has_no_section(lesson: Lesson) -> None
 def test_answers_are_counted_that_came_true() -> None:
     lesson = find("shared-group")
     for answers, told in (((0, 1), "2 of 2"), ((0, 0), "1 of 2"), ((1,), "0 of 2")):
-        assert told in tally(lesson, Standing(known(lesson, answers, seen=True), Outcome((0, 1))))
+        assert told in tally(lesson, PageState(known(lesson, answers, seen=True), PredictionOutcome((0, 1))))
 
 
 def test_an_exercise_has_its_task_first_and_no_explanation_that_was_not_seen() -> None:
     lesson = find("split-groups")
-    page = page_of_exercise(lesson, Standing(known(lesson)), SIGNS, "mend it")
-    assert list(page) == [Part.EXERCISE, Part.HINTS]
-    assert page[Part.EXERCISE] == "mend it"
-    seen = page_of_exercise(lesson, Standing(known(lesson, seen=True)), SIGNS, "mend it")
-    assert Part.EXPLANATION in seen
+    page = page_of_exercise(lesson, PageState(known(lesson)), SIGNS, "mend it")
+    assert list(page) == [PageSection.EXERCISE, PageSection.HINTS]
+    assert page[PageSection.EXERCISE] == "mend it"
+    seen = page_of_exercise(lesson, PageState(known(lesson, seen=True)), SIGNS, "mend it")
+    assert PageSection.EXPLANATION in seen
 
 
 @pytest.mark.parametrize(
@@ -78,7 +92,7 @@ def test_an_exercise_has_its_task_first_and_no_explanation_that_was_not_seen() -
     ],
 )
 def test_a_page_says_which_run_decides(lesson: str, words: str) -> None:
-    assert run_in_words(find(lesson)) == words
+    assert run_text(find(lesson)) == words
 
 
 def test_a_lesson_without_an_exercise_is_done_when_it_was_watched() -> None:

@@ -174,7 +174,7 @@ def test_a_lock_that_somebody_holds_keeps_nobody_waiting_for_ever(
 ) -> None:
     import fcntl
 
-    monkeypatch.setattr("lessons.state_file._PATIENCE", 0.05)
+    monkeypatch.setattr("lessons.state_file._LOCK_TIMEOUT", 0.05)
     progress = Progress(path)
     progress.see("a")
     with (path.parent / "progress.jsonl.lock").open("wb") as lock:

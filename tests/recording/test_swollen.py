@@ -81,7 +81,7 @@ def test_reading_for_more_than_a_second_shows_how_far_it_is(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], terminal: bool
 ) -> None:
     monkeypatch.setattr("sys.stderr.isatty", lambda: terminal)
-    monkeypatch.setattr("cbtui.runs.recorded.reading_progress._SOON", -1.0)
+    monkeypatch.setattr("cbtui.runs.recorded.reading_progress._QUIET_TIME", -1.0)
     monkeypatch.setattr("cbtui.runs.recorded.reading_progress._PERIOD", -1.0)
     path = tmp_path / "run.mcap"
     write(path, [[batch.pack_batch(NOTICES)]] * 4)

@@ -4,12 +4,18 @@ import msgspec
 import pytest
 
 from cbtui.runs.recorded.recording_file import about, setup_of
-from cbtui.runs.setup.changeable import Argument, Callback, Changeable, callbacks_of, changeable
-from cbtui.runs.setup.changes import WISHES, Changes, changes_in
+from cbtui.runs.setup.changeable import (
+    ChangeableArgument,
+    ChangeableCallback,
+    ChangeableSetup,
+    callbacks_of,
+    changeable,
+)
+from cbtui.runs.setup.changes import GROUP_CHOICES, Changes, changes_in
 from cbtui.runs.setup.equivalent_code import code_of, code_of_group
 from cbtui.runs.setup.lesson_setup import setup_for
 from cbtui.runs.setup.quantities import PERIOD, SENSOR_RATE, BadQuantityError, Quantity
-from cbtui.runs.setup.subject import of_lesson
+from cbtui.runs.setup.shown_program import of_lesson
 from cbtui.screens.setup_rows import rows_of
 from lessons.catalogue import find, lessons
 from sim.engine.setup import GroupChange, PeriodChange, RobotUse, RunSetup
@@ -27,14 +33,14 @@ WHOLE = Changes(
     settings={"-service_wait_time": 2.0},
     sensor_rate=5.0,
 )
-ABOUT = Changeable(
+ABOUT = ChangeableSetup(
     "SingleThreadedExecutor",
     "SingleThreadedExecutor",
     None,
     (
-        Callback(ODOM, EntityKind.SUBSCRIPTION, "A exclusive, with timer", 0),
-        Callback(TIMER, EntityKind.TIMER, "A exclusive, with odom", 500_000_000),
-        Callback(("/sub_node", "/lamp"), EntityKind.CLIENT, "B exclusive, alone", 0),
+        ChangeableCallback(ODOM, EntityKind.SUBSCRIPTION, "A exclusive, with timer", 0),
+        ChangeableCallback(TIMER, EntityKind.TIMER, "A exclusive, with odom", 500_000_000),
+        ChangeableCallback(("/sub_node", "/lamp"), EntityKind.CLIENT, "B exclusive, alone", 0),
     ),
     (),
     20.0,
@@ -99,7 +105,7 @@ def test_a_recording_of_before_there_were_changes_is_still_known() -> None:
 
 
 def test_the_wishes_are_those_that_the_engine_knows() -> None:
-    assert [*WISHES] == [wish.value for wish in GroupWish]
+    assert [*GROUP_CHOICES] == [wish.value for wish in GroupWish]
 
 
 # one change after another
@@ -205,12 +211,12 @@ def test_a_program_that_takes_arguments_gets_them() -> None:
     assert code_of(changes, about_server) == ["node.py … -service_wait_time 2 -threads 4"]
 
 
-@pytest.mark.parametrize("wish", WISHES)
+@pytest.mark.parametrize("wish", GROUP_CHOICES)
 def test_a_callback_without_a_name_is_left_out_of_the_code(wish: str) -> None:
     assert "lambda" not in "".join(code_of_group("<lambda>", EntityKind.TIMER, wish))
 
 
-@pytest.mark.parametrize("wish", WISHES)
+@pytest.mark.parametrize("wish", GROUP_CHOICES)
 @pytest.mark.parametrize("kind", [kind for kind in EntityKind if kind is not EntityKind.WAITABLE])
 def test_the_lines_fit_in_the_narrowest_window(wish: str, kind: EntityKind) -> None:
     lines = "\n".join(code_of_group("SetBool_callback", kind, wish)).splitlines()
@@ -235,7 +241,7 @@ def test_a_lesson_that_takes_numbers_offers_them() -> None:
         of_lesson(SERVER, lessons()), setup_for(SERVER), timeline_of(dummy_server_run())
     )
     wait = Quantity("service wait time", "s", 0, 3600)
-    assert about_server.arguments == (Argument("-service_wait_time", wait, 5.0),)
+    assert about_server.arguments == (ChangeableArgument("-service_wait_time", wait, 5.0),)
     rows = {(row.what, row.aspect): row.now for row in rows_of(about_server)}
     assert rows["executor", "threads"] == "MultiThreadedExecutor(2)"
     assert rows["service wait time", "number"] == "5 s"

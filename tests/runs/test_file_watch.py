@@ -18,7 +18,7 @@ _LIMIT = 60.0
 
 @pytest.fixture(autouse=True)
 def looked_at_often(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(file_watch, "_LOOK", 100)
+    monkeypatch.setattr(file_watch, "_POLL_MS", 100)
 
 
 @pytest.fixture

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from cbtui.runs.live.findings import FindingsMonitor, counted
+from cbtui.runs.live.findings import FindingsMonitor, problem_count_text
 from sim.diagnosis import Diagnoses, Explanation, Finding, Look, Rule, Weight
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
@@ -119,9 +119,9 @@ def test_what_was_found_comes_with_weight_and_words_problems_first() -> None:
 def test_problems_are_counted_and_remarks_are_not() -> None:
     told = watch_of(shared_group_run(), 20.0).findings
     problems = [each for each in told if each.weight is Weight.PROBLEM]
-    assert counted(told) == f"{len(problems)} problems"
-    assert counted(problems[:1]) == "1 problem"
-    assert counted(watch_of(split_groups_run(), 20.0).findings) == ""
+    assert problem_count_text(told) == f"{len(problems)} problems"
+    assert problem_count_text(problems[:1]) == "1 problem"
+    assert problem_count_text(watch_of(split_groups_run(), 20.0).findings) == ""
 
 
 def test_what_is_true_of_a_whole_run_leads_nowhere() -> None:

@@ -2,7 +2,7 @@ import pytest
 from msgspec import structs
 
 from cbtui.engines.session import Deliver, Ended
-from cbtui.runs.live.live_run import LiveRun, State
+from cbtui.runs.live.live_run import LiveRun, RunState
 from sim.engine.commands import (
     CallService,
     Pause,
@@ -42,7 +42,7 @@ def run(engines: FakeEngines) -> LiveRun:
     return live
 
 
-def state_of(run: LiveRun) -> State:
+def state_of(run: LiveRun) -> RunState:
     return run.state
 
 
@@ -57,7 +57,7 @@ def test_a_step_that_is_told_of_after_one_has_gone_on_does_not_pause_the_run(run
     run.resume()
     run.take([RunStarted(0, "x", "virtual", 0), given(1, Step()), TimeHalted(1, "step")])
     run.take([given(1, Resume())])
-    assert state_of(run) is State.LIVE
+    assert state_of(run) is RunState.LIVE
 
 
 def test_a_run_that_goes_on_to_a_moment_is_not_paused_by_the_step_before(run: LiveRun) -> None:
@@ -65,27 +65,27 @@ def test_a_run_that_goes_on_to_a_moment_is_not_paused_by_the_step_before(run: Li
     run.step()
     run.run_until(5)
     run.take([RunStarted(0, "x", "virtual", 0), TimeHalted(1, "step"), given(1, goal)])
-    assert state_of(run) is State.LIVE
+    assert state_of(run) is RunState.LIVE
     run.take([TimeHalted(5, in_words(goal))])
-    assert state_of(run) is State.PAUSED
+    assert state_of(run) is RunState.PAUSED
 
 
 def test_who_pauses_is_not_overruled_by_what_was_asked_before(run: LiveRun) -> None:
     run.resume()
     run.pause()
     run.take([RunStarted(0, "x", "virtual", 0), given(0, Resume())])
-    assert state_of(run) is State.PAUSED
+    assert state_of(run) is RunState.PAUSED
 
 
 def test_a_run_starts_with_its_first_event(run: LiveRun, session: FakeSession) -> None:
-    assert state_of(run) is State.STARTING
+    assert state_of(run) is RunState.STARTING
     session.play(0)
-    assert state_of(run) is State.LIVE
+    assert state_of(run) is RunState.LIVE
 
 
 def test_a_run_ends_with_its_last_event_even_before_its_process(run: LiveRun, session: FakeSession) -> None:
     session.play(5)
-    assert state_of(run) is State.ENDED
+    assert state_of(run) is RunState.ENDED
     assert not run.alive
 
 
@@ -94,7 +94,7 @@ def test_a_run_whose_engine_is_gone_is_lost_whatever_it_told_before(
 ) -> None:
     session.play(0)
     session.end("the engine was killed by signal 9")
-    assert state_of(run) is State.LOST
+    assert state_of(run) is RunState.LOST
     assert run.loss == "the engine was killed by signal 9"
 
 
@@ -115,9 +115,9 @@ def test_a_run_that_cannot_be_started_is_lost() -> None:
 def test_pause_and_resume_reach_the_engine(run: LiveRun, session: FakeSession) -> None:
     session.play(0)
     run.pause()
-    assert state_of(run) is State.PAUSED
+    assert state_of(run) is RunState.PAUSED
     run.resume()
-    assert state_of(run) is State.LIVE
+    assert state_of(run) is RunState.LIVE
     assert session.commands == [Pause(), Resume()]
 
 
@@ -148,11 +148,11 @@ def test_a_run_that_goes_on_to_a_goal_is_live_until_the_engine_says_that_time_st
     session.play(0)
     run.pause()
     run.run_until(9)
-    assert state_of(run) is State.LIVE
+    assert state_of(run) is RunState.LIVE
     run.take([TimeHalted(9, "run until")])
-    assert state_of(run) is State.PAUSED
+    assert state_of(run) is RunState.PAUSED
     run.step()
-    assert state_of(run) is State.PAUSED
+    assert state_of(run) is RunState.PAUSED
     assert session.commands == [Pause(), RunUntil(9), Step()]
 
 

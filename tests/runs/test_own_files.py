@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from cbtui.runs.setup.own_files import CannotOpenError, completed, entry_for, read_recording
-from cbtui.runs.setup.recent import Kind
+from cbtui.runs.setup.recent import RecentKind
 
 
 @pytest.fixture
@@ -20,13 +20,13 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 @pytest.mark.parametrize(
     ("typed", "kind"),
     [
-        ("my_node.py", Kind.PROGRAM),
-        (" ./my_pkg/node.py ", Kind.PROGRAM),
-        ("go.launch.xml", Kind.PROGRAM),
-        ("run.mcap", Kind.RECORDING),
+        ("my_node.py", RecentKind.PROGRAM),
+        (" ./my_pkg/node.py ", RecentKind.PROGRAM),
+        ("go.launch.xml", RecentKind.PROGRAM),
+        ("run.mcap", RecentKind.RECORDING),
     ],
 )
-def test_what_a_path_means_shows_in_its_name(folder: Path, typed: str, kind: Kind) -> None:
+def test_what_a_path_means_shows_in_its_name(folder: Path, typed: str, kind: RecentKind) -> None:
     entry = entry_for(typed, 7.9)
     assert (entry.kind, entry.what, entry.at) == (kind, str(folder / typed.strip()), 7)
 

@@ -3,11 +3,11 @@ from pathlib import Path
 
 import pytest
 
-from cbtui.runs.setup.recent import FILES_KEPT, Kind, Opened, Recents, ago
+from cbtui.runs.setup.recent import FILES_KEPT, RecentEntry, RecentKind, RecentList, time_ago
 
-LESSON = Opened(Kind.LESSON, "shared-group", 100)
-PROGRAM = Opened(Kind.PROGRAM, "/home/me/my_node.py", 200, ("-x", "ü\n"), "virtual")
-RECORDING = Opened(Kind.RECORDING, "/home/me/run.mcap", 300)
+LESSON = RecentEntry(RecentKind.LESSON, "shared-group", 100)
+PROGRAM = RecentEntry(RecentKind.PROGRAM, "/home/me/my_node.py", 200, ("-x", "ü\n"), "virtual")
+RECORDING = RecentEntry(RecentKind.RECORDING, "/home/me/run.mcap", 300)
 
 
 @pytest.fixture
@@ -15,8 +15,8 @@ def path(tmp_path: Path) -> Path:
     return tmp_path / "state" / "recent.jsonl"
 
 
-def noted(path: Path, *entries: Opened) -> Recents:
-    recents = Recents(path)
+def noted(path: Path, *entries: RecentEntry) -> RecentList:
+    recents = RecentList(path)
     for entry in entries:
         recents.note(entry)
     return recents
@@ -24,7 +24,7 @@ def noted(path: Path, *entries: Opened) -> Recents:
 
 def test_the_next_console_knows_what_was_opened_newest_first(path: Path) -> None:
     noted(path, LESSON, PROGRAM, RECORDING)
-    later = Recents(path)
+    later = RecentList(path)
     assert later.entries == (RECORDING, PROGRAM, LESSON)
     assert later.files == [RECORDING, PROGRAM]
     assert later.lessons == {"shared-group": 100}
@@ -32,12 +32,12 @@ def test_the_next_console_knows_what_was_opened_newest_first(path: Path) -> None
 
 
 def test_what_is_opened_again_comes_first_and_once(path: Path) -> None:
-    again = Opened(Kind.LESSON, "shared-group", 900)
+    again = RecentEntry(RecentKind.LESSON, "shared-group", 900)
     assert noted(path, LESSON, PROGRAM, again).entries == (again, PROGRAM)
 
 
 def test_so_many_files_are_kept_and_every_lesson(path: Path) -> None:
-    files = [Opened(Kind.PROGRAM, f"/{number}.py", number) for number in range(FILES_KEPT + 3)]
+    files = [RecentEntry(RecentKind.PROGRAM, f"/{number}.py", number) for number in range(FILES_KEPT + 3)]
     recents = noted(path, LESSON, *files)
     assert recents.files == files[:2:-1]
     assert recents.lessons == {"shared-group": 100}
@@ -45,21 +45,21 @@ def test_so_many_files_are_kept_and_every_lesson(path: Path) -> None:
 
 def test_what_is_forgotten_does_not_come_back(path: Path) -> None:
     noted(path, PROGRAM, RECORDING).forget(PROGRAM)
-    assert Recents(path).entries == (RECORDING,)
+    assert RecentList(path).entries == (RECORDING,)
 
 
 def test_what_another_console_noted_meanwhile_stays(path: Path) -> None:
-    one, other = Recents(path), Recents(path)
+    one, other = RecentList(path), RecentList(path)
     assert one.entries == other.entries == ()
     one.note(PROGRAM)
     other.note(RECORDING)
-    assert Recents(path).entries == (RECORDING, PROGRAM)
+    assert RecentList(path).entries == (RECORDING, PROGRAM)
 
 
 def test_a_name_that_is_no_text_is_remembered_too(path: Path) -> None:
-    odd = Opened(Kind.PROGRAM, os.fsdecode(b"/tmp/\xff.py"), 1)
+    odd = RecentEntry(RecentKind.PROGRAM, os.fsdecode(b"/tmp/\xff.py"), 1)
     noted(path, odd)
-    assert Recents(path).entries == (odd,)
+    assert RecentList(path).entries == (odd,)
 
 
 @pytest.mark.parametrize(
@@ -80,13 +80,13 @@ def test_a_broken_file_is_set_aside_and_told_of_and_the_rest_goes_on(path: Path,
     broken = path.read_bytes() + line + b"\n"
     path.write_bytes(broken)
     path.with_name("recent.jsonl.broken-1").write_text("an older one")
-    recents = Recents(path)
+    recents = RecentList(path)
     assert recents.entries == (RECORDING, LESSON)
     (sentence,) = recents.troubles()
     assert f"{path}:3 is no entry" in sentence
     assert "recent.jsonl.broken-2" in sentence
     assert path.with_name("recent.jsonl.broken-2").read_bytes() == broken
-    assert Recents(path).entries == (RECORDING, LESSON)
+    assert RecentList(path).entries == (RECORDING, LESSON)
 
 
 def test_a_file_that_cannot_be_read_is_left_alone_and_told_of_once(path: Path) -> None:
@@ -117,7 +117,7 @@ def test_a_crash_in_the_middle_of_writing_leaves_the_file_as_it_was(
     monkeypatch.setattr(os, "fsync", crash)
     recents = noted(path, PROGRAM)
     assert "No space left on device" in recents.troubles()[0]
-    assert Recents(path).entries == (LESSON,)
+    assert RecentList(path).entries == (LESSON,)
     assert {each.name for each in path.parent.iterdir()} == {path.name, f"{path.name}.lock"}
 
 
@@ -146,4 +146,4 @@ def test_without_a_home_nothing_is_written_to_the_current_folder(
     ],
 )
 def test_how_long_ago_is_said_in_words(passed: int, words: str) -> None:
-    assert ago(1_000_000_000, 1_000_000_000 + passed) == words
+    assert time_ago(1_000_000_000, 1_000_000_000 + passed) == words

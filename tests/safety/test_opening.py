@@ -14,7 +14,7 @@ from cbtui.keys.config import read_file
 from cbtui.learning.preview import CannotPreviewError, PreviewRun
 from cbtui.runs.live.replay import of_recording
 from cbtui.runs.setup.own_files import entry_for
-from cbtui.runs.setup.recent import Kind, Opened, Recents
+from cbtui.runs.setup.recent import RecentEntry, RecentKind, RecentList
 from lessons import catalogue
 from lessons.catalogue import find, lessons
 from lessons.lesson import BadLesson
@@ -124,7 +124,7 @@ def test_a_description_and_its_texts_are_read_and_nothing_is_run(bad_lesson: Pat
 async def test_the_menu_shows_a_foreign_lesson_and_runs_it_only_when_it_is_opened(
     bad_lesson: Path, marks: Marks, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("cbtui.screens.menu._REST", 0.001)
+    monkeypatch.setattr("cbtui.screens.menu._HOVER_DELAY", 0.001)
     engines = FakeEngines(shared_group_run().events, 0)
     app = CbtuiApp(open_session=engines)
     app.animation_level = "none"
@@ -255,7 +255,7 @@ def test_files_that_are_pickles_are_refused_and_not_unpacked(tmp_path: Path, mar
         read(path)
     assert Progress(path).troubles()
     path.write_bytes(marks.pickle)
-    assert Recents(path).entries == ()
+    assert RecentList(path).entries == ()
     path.write_bytes(marks.pickle)
     with pytest.raises(ArgumentsError):
         parse_arguments(["--ros-args", "--params-file", str(path)])
@@ -274,9 +274,9 @@ def test_yaml_that_names_python_makes_none(marks: Marks) -> None:
 async def test_own_files_are_listed_and_looked_at_without_being_run(tmp_path: Path, marks: Marks) -> None:
     program = tmp_path / "trap.py"
     program.write_text(marks.trap)
-    recents = Recents()
+    recents = RecentList()
     recents.note(entry_for(str(program), 0))
-    recents.note(Opened(Kind.RECORDING, str(tmp_path / "none.mcap"), 0))
+    recents.note(RecentEntry(RecentKind.RECORDING, str(tmp_path / "none.mcap"), 0))
     app = CbtuiApp(open_session=FakeEngines([], 0))
     app.animation_level = "none"
     async with app.run_test(size=WIDE) as pilot:

@@ -8,8 +8,8 @@ from textual.app import App
 from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
-from cbtui.runs.compared_runs import ComparedRun, Terms
-from cbtui.runs.setup.recent import Kind, Opened, Recents
+from cbtui.runs.compared_runs import ComparedRun, ComparisonTerms
+from cbtui.runs.setup.recent import RecentEntry, RecentKind, RecentList
 from sim.recording import read
 from sim.trace.events import AnyEvent
 from tests.safety import hostile
@@ -70,7 +70,7 @@ async def test_a_comparison_of_hostile_recordings_is_shown(tmp_path: Path) -> No
         ComparedRun(f"{name}{HOSTILE}", hostile.recording(tmp_path / f"{name}.mcap"))
         for name in ("before", "after")
     ]
-    app = CbtuiApp(start_comparison=(sides[0], sides[1], Terms()))
+    app = CbtuiApp(start_comparison=(sides[0], sides[1], ComparisonTerms()))
     app.animation_level = "none"
     async with app.run_test(size=WIDE, notifications=True) as pilot:
         await walk(pilot, "tab", "down", "tab", "down")
@@ -80,9 +80,9 @@ async def test_the_menu_shows_hostile_lessons_and_names_of_files(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("CBTUI_LESSONS", str(hostile.lesson(tmp_path / "theirs").parent))
-    recents = Recents()
-    for kind, ending in ((Kind.PROGRAM, "py"), (Kind.RECORDING, "mcap")):
-        recents.note(Opened(kind, str(tmp_path / f"{_NAME}.{ending}"), 0, (HOSTILE,)))
+    recents = RecentList()
+    for kind, ending in ((RecentKind.PROGRAM, "py"), (RecentKind.RECORDING, "mcap")):
+        recents.note(RecentEntry(kind, str(tmp_path / f"{_NAME}.{ending}"), 0, (HOSTILE,)))
     app = CbtuiApp(open_session=FakeEngines([], 0))
     app.animation_level = "none"
     async with app.run_test(size=WIDE, notifications=True) as pilot:

@@ -14,12 +14,12 @@ from cbtui.keys.action import Scope
 from cbtui.keys.actions import ACTIONS
 from cbtui.keys.keymap import keys_of
 from cbtui.looks.theme import Charset
-from cbtui.runs.compared_runs import ComparedRun, Progress, Side, Terms
+from cbtui.runs.compared_runs import ComparedRun, ComparedSide, ComparisonTerms, RunProgress
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.lesson_setup import RunRequest
 from cbtui.screens import compare
 from cbtui.screens.compare import CompareScreen
-from cbtui.screens.gathering import GatheringScreen, sentence_on
+from cbtui.screens.comparison_loading import ComparisonLoadingScreen, progress_text
 from cbtui.screens.help import HelpScreen
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
@@ -43,10 +43,10 @@ def timeline_of(events: list[AnyEvent], end: float) -> Timeline:
     return timeline
 
 
-def sides(ends: tuple[float, float] = (14.0, 9.4)) -> tuple[Side, Side]:
+def sides(ends: tuple[float, float] = (14.0, 9.4)) -> tuple[ComparedSide, ComparedSide]:
     return (
-        Side("shared-group", timeline_of(shared_group_run().events, ends[0]), "/motor_power"),
-        Side("split-groups", timeline_of(split_groups_run().events, ends[1]), "/motor_power"),
+        ComparedSide("shared-group", timeline_of(shared_group_run().events, ends[0]), "/motor_power"),
+        ComparedSide("split-groups", timeline_of(split_groups_run().events, ends[1]), "/motor_power"),
     )
 
 
@@ -55,8 +55,8 @@ class ComparingConsole(CbtuiApp):
 
     def __init__(
         self,
-        first: Side,
-        second: Side,
+        first: ComparedSide,
+        second: ComparedSide,
         charset: Charset = Charset.BRAILLE,
         bounds: Window | None = None,
     ) -> None:
@@ -70,7 +70,7 @@ class ComparingConsole(CbtuiApp):
 
 @asynccontextmanager
 async def compared(
-    first: Side, second: Side, size: tuple[int, int] = WIDE, bounds: Window | None = None
+    first: ComparedSide, second: ComparedSide, size: tuple[int, int] = WIDE, bounds: Window | None = None
 ) -> AsyncIterator[tuple[ComparingConsole, Pilot[None]]]:
     app = ComparingConsole(first, second, bounds=bounds)
     async with app.run_test(size=size, notifications=True) as pilot:
@@ -255,7 +255,7 @@ async def test_a_run_that_goes_on_grows_on_screen_and_in_the_table() -> None:
     events = shared_group_run().events
     growing = Timeline()
     growing.extend([event for event in events if event.t <= ns(3.0)])
-    first = Side("now", growing, alive=lambda: True)
+    first = ComparedSide("now", growing, alive=lambda: True)
     async with compared(first, sides()[1]) as (app, pilot):
         assert "goes on" in text_of(app)
         assert lanes(app)[0].now == growing.end
@@ -271,7 +271,9 @@ async def test_how_a_run_failed_and_what_of_a_recording_is_lost_is_said() -> Non
     failed.extend(
         [RobotMoved(0, 0, 0, 0, 1, 0, 0, True, False, 0, 0), RunEnded(ns(1), "it broke", failed=True)]
     )
-    async with compared(Side("a", failed), Side("b", sides()[1].timeline, damage="it breaks off")) as (
+    async with compared(
+        ComparedSide("a", failed), ComparedSide("b", sides()[1].timeline, damage="it breaks off")
+    ) as (
         app,
         _,
     ):
@@ -336,7 +338,7 @@ def compared_run(lesson: str, threads: int | None = None) -> ComparedRun:
 
 @asynccontextmanager
 async def gathering(
-    first: ComparedRun, second: ComparedRun, terms: Terms
+    first: ComparedRun, second: ComparedRun, terms: ComparisonTerms
 ) -> AsyncIterator[tuple[CbtuiApp, Pilot[None]]]:
     app = CbtuiApp(start_comparison=(first, second, terms))
     app.animation_level = "none"
@@ -346,11 +348,11 @@ async def gathering(
 
 
 async def test_two_lessons_are_run_and_then_compared() -> None:
-    terms = Terms(end=3.0, calls=(1.2,))
+    terms = ComparisonTerms(end=3.0, calls=(1.2,))
     first, second = compared_run("exclusive-2-threads"), compared_run("reentrant-1-thread", threads=2)
     async with gathering(first, second, terms) as (app, pilot):
-        assert isinstance(app.screen, GatheringScreen | CompareScreen)
-        while isinstance(app.screen, GatheringScreen):
+        assert isinstance(app.screen, ComparisonLoadingScreen | CompareScreen)
+        while isinstance(app.screen, ComparisonLoadingScreen):
             await asyncio.sleep(0.02)
         assert isinstance(app.screen, CompareScreen)
         await until(pilot, lambda: "As asked, 0 to 3 s" in text_of(app))
@@ -361,7 +363,7 @@ async def test_two_lessons_are_run_and_then_compared() -> None:
 
 
 async def test_what_cannot_be_compared_is_said_and_ends_the_console_with_2(tmp_path: Path) -> None:
-    terms = Terms()
+    terms = ComparisonTerms()
     async with gathering(
         ComparedRun("x.mcap", tmp_path / "x.mcap"), compared_run("single-thread"), terms
     ) as (
@@ -376,7 +378,7 @@ async def test_what_cannot_be_compared_is_said_and_ends_the_console_with_2(tmp_p
 
 
 async def test_a_run_that_takes_long_can_be_given_up() -> None:
-    terms = Terms(end=36_000)
+    terms = ComparisonTerms(end=36_000)
     async with gathering(compared_run("single-thread"), compared_run("split-groups"), terms) as (app, pilot):
         await pilot.press("q")
         assert isinstance(app.screen, MenuScreen)
@@ -385,18 +387,18 @@ async def test_a_run_that_takes_long_can_be_given_up() -> None:
 @pytest.mark.parametrize(
     ("progress", "sentence"),
     [
-        (Progress("a", "running", ns(12.34), ns(60)), "running a: 12.3 s of 60 s"),
-        (Progress("a.mcap", "reading", ns(2)), "reading a.mcap: 2.0 s"),
+        (RunProgress("a", "running", ns(12.34), ns(60)), "running a: 12.3 s of 60 s"),
+        (RunProgress("a.mcap", "reading", ns(2)), "reading a.mcap: 2.0 s"),
     ],
 )
-def test_progress_tells_how_far_a_run_has_come(progress: Progress, sentence: str) -> None:
-    assert sentence_on(progress) == sentence
+def test_progress_tells_how_far_a_run_has_come(progress: RunProgress, sentence: str) -> None:
+    assert progress_text(progress) == sentence
 
 
 async def test_keys_are_answered_while_a_comparison_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compare, "_SLICE", 0.0)
-    monkeypatch.setattr(compare, "_SOON", 0.0)
-    monkeypatch.setattr(compare, "_BREATH", 0.02)
+    monkeypatch.setattr(compare, "_TIME_SLICE", 0.0)
+    monkeypatch.setattr(compare, "_PROGRESS_AFTER", 0.0)
+    monkeypatch.setattr(compare, "_YIELD_TIME", 0.02)
     app = ComparingConsole(*sides())
     async with app.run_test(size=WIDE) as pilot:
         await pilot.pause()
@@ -406,7 +408,7 @@ async def test_keys_are_answered_while_a_comparison_goes_on(monkeypatch: pytest.
         assert app.comparison.navigation.playhead != before
         assert re.search(r"Comparing, \d+ s so far", text_of(app))
         assert app.comparison._comparing
-        monkeypatch.setattr(compare, "_SLICE", 10.0)
+        monkeypatch.setattr(compare, "_TIME_SLICE", 10.0)
         await app.workers.wait_for_complete()
         await pilot.pause()
         assert "Whole runs, 0 to 9.4 s" in title(app)
@@ -415,13 +417,13 @@ async def test_keys_are_answered_while_a_comparison_goes_on(monkeypatch: pytest.
 async def test_asking_for_something_else_ends_a_comparison_that_goes_on(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(compare, "_SLICE", 0.0)
-    monkeypatch.setattr(compare, "_BREATH", 0.05)
+    monkeypatch.setattr(compare, "_TIME_SLICE", 0.0)
+    monkeypatch.setattr(compare, "_YIELD_TIME", 0.05)
     app = ComparingConsole(*sides())
     async with app.run_test(size=WIDE) as pilot:
         await pilot.pause()
         app.comparison.draw()
         assert app.comparison._comparing
-        monkeypatch.setattr(compare, "_SLICE", 10.0)
+        monkeypatch.setattr(compare, "_TIME_SLICE", 10.0)
         await press(app, pilot, "w")
         assert title(app).strip().startswith("On screen")

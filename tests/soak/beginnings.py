@@ -6,7 +6,7 @@ from random import Random
 from typing import TypeAlias
 
 from cbtui.app import CbtuiApp
-from cbtui.runs.compared_runs import ComparedRun, Terms
+from cbtui.runs.compared_runs import ComparedRun, ComparisonTerms
 from lessons.catalogue import lessons
 from sim.recording import About, Recorder, Recording, read
 from tests.support.builder import ns
@@ -50,7 +50,7 @@ def _comparison(chance: Random, folder: Path) -> CbtuiApp:
     first, second = (
         ComparedRun(name, recorded(chance, folder / f"{name}.mcap").path) for name in ("before", "after")
     )
-    return CbtuiApp(start_comparison=(first, second, Terms()))
+    return CbtuiApp(start_comparison=(first, second, ComparisonTerms()))
 
 
 def _menu_with_engines(chance: Random, folder: Path) -> CbtuiApp:

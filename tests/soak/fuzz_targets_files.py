@@ -8,7 +8,7 @@ import yaml as pyyaml
 
 from cbtui.keys import config as configuration
 from cbtui.runs.recorded.recording_file import setup_of
-from cbtui.runs.setup.recent import Recents
+from cbtui.runs.setup.recent import RecentList
 from lessons.catalogue import ROOT
 from lessons.lesson import BadLesson, read_lesson
 from lessons.progress import Progress
@@ -78,7 +78,7 @@ def progress() -> Target:
 
 
 def _read_progress(data: bytes, folder: Path) -> None:
-    for name, reader in (("progress.jsonl", Progress), ("recent.jsonl", Recents)):
+    for name, reader in (("progress.jsonl", Progress), ("recent.jsonl", RecentList)):
         for path in folder.iterdir():
             path.unlink()
         (folder / name).write_bytes(data)

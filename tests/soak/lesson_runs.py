@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import msgspec
 
-from cbtui.engines.session import Session
-from cbtui.runs.setup.changes import WISHES
+from cbtui.engines.session import ProcessSession
+from cbtui.runs.setup.changes import GROUP_CHOICES
 from cbtui.runs.setup.lesson_setup import setup_for
 from lessons.catalogue import lessons
 from lessons.lesson import Lesson
@@ -104,7 +104,7 @@ def _callbacks(lesson: Lesson) -> list[str]:
 
 def _groups(chance: Random, lesson: Lesson) -> tuple[GroupChange, ...]:
     changed = [each for each in _callbacks(lesson) if chance.random() < 0.2]
-    return tuple(GroupChange("", each, chance.choice(WISHES)) for each in changed)
+    return tuple(GroupChange("", each, chance.choice(GROUP_CHOICES)) for each in changed)
 
 
 def _periods(chance: Random, lesson: Lesson) -> tuple[PeriodChange, ...]:
@@ -131,7 +131,7 @@ class _Run:
         self._digest = hashlib.sha256()
         self._counts = MessageCounts()
         self._news: Queue[list[AnyEvent] | str | None] = Queue(64)
-        self._session = Session(chosen, self._news.put, self._news.put)
+        self._session = ProcessSession(chosen, self._news.put, self._news.put)
         self._next_look = 0
         self._lost = 0
 

@@ -16,7 +16,7 @@ from cbtui.app import CbtuiApp
 from cbtui.keys.keymap import Keymap
 from cbtui.learning.outcome import Observe
 from cbtui.looks.colour_themes import STANDARD
-from cbtui.runs.judged.checking import Observed
+from cbtui.runs.judged.checking import ObservedRun
 from cbtui.screens.exercise import ExerciseScreen
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.run import RunScreen
@@ -78,10 +78,10 @@ def predict(app: CbtuiApp, lesson: str) -> None:
 def observed(events: Sequence[AnyEvent]) -> Observe:
     """Return what gives these events as a run that has come to its end, without an engine."""
 
-    def observe(_setup: RunSetup, _name: str, _given_up: Event) -> Observed:
+    def observe(_setup: RunSetup, _name: str, _given_up: Event) -> ObservedRun:
         timeline = Timeline()
         timeline.extend(events)
-        return Observed(timeline)
+        return ObservedRun(timeline)
 
     return observe
 

@@ -7,7 +7,7 @@ from queue import Queue
 
 import msgspec
 
-from cbtui.engines.session import Session
+from cbtui.engines.session import ProcessSession
 from cbtui.runs.setup.lesson_setup import setup_for
 from lessons.catalogue import find
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup, TimedCall
@@ -53,7 +53,7 @@ class Run:
 def run_to_end(setup: RunSetup) -> Run:
     """Run an engine until it ends by itself."""
     news: Queue[list[AnyEvent] | str | None] = Queue()
-    session = Session(setup, news.put, news.put)
+    session = ProcessSession(setup, news.put, news.put)
     run = Run()
     session.start()
     try:

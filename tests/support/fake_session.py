@@ -9,7 +9,7 @@ from sim.trace.events import AnyEvent
 
 
 class FakeSession:
-    """Shaped like ``cbtui.engines.session.Session``; everything happens on the thread of the caller."""
+    """An ``EngineSession`` without a process; everything happens on the thread of the caller."""
 
     def __init__(
         self, setup: RunSetup, deliver: Deliver, ended: Ended, events: Sequence[AnyEvent], until: int

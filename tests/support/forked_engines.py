@@ -42,5 +42,5 @@ def forked() -> Iterator[None]:
     """Let sessions that are given no context copy their engines."""
     forking_context(_PRELOADED)
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(session, "AFRESH", _Context())
+        patch.setattr(session, "SPAWN_CONTEXT", _Context())
         yield

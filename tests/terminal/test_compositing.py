@@ -6,7 +6,7 @@ from textual.app import App
 from textual.strip import Strip
 from textual.widget import Widget
 
-from cbtui.terminal.compositing import Parts, SparingCompositor
+from cbtui.terminal.compositing import PatchUpdate, SparingCompositor
 from cbtui.widgets.guide import Guide
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
@@ -31,7 +31,7 @@ class Terminal:
         if isinstance(update, LayoutUpdate):
             assert update.region.offset == (0, 0)
             self.lines = [[cell for strip in line for cell in cells(strip)] for line in update.strips]
-        elif isinstance(update, Parts):
+        elif isinstance(update, PatchUpdate):
             self.parts += 1
             for x, y, strip in update.parts:
                 drawn = cells(strip)

@@ -7,7 +7,7 @@ import pytest
 from textual._styles_cache import StylesCache
 
 from cbtui.screens.menu import MenuScreen
-from cbtui.terminal.garbage_collector import collect_now, let_go_of_screen, survivors_set_aside
+from cbtui.terminal.garbage_collector import collect_now, survivors_frozen, unfreeze_screen
 from tests.support.console import WIDE, RecordedConsole, settle
 from tests.support.runs import shared_group_run
 
@@ -38,7 +38,7 @@ def _as_before() -> Iterator[None]:
 
 
 def test_a_collection_takes_what_is_new_and_sets_the_rest_aside() -> None:
-    with survivors_set_aside():
+    with survivors_frozen():
         kept = Knot()
         Knot()
         collect_now()
@@ -46,7 +46,7 @@ def test_a_collection_takes_what_is_new_and_sets_the_rest_aside() -> None:
         del kept
         collect_now()
         assert Knot.left == 1  # set aside, and so not seen to be garbage
-        let_go_of_screen()
+        unfreeze_screen()
         collect_now()
         assert Knot.left == 0
 
@@ -62,12 +62,12 @@ def test_nothing_is_collected_early_or_set_aside_without_being_asked() -> None:
 
 def test_what_others_set_aside_is_left_alone() -> None:
     gc.freeze()
-    let_go_of_screen()
+    unfreeze_screen()
     assert gc.get_freeze_count() > 0
 
 
 def test_afterwards_all_is_as_before() -> None:
-    with survivors_set_aside():
+    with survivors_frozen():
         gc.collect()
         assert gc.get_freeze_count() > 0
     assert gc.get_freeze_count() == 0

@@ -19,7 +19,7 @@ from cbtui.keys.bindings import perform
 from cbtui.screens.menu import MenuScreen
 from cbtui.screens.setup import SetupScreen
 from cbtui.terminal.ending import EndingApp
-from cbtui.terminal.pending_keys import LONGEST
+from cbtui.terminal.pending_keys import MOUNT_TIMEOUT
 from cbtui.terminal.textual_internals import LeavablePalette
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes
@@ -109,7 +109,7 @@ async def test_an_app_that_is_told_to_end_ends_when_its_widgets_are_mounted() ->
 async def test_a_widget_that_is_never_mounted_keeps_nobody_from_leaving(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("cbtui.terminal.ending.LONGEST", LONGEST / 100)
+    monkeypatch.setattr("cbtui.terminal.ending.MOUNT_TIMEOUT", MOUNT_TIMEOUT / 100)
     app = Console()
     async with app.run_test():
         app.mount_slowly()

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from rich.cells import cell_len
 
 from cbtui.looks.theme import Charset, Ink, Role
-from cbtui.text.cells import Row, fit, to_cells, visible, without_tabs
+from cbtui.text.cells import CellRow, fit, to_cells, visible, without_tabs
 
 
 def test_escape_sequences_become_pictures() -> None:
@@ -48,20 +48,20 @@ def test_a_wide_character_takes_two_cells() -> None:
 
 def test_painting_over_half_a_wide_character_keeps_the_width() -> None:
     for column in (1, 2):
-        row = Row(4, Charset.BRAILLE)
+        row = CellRow(4, Charset.BRAILLE)
         row.write(0, "a回b", Ink(Role.TEXT))
         row.put(column, "x", Ink(Role.WARN))
         assert cell_len("".join(run.text for run in row.runs())) == 4
 
 
 def test_a_row_is_given_as_runs_of_one_ink() -> None:
-    row = Row(6, Charset.BRAILLE)
+    row = CellRow(6, Charset.BRAILLE)
     row.write(1, "ab", Ink(Role.WARN))
     row.put(3, "c", Ink(Role.NOW))
     assert [run.text for run in row.runs()] == [" ", "ab", "c", "  "]
 
 
 def test_text_that_does_not_fit_ends_in_an_ellipsis() -> None:
-    row = Row(5, Charset.BRAILLE)
+    row = CellRow(5, Charset.BRAILLE)
     row.write(2, "timer", Ink(Role.TEXT))
     assert "".join(row.cells) == "  ti…"

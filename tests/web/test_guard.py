@@ -2,14 +2,14 @@
 
 import pytest
 
-from cbtui.web.guard import Guard, is_loopback
+from cbtui.web.guard import HostGuard, is_loopback
 
 HERE = "127.0.0.1:8000"
 
 
 @pytest.mark.parametrize("host", [HERE, "localhost:8000", "192.168.1.5:8000", "[::1]:8000", "cbtui.example"])
 def test_the_server_goes_by_its_own_names_and_by_numbers(host: str) -> None:
-    guard = Guard("127.0.0.1", "https://cbtui.example")
+    guard = HostGuard("127.0.0.1", "https://cbtui.example")
     assert guard.objection({"Host": host}) is None
 
 
@@ -17,7 +17,7 @@ def test_the_server_goes_by_its_own_names_and_by_numbers(host: str) -> None:
     "host", ["evil.example:8000", "127.0.0.1.evil.example", "", "[", "localhost.evil.example"]
 )
 def test_it_goes_by_no_other_name(host: str) -> None:
-    objection = Guard("127.0.0.1", None).objection({"Host": host})
+    objection = HostGuard("127.0.0.1", None).objection({"Host": host})
     assert objection is not None
     assert "--public-url" in objection
 
@@ -33,7 +33,7 @@ def test_it_goes_by_no_other_name(host: str) -> None:
     ],
 )
 def test_only_its_own_pages_may_use_it(origin: str, may: bool) -> None:
-    guard = Guard("127.0.0.1", "https://cbtui.example")
+    guard = HostGuard("127.0.0.1", "https://cbtui.example")
     assert (guard.objection({"Host": HERE, "Origin": origin}) is None) is may
 
 

@@ -10,7 +10,7 @@ import aiohttp
 import psutil
 import pytest
 
-from cbtui.web.token import Token
+from cbtui.web.token import AccessToken
 from tests.support.processes import descendants
 from tests.web.serving import Serving, serving
 
@@ -112,4 +112,4 @@ def test_each_server_makes_a_token_of_its_own(server: Serving) -> None:
 
 
 def test_a_cookie_does_not_tell_the_token() -> None:
-    assert TOKEN not in Token(TOKEN)._cookie
+    assert TOKEN not in AccessToken(TOKEN)._cookie

@@ -3,7 +3,7 @@
 import pytest
 
 from cbtui.looks.theme import Charset, Role
-from cbtui.widgets.comparison_painter import BLOCK, Line, headings, table
+from cbtui.widgets.comparison_painter import BLOCK, StyledLine, headings, table
 from sim.trace.figures.comparison_rows import Assessment, ComparisonRow, Section
 
 CALLBACKS = tuple(
@@ -27,7 +27,7 @@ WHOLE = Section(
 SECTIONS = (*CALLBACKS, WHOLE)
 
 
-def text(lines: list[Line]) -> list[str]:
+def text(lines: list[StyledLine]) -> list[str]:
     return ["".join(run.text for run in line).rstrip() for line in lines]
 
 

@@ -3,7 +3,14 @@ import pytest
 from cbtui.runs.live.findings import ExplainedFinding, FindingsMonitor
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.live.playhead import Playhead
-from cbtui.widgets.diagnosis import Diagnosis, Weight, call_note, diagnose, verdict, with_worst
+from cbtui.widgets.diagnosis import (
+    Diagnosis,
+    DiagnosisLevel,
+    call_note,
+    diagnosis_at,
+    diagnosis_on_screen,
+    with_worst_problem,
+)
 from cbtui.widgets.diagnosis_line import diagnosis_row, diagnosis_rows
 from sim.diagnosis import RULES, Explanation, Finding
 from sim.diagnosis import Weight as RuleWeight
@@ -30,7 +37,7 @@ def timeline_of(run: Run, until: float) -> Timeline:
 
 def said(run: Run, at: float) -> Diagnosis:
     timeline = timeline_of(run, at)
-    return diagnose(timeline, ns(at), Concurrency(timeline))
+    return diagnosis_at(timeline, ns(at), Concurrency(timeline))
 
 
 def live_run(run: Run, until: float) -> LiveRun:
@@ -45,22 +52,22 @@ def live_run(run: Run, until: float) -> LiveRun:
 
 
 def verdict_of(live: LiveRun, playhead: Playhead | None = None) -> Diagnosis:
-    return verdict(live, playhead or Playhead(), Concurrency(live.timeline))
+    return diagnosis_on_screen(live, playhead or Playhead(), Concurrency(live.timeline))
 
 
 def test_the_longest_wait_is_named_with_its_reason() -> None:
     told = "odom_callback waits 8.9 s: group A is held by timer_callback"
     assert said(shared_group_run(), 12.9) == Diagnosis(
-        told, Weight.TROUBLE, at_length=f"{told}; 1 more waits"
+        told, DiagnosisLevel.TROUBLE, at_length=f"{told}; 1 more waits"
     )
 
 
 def test_a_wait_of_less_than_a_second_is_no_trouble_yet() -> None:
-    assert said(shared_group_run(), 4.4).weight is Weight.WAITS
+    assert said(shared_group_run(), 4.4).level is DiagnosisLevel.WAITS
 
 
 def test_a_hand_over_is_not_a_wait() -> None:
-    assert said(shared_group_run(), 4.005).weight is Weight.FINE
+    assert said(shared_group_run(), 4.005).level is DiagnosisLevel.FINE
 
 
 def test_where_nothing_waits_the_threads_that_were_needed_are_told() -> None:
@@ -72,7 +79,7 @@ def test_where_nothing_waits_the_threads_that_were_needed_are_told() -> None:
 def test_a_timer_that_outlasts_its_period_waits_for_nobody_else() -> None:
     told = said(split_groups_run(), 9.4)
     assert told.text.endswith("timer_callback, due again 4.9 s ago, still runs")
-    assert told.weight is Weight.FINE
+    assert told.level is DiagnosisLevel.FINE
 
 
 def test_a_wait_for_a_worker_names_what_the_workers_do() -> None:
@@ -107,7 +114,7 @@ def test_before_any_callback_the_node_is_starting() -> None:
 def test_a_warning_of_the_engine_comes_first_for_a_while() -> None:
     run = shared_group_run()
     run.notice("node.py blocks outside the clock", 6.0)
-    assert said(run, 7.0) == Diagnosis("node.py blocks outside the clock", Weight.TROUBLE)
+    assert said(run, 7.0) == Diagnosis("node.py blocks outside the clock", DiagnosisLevel.TROUBLE)
     assert said(run, 12.0).text.startswith("odom_callback waits")
 
 
@@ -120,11 +127,13 @@ def test_what_the_engine_merely_mentions_does_not_hide_a_wait() -> None:
 def test_a_lost_engine_says_how_to_go_on() -> None:
     live = live_run(shared_group_run(), 5.0)
     live.over("the engine was killed by signal 9.")
-    assert verdict_of(live) == Diagnosis("engine lost: killed by signal 9; r runs again", Weight.TROUBLE)
+    assert verdict_of(live) == Diagnosis(
+        "engine lost: killed by signal 9; r runs again", DiagnosisLevel.TROUBLE
+    )
 
 
-@pytest.mark.parametrize(("failed", "weight"), [(False, Weight.FINE), (True, Weight.TROUBLE)])
-def test_a_run_that_is_over_says_why(failed: bool, weight: Weight) -> None:
+@pytest.mark.parametrize(("failed", "weight"), [(False, DiagnosisLevel.FINE), (True, DiagnosisLevel.TROUBLE)])
+def test_a_run_that_is_over_says_why(failed: bool, weight: DiagnosisLevel) -> None:
     run = shared_group_run()
     run.over(6.0, "its program returned", failed)
     assert verdict_of(live_run(run, 6.0)) == Diagnosis(
@@ -173,13 +182,15 @@ def test_the_line_is_as_wide_as_the_screen(width: int, note: str, problems: str)
 
 
 def test_the_note_gives_way_to_the_diagnosis() -> None:
-    runs = diagnosis_row(Diagnosis("w" * 70, Weight.TROUBLE), "/motor_power replied success=True", "", 80)
+    runs = diagnosis_row(
+        Diagnosis("w" * 70, DiagnosisLevel.TROUBLE), "/motor_power replied success=True", "", 80
+    )
     assert "motor_power" not in "".join(run.text for run in runs)
 
 
 def test_a_sentence_that_stays_is_shown_whole_on_several_lines() -> None:
     sentence = "the run is over: " + "word " * 30 + "press r to run again"
-    rows = diagnosis_rows(Diagnosis(sentence, Weight.TROUBLE, stays=True), "a note", "", 80)
+    rows = diagnosis_rows(Diagnosis(sentence, DiagnosisLevel.TROUBLE, stays=True), "a note", "", 80)
     shown = ["".join(run.text for run in row) for row in rows]
     assert len(shown) == 3
     assert {len(line) for line in shown} == {80}
@@ -187,7 +198,7 @@ def test_a_sentence_that_stays_is_shown_whole_on_several_lines() -> None:
 
 
 def test_a_sentence_of_the_moment_keeps_to_one_line() -> None:
-    assert len(diagnosis_rows(Diagnosis("word " * 60, Weight.TROUBLE), "", "", 80)) == 1
+    assert len(diagnosis_rows(Diagnosis("word " * 60, DiagnosisLevel.TROUBLE), "", "", 80)) == 1
 
 
 def told_of(run: Run, until: float) -> tuple[ExplainedFinding, ...]:
@@ -201,9 +212,9 @@ def line(diagnosis: Diagnosis, width: int, note: str = "", problems: str = "7 pr
 
 
 def test_a_moment_that_is_well_tells_of_the_runs_worst_problem() -> None:
-    told = with_worst(said(shared_group_run(), 3.0), told_of(shared_group_run(), 15.0))
+    told = with_worst_problem(said(shared_group_run(), 3.0), told_of(shared_group_run(), 15.0))
     what = "timer_callback slept or worked for 10.0 s in group A"
-    assert told.weight is Weight.TROUBLE
+    assert told.level is DiagnosisLevel.TROUBLE
     assert told.text.startswith(f"at 4.0 s: {what}")
     assert told.at_length.startswith(f"long callback among sensors at 4.0 s: {what}")
 
@@ -211,19 +222,21 @@ def test_a_moment_that_is_well_tells_of_the_runs_worst_problem() -> None:
 def test_a_moment_that_is_not_well_is_told_of_itself() -> None:
     problems = told_of(shared_group_run(), 15.0)
     for moment in (12.9, 4.4):
-        assert with_worst(said(shared_group_run(), moment), problems) == said(shared_group_run(), moment)
+        assert with_worst_problem(said(shared_group_run(), moment), problems) == said(
+            shared_group_run(), moment
+        )
 
 
 def test_how_a_run_ended_and_how_to_go_on_is_told_whatever_went_wrong() -> None:
     ended = shared_group_run()
     ended.over(15.0, "its program returned", failed=False)
     moment = verdict_of(live_run(ended, 15.0))
-    assert with_worst(moment, told_of(ended, 15.0)) is moment
+    assert with_worst_problem(moment, told_of(ended, 15.0)) is moment
 
 
 def test_a_good_run_is_told_as_it_was() -> None:
     moment = said(split_groups_run(), 12.0)
-    assert with_worst(moment, told_of(split_groups_run(), 20.0)) is moment
+    assert with_worst_problem(moment, told_of(split_groups_run(), 20.0)) is moment
 
 
 def test_a_problem_of_the_whole_run_is_told_without_a_time() -> None:
@@ -231,7 +244,7 @@ def test_a_problem_of_the_whole_run_is_told_without_a_time() -> None:
     found = ExplainedFinding(
         Finding(rule, 0, 1), RuleWeight.PROBLEM, Explanation("scan hears nothing", "why", "cure", None)
     )
-    told = with_worst(Diagnosis("nothing waits", Weight.FINE), [found])
+    told = with_worst_problem(Diagnosis("nothing waits", DiagnosisLevel.FINE), [found])
     assert (told.text, told.at_length) == ("scan hears nothing", "qos mismatch: scan hears nothing")
 
 
@@ -249,14 +262,14 @@ def test_the_line_says_at_narrow_and_wide_what_fits() -> None:
 
 
 def test_the_number_of_problems_is_there_however_long_the_sentence() -> None:
-    long = Diagnosis("w" * 200, Weight.TROUBLE)
+    long = Diagnosis("w" * 200, DiagnosisLevel.TROUBLE)
     assert line(long, 80) == f" ! {'w' * 59}…  7 problems · d "
     assert line(long, 80, note="/motor_power replied success=True").endswith("…  7 problems · d ")
 
 
 def test_a_sentence_that_stays_leaves_room_for_the_number_of_problems() -> None:
     sentence = "the run is over: " + "word " * 30 + "press r to run again"
-    rows = diagnosis_rows(Diagnosis(sentence, Weight.FINE, stays=True), "", "7 problems · d", 80)
+    rows = diagnosis_rows(Diagnosis(sentence, DiagnosisLevel.FINE, stays=True), "", "7 problems · d", 80)
     shown = ["".join(run.text for run in row) for row in rows]
     assert {len(each) for each in shown} == {80}
     assert shown[0].endswith("  7 problems · d ")

@@ -3,14 +3,14 @@
 import numpy as np
 
 from cbtui.looks.theme import Charset, Ink, Role
-from cbtui.widgets.dots import Dots
+from cbtui.widgets.dots import DotGrid
 
 INKS = (Ink(Role.TEXT), Ink(Role.WALL), Ink(Role.ROBOT))
 
 
 def row_of(*places: tuple[int, int]) -> list[tuple[str, Role]]:
     """The runs of a row of ten cells with layers at columns."""
-    dots = Dots(10, 1, Charset.ASCII)
+    dots = DotGrid(10, 1, Charset.ASCII)
     for column, layer in places:
         dots.plot(np.array([float(column)]), np.array([0.0]), layer)
     (row,) = dots.rows(INKS, " #@")

@@ -1,12 +1,12 @@
 """The words of an exercise's checks, as text."""
 
-from cbtui.runs.judged.checking import Checked, Observed
-from cbtui.widgets.checks import Row, Sheet, Standing
-from cbtui.widgets.checks.exercise_sheet import ExerciseWords, Keys
+from cbtui.runs.judged.checking import CheckedFile, ObservedRun
+from cbtui.widgets.checks import CheckRow, ChecksSheet, CheckStatus
+from cbtui.widgets.checks.exercise_sheet import ExerciseKeys, ExerciseTexts
 from cbtui.widgets.checks.sheet import lines_of
 from lessons.catalogue import find
 from lessons.checks import Check, Verdict
-from lessons.judge import Judged
+from lessons.judge import JudgedCheck
 from sim.trace.timeline import Timeline
 
 LESSON, NEXT = find("split-groups"), find("exclusive-2-threads")
@@ -18,15 +18,15 @@ def verdict(passed: bool) -> Verdict:
 
 
 CHECKS = tuple(Check(name, lambda _: verdict(True)) for name in NAMES)
-WORDS = ExerciseWords(LESSON, CHECKS, "mine.py", NEXT, Keys("o", "w", "e", "n"))
+WORDS = ExerciseTexts(LESSON, CHECKS, "mine.py", NEXT, ExerciseKeys("o", "w", "e", "n"))
 
 
-def checked(*passed: bool, trouble: str | None = None) -> Checked:
-    judged = tuple(Judged(check, verdict(each)) for check, each in zip(CHECKS, passed, strict=False))
-    return Checked(judged, len(CHECKS), Observed(Timeline(), trouble))
+def checked(*passed: bool, trouble: str | None = None) -> CheckedFile:
+    judged = tuple(JudgedCheck(check, verdict(each)) for check, each in zip(CHECKS, passed, strict=False))
+    return CheckedFile(judged, len(CHECKS), ObservedRun(Timeline(), trouble))
 
 
-def shown(sheet: Sheet, width: int = 76) -> list[str]:
+def shown(sheet: ChecksSheet, width: int = 76) -> list[str]:
     return ["".join(text for text, _ in line.pieces) for line in lines_of(sheet, width)]
 
 
@@ -48,7 +48,7 @@ def test_the_lines_of_a_check_know_which_one_it_is() -> None:
 def test_what_fails_leads_to_the_editor() -> None:
     sheet = WORDS.judged(checked(True, False))
     assert sheet.news == "1 of 2 checks fails. o opens mine.py; saving it checks it again."
-    assert (sheet.standing, sheet.note) == (Standing.FAILED, "✗ 1 of 2 pass")
+    assert (sheet.standing, sheet.note) == (CheckStatus.FAILED, "✗ 1 of 2 pass")
 
 
 def test_when_all_pass_it_is_said_what_comes_next() -> None:
@@ -56,18 +56,18 @@ def test_when_all_pass_it_is_said_what_comes_next() -> None:
     assert sheet.news == (
         "All 2 checks pass: the exercise is done. n opens the next lesson, Exclusive, 2 threads."
     )
-    assert (sheet.standing, sheet.note) == (Standing.PASSED, "✓ 2 of 2 pass")
+    assert (sheet.standing, sheet.note) == (CheckStatus.PASSED, "✓ 2 of 2 pass")
 
 
 def test_after_the_last_lesson_no_key_for_another_is_named() -> None:
-    words = ExerciseWords(LESSON, CHECKS, "mine.py", None, Keys("o", "w", "e", "n"))
+    words = ExerciseTexts(LESSON, CHECKS, "mine.py", None, ExerciseKeys("o", "w", "e", "n"))
     assert " n " not in words.judged(checked(True, True)).news
 
 
 def test_a_file_that_cannot_be_judged_is_told_of_and_no_check_has_a_verdict() -> None:
     sheet = WORDS.judged(checked(trouble="mine.py:3: expected ':'"))
     assert sheet.news.startswith("mine.py:3: expected ':'. o opens mine.py")
-    assert [row.standing for row in sheet.rows] == [Standing.OPEN, Standing.OPEN]
+    assert [row.standing for row in sheet.rows] == [CheckStatus.OPEN, CheckStatus.OPEN]
     assert sheet.note == ""
 
 
@@ -83,7 +83,9 @@ def test_what_is_asked_can_be_read_below_the_checks() -> None:
 
 
 def test_no_line_is_wider_than_there_is_room_and_no_text_obeys_the_terminal() -> None:
-    sheet = Sheet("word " * 30, Standing.FAILED, (Row("a" * 90, detail="\x1b[31m"),), ("b " * 60,), "c " * 90)
+    sheet = ChecksSheet(
+        "word " * 30, CheckStatus.FAILED, (CheckRow("a" * 90, detail="\x1b[31m"),), ("b " * 60,), "c " * 90
+    )
     for width in (32, 50, 76):
         lines = shown(sheet, width)
         assert max(map(len, lines)) <= width

@@ -3,28 +3,28 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cbtui.looks.theme import Ink, Role, Run
-from cbtui.widgets.painted import changed_part
+from cbtui.looks.theme import Ink, Role, TextRun
+from cbtui.widgets.painted_widget import changed_part
 
 TEXT, WARN = Ink(Role.TEXT), Ink(Role.WARN)
 
 
 def test_a_row_that_is_as_it_was_is_not_sent() -> None:
-    assert changed_part([Run("abc", TEXT)], [Run("abc", TEXT)]) == (0, 0)
+    assert changed_part([TextRun("abc", TEXT)], [TextRun("abc", TEXT)]) == (0, 0)
 
 
 def test_only_the_runs_between_equal_ones_are_sent() -> None:
-    before = [Run("pose ", TEXT), Run("1.0", WARN), Run(" m", TEXT)]
-    after = [Run("pose ", TEXT), Run("2.5", WARN), Run(" m", TEXT)]
+    before = [TextRun("pose ", TEXT), TextRun("1.0", WARN), TextRun(" m", TEXT)]
+    after = [TextRun("pose ", TEXT), TextRun("2.5", WARN), TextRun(" m", TEXT)]
     assert changed_part(before, after) == (5, 8)
 
 
 def test_another_ink_is_a_change() -> None:
-    assert changed_part([Run("abc", TEXT)], [Run("abc", WARN)]) == (0, 3)
+    assert changed_part([TextRun("abc", TEXT)], [TextRun("abc", WARN)]) == (0, 3)
 
 
 def test_columns_are_counted_and_not_characters() -> None:
-    before, after = [Run("日本", TEXT), Run("a", WARN)], [Run("日本", TEXT), Run("b", WARN)]
+    before, after = [TextRun("日本", TEXT), TextRun("a", WARN)], [TextRun("日本", TEXT), TextRun("b", WARN)]
     assert changed_part(before, after) == (4, 5)
 
 
@@ -35,7 +35,7 @@ rows = st.lists(
 )
 
 
-def cells(row: list[Run]) -> list[tuple[str, Ink]]:
+def cells(row: list[TextRun]) -> list[tuple[str, Ink]]:
     return [(sign, run.ink) for run in row for sign in run.text]
 
 
@@ -43,9 +43,9 @@ def cells(row: list[Run]) -> list[tuple[str, Ink]]:
 def test_what_is_not_sent_is_as_it_was(
     one: list[tuple[str, int, Ink]], other: list[tuple[str, int, Ink]]
 ) -> None:
-    before, after = ([Run(sign * length, ink) for sign, length, ink in row] for row in (one, other))
+    before, after = ([TextRun(sign * length, ink) for sign, length, ink in row] for row in (one, other))
     short = len(cells(after)) - len(cells(before))
-    (before if short > 0 else after).append(Run("." * abs(short), TEXT))
+    (before if short > 0 else after).append(TextRun("." * abs(short), TEXT))
     start, end = changed_part(before, after)
     old, new = cells(before), cells(after)
     assert old[:start] + new[start:end] + old[max(start, end) :] == new

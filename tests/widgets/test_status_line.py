@@ -4,13 +4,13 @@ from dataclasses import replace
 
 import pytest
 
-from cbtui.runs.live.live_run import State
-from cbtui.widgets.status_line import Status, status_row
+from cbtui.runs.live.live_run import RunState
+from cbtui.widgets.status_line import RunStatus, status_row
 from tests.support.builder import ns
 
-LIVE = Status(
+LIVE = RunStatus(
     title="2/6 One shared group",
-    state=State.LIVE,
+    state=RunState.LIVE,
     pace="virtual ×1.0",
     at=ns(12.48),
     back=0,
@@ -20,7 +20,7 @@ LIVE = Status(
 )
 
 
-def line(status: Status, width: int) -> str:
+def line(status: RunStatus, width: int) -> str:
     return "".join(run.text for run in status_row(status, width))
 
 
@@ -55,7 +55,7 @@ def line(status: Status, width: int) -> str:
         (replace(LIVE, lost=9), 48, "| 2/6 One sh… ● LIVE   t 12.480 s   trace lost 9 |"),
     ],
 )
-def test_the_line_is(status: Status, width: int, golden: str) -> None:
+def test_the_line_is(status: RunStatus, width: int, golden: str) -> None:
     assert line(status, width) == golden[1:-1]
 
 

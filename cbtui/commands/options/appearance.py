@@ -1,4 +1,4 @@
-"""The options on keys and looks of everything that opens the console, and the configuration behind them."""
+"""The options on keys and appearance, and the configuration that they override."""
 
 import argparse
 import os
@@ -18,10 +18,10 @@ _NAMES = ("charset", "theme", "config")
 
 
 class Appearance(NamedTuple):
-    """What the console begins with.
+    """How the console starts.
 
-    ``configured_charset`` may be ``auto``, ``charset`` is what came of it; ``complaints`` are sentences on
-    what is wrong in the configuration.
+    ``configured_charset`` may be ``auto``; ``charset`` is what that resolved to. ``complaints`` are sentences
+    on faults in the configuration.
     """
 
     charset: str
@@ -32,7 +32,7 @@ class Appearance(NamedTuple):
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Give a command the options. What they are when nobody gives them says ``set_defaults``."""
+    """Add the options to a command; ``set_defaults`` sets their defaults."""
     parser.add_argument(
         "--charset",
         choices=_CHARSETS,
@@ -54,26 +54,26 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 
 def set_defaults(parser: argparse.ArgumentParser) -> None:
-    """Say that nothing is given; so that an option may stand before the command as well as after it."""
+    """Set the defaults once on the main parser, so that an option may stand before or after the command."""
     parser.set_defaults(**dict.fromkeys(_NAMES))
 
 
 def given(options: argparse.Namespace) -> list[str]:
-    """Return the options again as words of a command line."""
+    """Return the given options as words of a command line."""
     values = ((name, getattr(options, name)) for name in _NAMES)
     return [word for name, value in values if value is not None for word in (f"--{name}", value)]
 
 
 def appearance(options: argparse.Namespace) -> Appearance:
-    """Return what the console begins with: what the options say, else the configuration, else the terminal.
+    """Return the appearance by the options, else by the configuration, else by the terminal.
 
-    A configuration named with ``--config`` that has something wrong in it ends the program with 2.
+    Exits with code 2 if a configuration named with ``--config`` has faults.
     """
-    from cbtui.keys.config import AUTO, Config, Reading, known, read_file, standard_path, unknown
+    from cbtui.keys.config import AUTO, Config, ParsedConfig, known, read_file, standard_path, unknown
     from cbtui.looks import colour_themes
     from cbtui.terminal.capabilities import charset_of
 
-    reading = Reading(Config(), [])
+    reading = ParsedConfig(Config(), [])
     if options.config is not None:
         reading = read_file(Path(options.config))
         if reading.complaints:
@@ -94,7 +94,7 @@ def appearance(options: argparse.Namespace) -> Appearance:
 def _may_be_there(path: Path) -> bool:
     try:
         return path.is_file()
-    except OSError:  # which reading it tells of
+    except OSError:  # reading the file reports it
         return True
 
 

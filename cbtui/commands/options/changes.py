@@ -1,4 +1,4 @@
-"""The options that change a program's set-up without touching its file, and what they come to."""
+"""The options that change a program's set-up without touching its file."""
 
 import argparse
 import shutil
@@ -14,12 +14,12 @@ from cbtui.commands.options.targets import refuse
 from cbtui.text.installing import install_command
 
 if TYPE_CHECKING:
-    from cbtui.runs.setup.changes import Changes, Place
+    from cbtui.runs.setup.changes import CallbackPlace, Changes
     from sim.engine.setup import RealRos
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Give a command the options."""
+    """Add the options to a command."""
     parser.add_argument(
         "--threads",
         metavar="N",
@@ -69,7 +69,7 @@ def add_on(parser: argparse.ArgumentParser) -> None:
 
 
 def add_traceback(parser: argparse.ArgumentParser) -> None:
-    """Give a command that shows what a program prints the option on its tracebacks."""
+    """Add ``--traceback`` to a command that shows what a program prints."""
     parser.add_argument(
         "--traceback",
         action="store_true",
@@ -78,7 +78,7 @@ def add_traceback(parser: argparse.ArgumentParser) -> None:
 
 
 def changes_of(options: argparse.Namespace) -> "Changes":
-    """What the options change."""
+    """The changes that the options make."""
     from cbtui.runs.setup.changes import Changes
 
     return Changes(
@@ -116,7 +116,7 @@ def _has_rclpy(python: str) -> bool:
 
 
 def seeded_changes_of(options: argparse.Namespace) -> "Changes":
-    """What the options change, with what ``--seed``, ``--on`` and ``--traceback`` say."""
+    """The changes that the options make, with what ``--seed``, ``--on`` and ``--traceback`` say."""
     return replace(
         changes_of(options),
         seed=options.seed,
@@ -135,6 +135,6 @@ def words(changes: "Changes") -> list[str]:
     return said if changes.sensor_rate is None else [*said, "--sensor-rate", f"{changes.sensor_rate:g}"]
 
 
-def _spelt(place: "Place") -> str:
+def _spelt(place: "CallbackPlace") -> str:
     node, callback = place
     return f"{node}:{callback}" if node else callback

@@ -1,4 +1,4 @@
-"""The options that give a run inputs at moments of it: calls of its service, ``ros2`` lines, and keys."""
+"""The options that give a run timed inputs: service calls, ``ros2`` lines and keys."""
 
 import argparse
 from collections.abc import Iterable
@@ -9,7 +9,7 @@ from cbtui.commands.options.targets import refuse
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
-    """Give a command ``--call`` and ``--at``."""
+    """Add ``--call`` and ``--at`` to a command."""
     parser.add_argument(
         "--call",
         dest="calls",
@@ -24,20 +24,20 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         dest="lines",
         metavar=("SECONDS", "LINE"),
         nargs=2,
-        action=values.TimedLine,
+        action=values.TimedLineOption,
         default=[],
         help="carry out a ros2 line at that time, such as 2 'ros2 topic list'; may be given again",
     )
 
 
 def add_typing(parser: argparse.ArgumentParser) -> None:
-    """Give a command ``--type``."""
+    """Add ``--type`` to a command."""
     parser.add_argument(
         "--type",
         dest="typed",
         metavar=("SECONDS", "TEXT"),
         nargs=2,
-        action=values.TimedKeys,
+        action=values.TimedKeysOption,
         default=[],
         help=r"type that text at that time, for a program that reads from the keyboard, such as 2 w or "
         r"3 '0.5\n'; may be given again (else: what is typed here, or comes through a pipe)",
@@ -45,7 +45,7 @@ def add_typing(parser: argparse.ArgumentParser) -> None:
 
 
 def check(options: argparse.Namespace, seconds: float) -> None:
-    """Refuse what would come when a run of so many seconds is over."""
+    """Refuse inputs that come after the end of a run of so many seconds."""
     moments = [("call", at) for at in options.calls] + [("line", at) for at, _ in options.lines]
     moments += [("key", at) for at, _ in getattr(options, "typed", ())]
     for what, at in moments:

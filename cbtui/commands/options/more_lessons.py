@@ -1,4 +1,4 @@
-"""The option that brings in lessons from other folders."""
+"""The option that adds lessons from other folders."""
 
 import argparse
 import os
@@ -9,11 +9,11 @@ from pathlib import Path
 from cbtui.commands.options.targets import folder_of, refuse
 
 _VARIABLE = "CBTUI_LESSONS"
-"""What ``lessons.catalogue`` looks at; so the programs that this one starts look there too."""
+"""The variable that ``lessons.catalogue`` reads; child processes inherit it."""
 
 
 def add_option(parser: argparse.ArgumentParser) -> None:
-    """Give a command the option; it may stand before the command as well as after it."""
+    """Add the option to a command; it may stand before or after the command."""
     parser.add_argument(
         "--lessons",
         metavar="DIR",
@@ -24,8 +24,8 @@ def add_option(parser: argparse.ArgumentParser) -> None:
 
 
 @contextmanager
-def brought_in(options: argparse.Namespace) -> Iterator[None]:
-    """Have the lessons of the folders that were given in the catalogue, meanwhile."""
+def lessons_added(options: argparse.Namespace) -> Iterator[None]:
+    """Add the lessons of the given folders to the catalogue inside the block."""
     folders: list[str] = getattr(options, "lessons", [])
     for folder in folders:
         folder_of(folder)

@@ -1,4 +1,4 @@
-"""The option that chooses an order of threads, and what goes with it."""
+"""The option that chooses a thread schedule by its seed."""
 
 import argparse
 
@@ -7,7 +7,7 @@ from cbtui.commands.options.targets import refuse
 
 
 def add_seed(parser: argparse.ArgumentParser) -> None:
-    """Give a command the option."""
+    """Add the option to a command."""
     parser.add_argument(
         "--seed",
         metavar="S",
@@ -17,6 +17,6 @@ def add_seed(parser: argparse.ArgumentParser) -> None:
 
 
 def check_seed(seed: int | None, clock: str | None) -> None:
-    """Refuse a seed where the machine alone chooses the order; ``clock`` is the one that was asked for."""
+    """Refuse a seed on the real clock, where the machine chooses the order; ``clock`` is the chosen one."""
     if seed is not None and clock == "real":
         refuse(f"on the real clock the machine chooses the order of threads; leave out --seed {seed}")

@@ -1,4 +1,4 @@
-"""What a command is to run: a lesson, or files; what is neither ends the program with one line and 2."""
+"""The lesson or files that a command runs; wrong targets exit with code 2 and one line."""
 
 import os
 import sys
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 def lesson_of(name: str) -> "Lesson":
-    """The lesson of that id; an unknown one ends the program with one line and 2."""
+    """The lesson of that id; exits with code 2 and one line if there is none."""
     from lessons.catalogue import UnknownLesson, find
 
     try:
@@ -24,13 +24,13 @@ def lesson_of(name: str) -> "Lesson":
 
 
 def refuse(sentence: str) -> NoReturn:
-    """End the program with one line and 2."""
+    """Print a sentence and exit with code 2."""
     complain(sentence)
     raise SystemExit(2)
 
 
 def need_terminal(instead: str) -> None:
-    """End the program where there is no terminal; ``instead`` is the command that needs none."""
+    """Exit if there is no usable terminal; ``instead`` is the command that needs none."""
     if is_browser(os.environ):
         return
     if not (sys.stdin.isatty() and sys.stdout.isatty()):
@@ -41,29 +41,29 @@ def need_terminal(instead: str) -> None:
         refuse(f"this terminal (TERM={os.environ['TERM']}) cannot place its cursor; use {instead}")
 
 
-class Program(NamedTuple):
-    """What the targets of a command name: a lesson, or files."""
+class RunTargets(NamedTuple):
+    """The lesson or the files that a command's targets name."""
 
     lesson: "Lesson | None"
     files: list[Path]
 
 
-def program_of(targets: Sequence[str]) -> Program:
-    """The lesson, or the files, of some targets; none of either where there are no targets."""
+def targets_of(targets: Sequence[str]) -> RunTargets:
+    """The lesson or the files of some targets; neither if there are no targets."""
     if not targets or is_file_name(targets[0]):
-        return Program(None, [file_of(name) for name in targets])
+        return RunTargets(None, [file_of(name) for name in targets])
     if len(targets) > 1:
         refuse("one lesson runs at a time; several targets must all be files")
-    return Program(lesson_of(targets[0]), [])
+    return RunTargets(lesson_of(targets[0]), [])
 
 
 def is_file_name(target: str) -> bool:
-    """Tell whether a target is meant as a file rather than as a lesson's id."""
+    """Tell whether a target names a file rather than a lesson."""
     return target.endswith((".py", ".xml", ".yaml", ".yml")) or "/" in target
 
 
 def file_of(name: str) -> Path:
-    """The program file of that name; one that is not there ends the program with one line and 2."""
+    """The program file of that name; exits with code 2 and one line if there is none."""
     path = Path(name)
     try:
         if path.is_dir():
@@ -80,7 +80,7 @@ def file_of(name: str) -> Path:
 
 
 def folder_of(name: str) -> Path:
-    """The folder of that name; one that is not there ends the program with one line and 2."""
+    """The folder of that name; exits with code 2 and one line if there is none."""
     path = Path(name)
     try:
         if not path.is_dir():
@@ -91,7 +91,7 @@ def folder_of(name: str) -> Path:
 
 
 def same_file(one: Path, other: Path) -> bool:
-    """Tell whether two paths lead to one file, which need not be there yet."""
+    """Tell whether two paths lead to the same file, which need not exist yet."""
     try:
         return one.samefile(other)
     except OSError:

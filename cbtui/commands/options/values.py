@@ -1,4 +1,4 @@
-"""Values of options as people write them; what cannot be one raises argparse's ``ArgumentTypeError``."""
+"""Parsers of option values; an invalid value raises argparse's ``ArgumentTypeError``."""
 
 import argparse
 import math
@@ -9,16 +9,16 @@ from cbtui.text.output import is_text
 from sim.units import nearest_ns
 
 if TYPE_CHECKING:
-    from cbtui.runs.setup.changes import Place
+    from cbtui.runs.setup.changes import CallbackPlace
 
 _MAX_THREADS = 64
 _LONGEST = 1e9
-"""Seconds; over thirty years. A run's clock, in whole nanoseconds, holds some ten times that."""
+"""Seconds, over thirty years; a clock of 64-bit nanoseconds holds ten times that."""
 _SLOWEST = 0.001
 _MAX_ORDERS = 100_000
-"""All of them are kept, as is what came of each."""
+"""All seeds and their results are kept in memory."""
 _MAX_SEED = 10**18
-"""As many as can be handed to an engine, with those after it that are tried too."""
+"""Leaves room in 64 bits for the seeds that ``explore`` tries after it."""
 
 
 def _number(text: str, what: str) -> float:
@@ -68,8 +68,8 @@ def threads(text: str) -> int:
 
 
 def count(text: str) -> int:
-    """Read how many orders of threads are wanted."""
-    number = whole(text)
+    """Read a number of schedules."""
+    number = whole_number(text)
     if number < 1:
         raise argparse.ArgumentTypeError(f"{text} are too few; give 1 or more")
     if number > _MAX_ORDERS:
@@ -78,8 +78,8 @@ def count(text: str) -> int:
 
 
 def seed(text: str) -> int:
-    """Read which order of threads is meant."""
-    number = whole(text)
+    """Read the seed of a schedule."""
+    number = whole_number(text)
     if number < 0:
         raise argparse.ArgumentTypeError(f"a seed cannot be {text}; give 0, the usual order, or more")
     if number > _MAX_SEED:
@@ -87,7 +87,7 @@ def seed(text: str) -> int:
     return number
 
 
-def whole(text: str) -> int:
+def whole_number(text: str) -> int:
     """Read a whole number."""
     try:
         return int(text)
@@ -107,25 +107,25 @@ def speed(text: str) -> float:
     return factor
 
 
-def group_change(text: str) -> "tuple[Place, str]":
-    """Read which callback gets which group, such as ``odom_callback=own``."""
-    from cbtui.runs.setup.changes import WISHES  # with what a set-up is made of
+def group_change(text: str) -> "tuple[CallbackPlace, str]":
+    """Read a callback and its new group, such as ``odom_callback=own``."""
+    from cbtui.runs.setup.changes import GROUP_CHOICES  # imported late: it needs the engine's set-up
 
     place, group = _place_and_value(text, "a group, such as odom_callback=own")
-    if group not in WISHES:
-        sentence = f"{group!r} is no group; give {', '.join(WISHES[:-1])} or {WISHES[-1]}"
+    if group not in GROUP_CHOICES:
+        sentence = f"{group!r} is no group; give {', '.join(GROUP_CHOICES[:-1])} or {GROUP_CHOICES[-1]}"
         raise argparse.ArgumentTypeError(sentence)
     return place, group
 
 
-def period_change(text: str) -> "tuple[Place, int]":
-    """Read which timer's callback gets which period, such as ``timer_callback=0.2``; nanoseconds."""
+def period_change(text: str) -> "tuple[CallbackPlace, int]":
+    """Read a timer's callback and its new period, such as ``timer_callback=0.2``; returns nanoseconds."""
     place, seconds = _place_and_value(text, "seconds, such as timer_callback=0.2")
     return place, nearest_ns(_quantity(PERIOD, seconds))
 
 
 def sensor_rate(text: str) -> float:
-    """Read how often a second sensors measure."""
+    """Read a sensor rate in Hz."""
     return _quantity(SENSOR_RATE, text)
 
 
@@ -135,8 +135,8 @@ def _text(word: str) -> str:
     return word
 
 
-def _place_and_value(text: str, what: str) -> "tuple[Place, str]":
-    """Take ``NODE:CALLBACK=VALUE`` apart; without a node, any node is meant."""
+def _place_and_value(text: str, what: str) -> "tuple[CallbackPlace, str]":
+    """Split ``NODE:CALLBACK=VALUE``; without a node, any node is meant."""
     name, equals, value = text.rpartition("=")
     node, colon, callback = name.rpartition(":")
     if not (equals and callback and value and is_text(text)) or (colon and not node):
@@ -152,7 +152,7 @@ def _quantity(quantity: Quantity, text: str) -> float:
 
 
 def _keys(word: str) -> str:
-    """Read what is typed, with ``\\n`` for enter and ``\\x03`` for ctrl+c, as Python writes them."""
+    """Read typed text with Python's escapes: ``\\n`` for enter, ``\\x03`` for ctrl+c."""
     try:
         return _text(word).encode("latin-1", "backslashreplace").decode("unicode_escape")
     except UnicodeDecodeError:
@@ -161,7 +161,7 @@ def _keys(word: str) -> str:
         ) from None
 
 
-class TimedLine(argparse.Action):
+class TimedLineOption(argparse.Action):
     """Takes a moment in seconds and a ``ros2`` line."""
 
     read = staticmethod(_text)
@@ -182,7 +182,7 @@ class TimedLine(argparse.Action):
         setattr(namespace, self.dest, [*getattr(namespace, self.dest), pair])
 
 
-class TimedKeys(TimedLine):
+class TimedKeysOption(TimedLineOption):
     """Takes a moment in seconds and text to be typed."""
 
     read = staticmethod(_keys)

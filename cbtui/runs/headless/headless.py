@@ -6,14 +6,14 @@ from signal import Signals
 
 from cbtui.engines.follow import EngineLostError, FollowedRun, RunTimeoutError
 from cbtui.engines.listening import ListeningSession
-from cbtui.engines.session import LONGEST_END
+from cbtui.engines.session import PROGRAM_EXIT_TIMEOUT
 from cbtui.runs.headless.program_log import ProgramLog
 from cbtui.runs.headless.standard_input import StandardInput
 from cbtui.runs.live.disk_space import DiskSpaceWatch
 from cbtui.runs.recorded.events_file import EventsFile
 from cbtui.runs.recorded.recording_file import CannotRecordError, start_recording
 from cbtui.runs.recorded.repeat import why_unrepeatable
-from cbtui.terminal.interrupts import heard, whole
+from cbtui.terminal.interrupts import deferred_interrupt, ending_signals
 from cbtui.text.output import CannotSayError, complain, say
 from sim.diagnosis import diagnose, findings_text
 from sim.durations import timestamp
@@ -50,7 +50,7 @@ def run_headless(
         recorder: Recorder | None = None
         if recording_path is not None:
             try:
-                with whole():
+                with deferred_interrupt():
                     recorder = start_recording(Path(recording_path), setup, replace=replace_recording)
                     files.callback(_close, recorder)
             except CannotRecordError as error:
@@ -84,7 +84,7 @@ class _Headless:
     def run(self) -> int:
         """Run to the end, whatever ends it, and print the summary and what the rules found."""
         keyboard = nullcontext() if self._input is None else closing(self._input)
-        with self._run, keyboard, heard(self._end_early):
+        with self._run, keyboard, ending_signals(self._end_early):
             complaint = self._run.start()
             if complaint is not None:
                 complain(complaint)
@@ -100,14 +100,14 @@ class _Headless:
     def _end_early(self, signal: Signals) -> None:
         """Have the engine end; its last events are still taken."""
         self._signal = signal
-        self._run.limit(LONGEST_END)
+        self._run.limit(PROGRAM_EXIT_TIMEOUT)
         self._run.session.send(Stop())
 
     def _follow(self) -> str | None:
         """Take every batch of events; returns how the engine was lost, if it was."""
         try:
             for events in self._run:
-                with whole():
+                with deferred_interrupt():
                     self._keep(events)
                 self._log.print(events)
                 if self._input is not None:
@@ -171,5 +171,5 @@ class _Headless:
 
 def _close(recorder: Recorder) -> None:
     """Write a recording to its end, however often the person presses Ctrl-C."""
-    with whole():
+    with deferred_interrupt():
         recorder.close()

@@ -4,7 +4,7 @@ import sys
 
 from cbtui.looks.theme import Charset
 from cbtui.text.cells import visible, without_tabs
-from cbtui.text.output import saying
+from cbtui.text.output import writing_to_stream
 from sim.trace.events import (
     AnyEvent,
     LineGiven,
@@ -80,11 +80,11 @@ def write_line(line: str, *, error: bool, ends: bool = True) -> None:
 
     Control characters are shown, not obeyed.
 
-    Raises BrokenPipeError and CannotSayError, as ``cbtui.text.output.saying``.
+    Raises BrokenPipeError and CannotSayError, as ``cbtui.text.output.writing_to_stream``.
     """
     stream = sys.stderr if error else sys.stdout
     text = "\n".join(visible(part, Charset.BRAILLE) for part in line.split("\n"))
-    with saying():
+    with writing_to_stream():
         stream.write(f"{text}\n" if ends else text)
         if not ends:
             stream.flush()

@@ -6,7 +6,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import TypeVar
 
-from cbtui.engines.control_socket import Done, NoEngine, RemoteLine, Said, connect
+from cbtui.engines.control_socket import LineOutput, LineResult, NoEngine, RemoteLine, connect
 from cbtui.engines.follow import EngineLostError, FollowedRun
 from cbtui.engines.listening import ListeningSession
 from cbtui.runs.headless.program_log import ProgramLog, write_line
@@ -48,12 +48,12 @@ def run_line(words: Sequence[str], process: int | None) -> int:
 def _follow_elsewhere(line: RemoteLine) -> int:
     for answer in _interruptible(line.next_answer, line.interrupt):
         match answer:
-            case Said(text=said, error=error):
+            case LineOutput(text=said, error=error):
                 write_line(without_tabs(said), error=error)
-            case Done(status=None):
+            case LineResult(status=None):
                 complain("the run ended before the line did")
                 return _CUT_OFF
-            case Done(status=int() as status):
+            case LineResult(status=int() as status):
                 return status
     return _CUT_OFF
 

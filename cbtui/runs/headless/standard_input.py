@@ -15,7 +15,7 @@ from typing import Any
 from sim.engine.commands import END_OF_INPUT, INTERRUPT, Type
 from sim.trace.events import AnyEvent, KeyboardAsked, Reading
 
-_AT_ONCE = 4096
+_READ_SIZE = 4096
 
 
 class StandardInput:
@@ -73,7 +73,7 @@ class StandardInput:
         latest = ""
         while self._over not in select.select([self._descriptor, self._over], [], [])[0]:
             try:
-                data = os.read(self._descriptor, _AT_ONCE)
+                data = os.read(self._descriptor, _READ_SIZE)
             except OSError:  # the terminal is gone
                 data = b""
             text = decoder.decode(data, final=not data)

@@ -3,9 +3,9 @@
 from collections.abc import Iterator
 from textwrap import fill
 
-from cbtui.runs.judged.checking import Checked
+from cbtui.runs.judged.checking import CheckedFile
 from lessons.checks import problems
-from lessons.judge import Judged
+from lessons.judge import JudgedCheck
 from sim.diagnosis.text import WIDTH
 from sim.durations import timestamp
 from sim.trace.timeline import Timeline
@@ -13,7 +13,7 @@ from sim.trace.timeline import Timeline
 PASSED, FAILED = "✓", "✗"
 
 
-def checked_text(checked: Checked) -> str:
+def checked_text(checked: CheckedFile) -> str:
     """Each check with what was expected and seen, how many passed, and for those that did not, what is wrong.
 
     Empty where nothing could be judged.
@@ -23,14 +23,14 @@ def checked_text(checked: Checked) -> str:
     return "\n".join([*_lines(checked), ""])
 
 
-def verdict_line(judged: Judged) -> str:
+def verdict_line(judged: JudgedCheck) -> str:
     """What was expected of a check, what was seen, and when."""
     verdict = judged.verdict
     when = "" if verdict.at is None else f", at {timestamp(verdict.at)}"
     return f"expected {verdict.expected}; saw {verdict.seen}{when}"
 
 
-def _lines(checked: Checked) -> Iterator[str]:
+def _lines(checked: CheckedFile) -> Iterator[str]:
     for each in checked.judged:
         yield f"{PASSED if each.verdict.passed else FAILED} {each.check.asks}"
         yield f"    {verdict_line(each)}"

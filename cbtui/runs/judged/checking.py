@@ -9,10 +9,10 @@ from pathlib import Path
 from threading import Event
 
 from cbtui.engines.follow import EngineLostError, FollowedRun, GivenUpError, RunTimeoutError
-from cbtui.engines.session import OpenSession, Session
+from cbtui.engines.session import OpenSession, ProcessSession
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.lesson_setup import request_to_judge
-from lessons.judge import Judge, Judged
+from lessons.judge import Judge, JudgedCheck
 from lessons.lesson import Lesson
 from sim.durations import timestamp
 from sim.engine.setup import RunSetup
@@ -26,7 +26,7 @@ MOST_TEXT = 32_000_000
 
 
 @dataclass(frozen=True)
-class Observed:
+class ObservedRun:
     """A run that is over, and in a sentence why it came to no good end; None if it did.
 
     ``broken_off`` tells that it was cut short from outside or died, and did not fail by itself.
@@ -38,12 +38,12 @@ class Observed:
 
 
 @dataclass(frozen=True)
-class Checked:
+class CheckedFile:
     """What came of a learner's file: each check, or none and the sentence of what is wrong with the file."""
 
-    judged: tuple[Judged, ...]
+    judged: tuple[JudgedCheck, ...]
     total: int
-    run: Observed
+    run: ObservedRun
 
     @property
     def passed(self) -> int:
@@ -56,7 +56,9 @@ class Checked:
         return self.run.trouble is None and self.passed == self.total
 
 
-def check(lesson: Lesson, judge: Judge, file: Path, limit: float = LIMIT, seed: int | None = None) -> Checked:
+def check(
+    lesson: Lesson, judge: Judge, file: Path, limit: float = LIMIT, seed: int | None = None
+) -> CheckedFile:
     """Run a learner's file and judge it by a lesson's checks; takes about a second, at most ``limit``.
 
     ``seed`` chooses the order of its threads, None the usual one.
@@ -64,7 +66,7 @@ def check(lesson: Lesson, judge: Judge, file: Path, limit: float = LIMIT, seed: 
     setup = replace(request_to_judge(lesson, file), changes=Changes(seed=seed)).setup()
     run = observe(setup, file.name, limit)
     judged = () if run.trouble is not None else tuple(judge.verdicts(run.timeline))
-    return Checked(judged, len(judge.checks), run)
+    return CheckedFile(judged, len(judge.checks), run)
 
 
 def observe(
@@ -72,12 +74,12 @@ def observe(
     name: str,
     limit: float = LIMIT,
     given_up: Event | None = None,
-    open_session: OpenSession = Session,
-) -> Observed:
+    open_session: OpenSession = ProcessSession,
+) -> ObservedRun:
     """Run what is set up to its end, on the caller's thread; ``name`` is what it is called in sentences.
 
     Setting ``given_up``, from any thread, breaks the run off. ``open_session`` makes the session, as
-    ``Session`` does.
+    ``ProcessSession`` does.
     """
     timeline = Timeline(until_ending=True)
     text = 0
@@ -89,26 +91,26 @@ def observe(
                 timeline.extend(batch)
                 text += text_in(batch)
                 if text > MOST_TEXT:
-                    return Observed(timeline, wrote_too_much(timeline, name), broken_off=True)
+                    return ObservedRun(timeline, wrote_too_much(timeline, name), broken_off=True)
         except GivenUpError:
-            return Observed(timeline, f"{name} was broken off at {_time(timeline)}", broken_off=True)
+            return ObservedRun(timeline, f"{name} was broken off at {_time(timeline)}", broken_off=True)
         except RunTimeoutError:
-            return Observed(timeline, took_too_long(timeline, name, limit), broken_off=True)
+            return ObservedRun(timeline, took_too_long(timeline, name, limit), broken_off=True)
         except EngineLostError as error:
-            return over(timeline, name, str(error))
-    return over(timeline, name, None)
+            return ended_run(timeline, name, str(error))
+    return ended_run(timeline, name, None)
 
 
-def over(timeline: Timeline, name: str, loss: str | None) -> Observed:
+def ended_run(timeline: Timeline, name: str, loss: str | None) -> ObservedRun:
     """Return what is to be said of a run that came to its end; ``loss`` says how its engine was lost."""
     if loss is not None:
         sentence = f"{name} ended its whole process at {_time(timeline)}: {loss}"
-        return Observed(timeline, sentence, broken_off=True)
+        return ObservedRun(timeline, sentence, broken_off=True)
     ended = timeline.ended
     if ended is None or not ended.failed:
-        return Observed(timeline)
+        return ObservedRun(timeline)
     reason = " ".join(ended.reason.split())
-    return Observed(timeline, reason if name in reason else f"{name}: {reason}")
+    return ObservedRun(timeline, reason if name in reason else f"{name}: {reason}")
 
 
 def text_in(events: Iterable[AnyEvent]) -> int:

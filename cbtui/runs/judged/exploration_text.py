@@ -5,11 +5,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from textwrap import fill
 
 from cbtui.runs.judged.check_text import FAILED, PASSED
-from cbtui.runs.judged.exploring import Result
+from cbtui.runs.judged.exploring import ScheduleResult
 from sim.diagnosis.text import WIDTH
+from sim.plural import counted
 
 
-def exploration_text(name: str, found: Mapping[int, Result], replays: Sequence[str]) -> str:
+def exploration_text(name: str, found: Mapping[int, ScheduleResult], replays: Sequence[str]) -> str:
     """Tell how many different outcomes a program's schedules had, each with a seed that shows it.
 
     ``found`` has what came of each seed, ``replays`` the commands that show a schedule, but for its seed.
@@ -17,18 +18,18 @@ def exploration_text(name: str, found: Mapping[int, Result], replays: Sequence[s
     return "\n".join([*_lines(name, found, replays), ""])
 
 
-def _lines(name: str, found: Mapping[int, Result], replays: Sequence[str]) -> Iterator[str]:
-    outcomes: defaultdict[Result, list[int]] = defaultdict(list)
+def _lines(name: str, found: Mapping[int, ScheduleResult], replays: Sequence[str]) -> Iterator[str]:
+    outcomes: defaultdict[ScheduleResult, list[int]] = defaultdict(list)
     for seed, result in found.items():
         outcomes[result].append(seed)
     failed = sum(len(seeds) for result, seeds in outcomes.items() if not result.well)
-    said = f"{_number(failed, 'schedule')} failed" if failed else "all went well"
-    yield f"{name}: {_number(len(found), 'schedule')}, {_number(len(outcomes), 'outcome')}, {said}"
+    said = f"{counted(failed, 'schedule')} failed" if failed else "all went well"
+    yield f"{name}: {counted(len(found), 'schedule')}, {counted(len(outcomes), 'outcome')}, {said}"
     # Those that failed first, and the more frequent first.
     for result, seeds in sorted(outcomes.items(), key=lambda pair: (pair[0].well, -len(pair[1]))):
         yield ""
         sign = PASSED if result.well else FAILED
-        such = "all of them" if len(seeds) == len(found) else _number(len(seeds), "schedule")
+        such = "all of them" if len(seeds) == len(found) else counted(len(seeds), "schedule")
         yield f"{sign} {such}, such as seed {seeds[0]}"
         yield from _result(result, found[seeds[0]])
     yield ""
@@ -40,7 +41,7 @@ def _lines(name: str, found: Mapping[int, Result], replays: Sequence[str]) -> It
         yield f"  {_with_seed(command, shown)}"
 
 
-def _result(result: Result, shown: Result) -> Iterator[str]:
+def _result(result: ScheduleResult, shown: ScheduleResult) -> Iterator[str]:
     for failure in shown.failures:
         yield _wrapped(failure.what, 4)
         if failure.detail:
@@ -68,7 +69,3 @@ def _with_seed(command: str, seed: int) -> str:
     """The command with the seed, in front of what is for the program."""
     own, dashes, behind = command.partition(" -- ")
     return f"{own} --seed {seed}{dashes}{behind}"
-
-
-def _number(number: int, what: str) -> str:
-    return f"{number} {what}{'s' * (number != 1)}"

@@ -11,9 +11,9 @@ from threading import Event
 import msgspec
 
 from cbtui.engines.forking import forking_context
-from cbtui.engines.session import Session
+from cbtui.engines.session import ProcessSession
 from cbtui.runs.judged.check_text import verdict_line
-from cbtui.runs.judged.checking import Observed, observe
+from cbtui.runs.judged.checking import ObservedRun, observe
 from cbtui.runs.recorded.repeat import why_unrepeatable
 from lessons.checks import problems
 from lessons.judge import Judge
@@ -28,7 +28,7 @@ _STUCK = ("self-made-deadlock", "needs-one-more-worker")
 
 
 @dataclass(frozen=True)
-class Failure:
+class ScheduleFailure:
     """What went wrong in a run. Two are the same if they are called the same, whatever the figures."""
 
     what: str
@@ -36,13 +36,13 @@ class Failure:
 
 
 @dataclass(frozen=True)
-class Result:
+class ScheduleResult:
     """What came of a schedule: what failed, and the ids of the rules that found a problem, in their order.
 
     Schedules with equal results came out alike.
     """
 
-    failures: tuple[Failure, ...] = ()
+    failures: tuple[ScheduleFailure, ...] = ()
     problems: tuple[str, ...] = ()
     notes: tuple[str, ...] = field(default=(), compare=False)
     """What the engine warned of, in its words."""
@@ -66,7 +66,7 @@ class Exploration:
 
     def results(
         self, seeds: Iterable[int], processes: int | None = None
-    ) -> Generator[tuple[int, Result], None, None]:
+    ) -> Generator[tuple[int, ScheduleResult], None, None]:
         """Run the schedules of some seeds and yield what came of each, in the order in which they end.
 
         ``processes`` run at once, None: one for each core. Closing the iterator ends all of them.
@@ -82,40 +82,40 @@ class Exploration:
                 given_up.set()
                 pool.shutdown(cancel_futures=True)
 
-    def _result(self, seed: int, context: BaseContext, given_up: Event) -> Result:
+    def _result(self, seed: int, context: BaseContext, given_up: Event) -> ScheduleResult:
         setup = msgspec.structs.replace(self.setup, seed=seed)
-        observed = observe(setup, self.name, self.limit, given_up, partial(Session, context=context))
+        observed = observe(setup, self.name, self.limit, given_up, partial(ProcessSession, context=context))
         found = tuple(dict.fromkeys(each.rule.id for each in problems(observed.timeline)))
         failures = tuple(dict.fromkeys(self._failures(observed, found)))
         repeatable = why_unrepeatable(observed.timeline.notices) is None
-        return Result(failures, found, tuple(dict.fromkeys(_warnings(observed))), repeatable)
+        return ScheduleResult(failures, found, tuple(dict.fromkeys(_warnings(observed))), repeatable)
 
-    def _failures(self, observed: Observed, found: tuple[str, ...]) -> Iterator[Failure]:
+    def _failures(self, observed: ObservedRun, found: tuple[str, ...]) -> Iterator[ScheduleFailure]:
         raised = [*_raised(observed)]
         yield from raised
         for rule in found:
             if rule in _STUCK:
-                yield Failure(f"deadlock: {rule}")
+                yield ScheduleFailure(f"deadlock: {rule}")
         for notice in observed.timeline.notices:
             if notice.kind is NoticeKind.DEADLOCK:
-                yield Failure("deadlock", f"{notice.problem}; {notice.advice}")
+                yield ScheduleFailure("deadlock", f"{notice.problem}; {notice.advice}")
             elif notice.severity is Severity.ERROR:
-                yield Failure(notice.text)
+                yield ScheduleFailure(notice.text)
         if observed.broken_off:
-            yield Failure("it did not come to its end", observed.trouble or "")
+            yield ScheduleFailure("it did not come to its end", observed.trouble or "")
         elif observed.trouble is not None and not raised:
-            yield Failure(observed.trouble)
+            yield ScheduleFailure(observed.trouble)
         elif observed.trouble is None and self.judge is not None:
             for each in self.judge.verdicts(observed.timeline):
                 if not each.verdict.passed:
-                    yield Failure(f"check failed: {each.check.asks}", verdict_line(each))
+                    yield ScheduleFailure(f"check failed: {each.check.asks}", verdict_line(each))
 
 
-def _warnings(observed: Observed) -> Iterator[str]:
+def _warnings(observed: ObservedRun) -> Iterator[str]:
     return (each.text for each in observed.timeline.notices if each.severity is Severity.WARN)
 
 
-def _raised(observed: Observed) -> Iterator[Failure]:
+def _raised(observed: ObservedRun) -> Iterator[ScheduleFailure]:
     """The exceptions that came out of callbacks, by callback and kind; with the place if the run ended so."""
     timeline, trouble = observed.timeline, observed.trouble or ""
     whole = Window(0, timeline.end + 1)
@@ -124,7 +124,7 @@ def _raised(observed: Observed) -> Iterator[Failure]:
             if span.error:
                 kind, _, text = span.error.partition(":")
                 detail = trouble if span.error in trouble else text.strip()
-                yield Failure(f"{entity.spoken_name} raised {kind}", detail)
+                yield ScheduleFailure(f"{entity.spoken_name} raised {kind}", detail)
 
 
 def _cores() -> int:

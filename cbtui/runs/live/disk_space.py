@@ -6,12 +6,12 @@ from pathlib import Path
 
 from sim.trace.timeline import Timeline
 
-_LARGE = 1_000_000_000
+_LARGE_RECORDING = 1_000_000_000
 """Bytes of a recording at which it is told how large it is, and again whenever it has doubled."""
-_LITTLE = 500_000_000
+_LOW_SPACE = 500_000_000
 """Bytes left on a disk, or the share below, whichever are fewer, that are worth a word before it is full."""
-_SHARE = 0.05
-_BETWEEN = 10_000_000
+_LOW_SHARE = 0.05
+_CHECK_INTERVAL = 10_000_000
 """Bytes by which a recording grows between two looks at its disk."""
 
 
@@ -29,7 +29,7 @@ class DiskSpaceWatch:
     def news(self, recording: Path | None, size: int) -> str | None:
         """One sentence that was not told before; ``size`` is in bytes, 0 without a recording."""
         if recording != self._recording:
-            self._recording, self._large = recording, _LARGE
+            self._recording, self._large = recording, _LARGE_RECORDING
             self._look_at, self._told_of_disk = 0, False
         failure = self._timeline.spill_failure
         if failure and not self._told_of_temporary:
@@ -45,12 +45,12 @@ class DiskSpaceWatch:
             self._large = 2 * size
             return f"The recording {recording.name} has {_megabytes(size)} by now, and goes on"
         if size >= self._look_at and not self._told_of_disk:
-            self._look_at = size + _BETWEEN
+            self._look_at = size + _CHECK_INTERVAL
             try:
                 disk = shutil.disk_usage(recording.absolute().parent)
             except OSError:
                 return None
-            if disk.free < min(_LITTLE, _SHARE * disk.total):
+            if disk.free < min(_LOW_SPACE, _LOW_SHARE * disk.total):
                 self._told_of_disk = True
                 return (
                     f"The disk has {_megabytes(disk.free)} left for the recording {recording.name}, "

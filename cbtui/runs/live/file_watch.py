@@ -11,11 +11,11 @@ from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
 CANNOT_WATCH = (OSError, RuntimeError)
 """What is raised where a folder cannot be watched."""
 
-_STEP = 50
+_DEBOUNCE_MS = 50
 """Milliseconds without another change after which a save is over."""
-_LOOK = 1000
+_POLL_MS = 1000
 """Milliseconds after which the file is looked at in any case: some file systems do not report changes."""
-_GRACE = 0.3
+_SAVE_TIME = 0.3
 """Seconds that a file may be gone or empty in the middle of a save."""
 
 
@@ -39,8 +39,8 @@ def _changes(folder: Path, force_polling: bool | None) -> AsyncIterator[object]:
     return awatch(
         folder,
         watch_filter=None,
-        step=_STEP,
-        rust_timeout=_LOOK,
+        step=_DEBOUNCE_MS,
+        rust_timeout=_POLL_MS,
         yield_on_timeout=True,
         force_polling=force_polling,
         recursive=False,
@@ -51,7 +51,7 @@ def _changes(folder: Path, force_polling: bool | None) -> AsyncIterator[object]:
 async def _settled(path: Path) -> bytes | None:
     content = await asyncio.to_thread(content_of, path)
     if not content:
-        await asyncio.sleep(_GRACE)
+        await asyncio.sleep(_SAVE_TIME)
         content = await asyncio.to_thread(content_of, path)
     return content
 

@@ -5,14 +5,15 @@ from dataclasses import dataclass
 from time import monotonic
 
 from sim.diagnosis import Diagnoses, Explanation, Finding, Weight
+from sim.plural import counted
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 
-_EVERY = 1.0
+_MIN_INTERVAL = 1.0
 """Seconds between two looks, at least."""
-_SHARE = 0.01
+_TIME_SHARE = 0.01
 """The share of all time that looks may take: the longer a look takes, the later the next one."""
-_MOST_AT_ONCE: Nanoseconds = 20_000_000_000
+_MAX_GROWTH: Nanoseconds = 20_000_000_000
 """Growth after which a look is not put off: a recording grows by minutes while it is read, and what is saved
 up of that would keep keys waiting when it is all looked at together."""
 
@@ -72,7 +73,7 @@ class FindingsMonitor:
         Returns whether the findings have changed.
         """
         grown = self._timeline.end - self._looked_to
-        if self._clock() < self._due and grown < _MOST_AT_ONCE:
+        if self._clock() < self._due and grown < _MAX_GROWTH:
             return False
         before = self.findings
         self.look()
@@ -85,7 +86,7 @@ class FindingsMonitor:
         self._looked_to = timeline.end
         self.findings = tuple(_explained(found, timeline) for found in self._diagnoses.update(timeline))
         ended = self._clock()
-        self._due = max(began + _EVERY, ended + (ended - began) / _SHARE)
+        self._due = max(began + _MIN_INTERVAL, ended + (ended - began) / _TIME_SHARE)
 
 
 def _explained(found: Finding, timeline: Timeline) -> ExplainedFinding:
@@ -93,7 +94,7 @@ def _explained(found: Finding, timeline: Timeline) -> ExplainedFinding:
     return ExplainedFinding(found, weight, found.rule.explain(found, timeline))
 
 
-def counted(findings: Sequence[ExplainedFinding]) -> str:
+def problem_count_text(findings: Sequence[ExplainedFinding]) -> str:
     """How many problems there are: ``2 problems``; "" for none."""
     count = sum(each.is_problem for each in findings)
-    return f"{count} problem{'s'[: count - 1]}" if count else ""
+    return counted(count, "problem") if count else ""

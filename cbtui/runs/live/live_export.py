@@ -5,7 +5,7 @@ from pathlib import Path
 from threading import Event
 
 from cbtui.runs.live.live_recording import unused_name
-from cbtui.runs.recorded.exporting import FORMATS, ExportError, Source, Wish, export
+from cbtui.runs.recorded.exporting import FORMATS, EventSource, ExportError, ExportRequest, export
 from sim.recording import RecordingError
 from sim.trace.model import Nanoseconds, Window
 
@@ -15,11 +15,11 @@ class _GivenUpError(Exception):
 
 
 @dataclass(frozen=True)
-class Material:
+class ExportableRun:
     """What there is to export: a run's title, its events, how far they go, and a sentence on what is not."""
 
     title: str
-    source: Source
+    source: EventSource
     end: Nanoseconds
     missing: str = ""
 
@@ -30,12 +30,12 @@ class LiveExport:
     ``write`` is for any thread; the rest may be asked on another one meanwhile.
     """
 
-    def __init__(self, material: Material, form: str, window: Window | None) -> None:
+    def __init__(self, material: ExportableRun, form: str, window: Window | None) -> None:
         self._material = material
         suffix = Path(FORMATS[form][0]).suffix
         self._path = unused_name(material.title, suffix).absolute()
         start, end = (0, None) if window is None else (window.start / 1e9, window.end / 1e9)
-        self._wish = Wish({form: self._path}, start, end, replace=False)
+        self._wish = ExportRequest({form: self._path}, start, end, replace=False)
         self._given_up = Event()
         self.share = 0.0
         """How much of the run is in the file, from 0 to 1."""

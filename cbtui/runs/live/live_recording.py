@@ -16,8 +16,8 @@ Finish: TypeAlias = Callable[[], str]
 """Writes a recording to its end, however long the disk takes, and says what it holds; for any thread."""
 
 _LONGEST_TITLE = 60
-_TRIES = 1000
-_QUICKER = 100
+_MOST_NAMES = 1000
+_NAME_RETRIES = 100
 """How often another console may be quicker to take a name."""
 
 
@@ -59,7 +59,7 @@ class LiveRecording:
         Raises:
             CannotRecordError: it cannot be made.
         """
-        self._recorder = BackgroundRecorder(self._recorder_here(_QUICKER))
+        self._recorder = BackgroundRecorder(self._recorder_here(_NAME_RETRIES))
         self._recorder.take(self._snapshot.events())
         return f"Recording to {self._recorder.path}; {key} again ends it"
 
@@ -103,5 +103,5 @@ def unused_name(title: str, suffix: str = ".mcap") -> Path:
     """A name with the title and the time of day that no file in the current folder has."""
     plain = re.sub(r"[^A-Za-z0-9_-]+", "-", title).strip("-")[:_LONGEST_TITLE] or "run"
     stem = f"{plain}-{time.strftime('%Y%m%d-%H%M%S')}"
-    names = (Path(f"{stem}{'' if number == 1 else f'-{number}'}{suffix}") for number in range(1, _TRIES))
+    names = (Path(f"{stem}{'' if number == 1 else f'-{number}'}{suffix}") for number in range(1, _MOST_NAMES))
     return next((name for name in names if not name.exists()), Path(f"{stem}{suffix}"))

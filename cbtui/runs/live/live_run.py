@@ -7,7 +7,7 @@ from typing import Protocol
 
 from cbtui.engines.session import Deliver, Ended, OpenSession
 from cbtui.runs.live.disk_space import DiskSpaceWatch
-from cbtui.runs.live.live_export import Material
+from cbtui.runs.live.live_export import ExportableRun
 from cbtui.runs.live.live_recording import Finish, LiveRecording
 from sim.engine.commands import (
     CallService,
@@ -47,7 +47,7 @@ _CHANGES_STATE = {Notice, TimeHalted, CommandGiven}
 """Events that say whether time goes on; most batches have none."""
 
 
-class State(Enum):
+class RunState(Enum):
     """How far a run has come."""
 
     STARTING = auto()
@@ -73,7 +73,7 @@ class ShownRun(Protocol):
     speed: float | None
 
     @property
-    def state(self) -> State:
+    def state(self) -> RunState:
         """How far it has come."""
 
     @property
@@ -111,7 +111,7 @@ class ShownRun(Protocol):
     def stop(self) -> str | None:
         """End the source, and say what was saved. Blocks for up to a second, and for a recording's file."""
 
-    def material(self) -> Material:
+    def material(self) -> ExportableRun:
         """What there is to export of the run so far."""
 
     def pause(self) -> None:
@@ -124,7 +124,7 @@ class ShownRun(Protocol):
         """Go up (> 0) or down in ``speeds``."""
 
 
-def beside(speed: float | None, speeds: Sequence[float | None], steps: int) -> float | None:
+def neighbouring_speed(speed: float | None, speeds: Sequence[float | None], steps: int) -> float | None:
     """Return the speed so many steps up (> 0) or down; the last one in that direction has none beside it."""
     return speeds[max(0, min(speeds.index(speed) + steps, len(speeds) - 1))]
 
@@ -150,22 +150,22 @@ class LiveRun:
         self._session = open_session(setup, deliver, ended)
 
     @property
-    def state(self) -> State:
+    def state(self) -> RunState:
         """How far the run has come; a lost engine outdoes everything else."""
         if self.loss is not None:
-            return State.LOST
+            return RunState.LOST
         if self._over or self.timeline.ended is not None:
-            return State.ENDED
+            return RunState.ENDED
         if self.timeline.started is None:
-            return State.STARTING
+            return RunState.STARTING
         if self._silent:
-            return State.SILENT
-        return State.PAUSED if self.paused else State.LIVE
+            return RunState.SILENT
+        return RunState.PAUSED if self.paused else RunState.LIVE
 
     @property
     def alive(self) -> bool:
         """Whether the engine can still be told something."""
-        return self.state in (State.STARTING, State.LIVE, State.PAUSED, State.SILENT)
+        return self.state in (RunState.STARTING, RunState.LIVE, RunState.PAUSED, RunState.SILENT)
 
     @property
     def asked(self) -> KeyboardAsked | None:
@@ -190,7 +190,7 @@ class LiveRun:
     @property
     def can_step(self) -> bool:
         """Whether time stands, and can go on to the next scheduling decision."""
-        return self.virtual and self.state is State.PAUSED
+        return self.virtual and self.state is RunState.PAUSED
 
     def start(self) -> str | None:
         """Start the engine, one that cannot be started counts as lost; a sentence if not all of it works."""
@@ -252,9 +252,9 @@ class LiveRun:
         self._session.send(KeepContents(wanted=False))
         return self.recording.part()
 
-    def material(self) -> Material:
+    def material(self) -> ExportableRun:
         """What there is to export of the run so far."""
-        return Material(self.setup.title, self._events, self.timeline.end, self._events.missing)
+        return ExportableRun(self.setup.title, self._events, self.timeline.end, self._events.missing)
 
     def call(self, data: bool) -> None:
         """Call the SetBool service that the run was set up with, or else the program's first."""
@@ -303,5 +303,5 @@ class LiveRun:
 
     def change_speed(self, steps: int) -> None:
         """Go up (> 0) or down in ``speeds``."""
-        self.speed = beside(self.speed, self.speeds, steps)
+        self.speed = neighbouring_speed(self.speed, self.speeds, steps)
         self._session.send(SetSpeed(self.speed))

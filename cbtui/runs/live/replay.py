@@ -7,13 +7,13 @@ from pathlib import Path
 
 from cbtui.engines.session import Deliver, Ended
 from cbtui.runs.live.disk_space import DiskSpaceWatch
-from cbtui.runs.live.live_export import Material
+from cbtui.runs.live.live_export import ExportableRun
 from cbtui.runs.live.live_recording import Finish
-from cbtui.runs.live.live_run import SPEEDS, State, beside
+from cbtui.runs.live.live_run import SPEEDS, RunState, neighbouring_speed
 from cbtui.runs.live.playhead import Playhead
 from cbtui.runs.recorded.recording_file import setup_of
 from cbtui.runs.setup.own_files import PROGRAMS
-from cbtui.runs.setup.subject import Subject
+from cbtui.runs.setup.shown_program import ShownProgram
 from sim.engine.setup import RunSetup
 from sim.foreign_file import read_text
 from sim.recording import About, Recording, RecordingError, read
@@ -22,9 +22,9 @@ from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 from sim.units import SECOND
 
-_DELIVERED = 2000
+_BATCH = 2000
 """Events that are delivered at once: what the screen takes in between two frames."""
-_GRACE = 0.4
+_STOP_TIMEOUT = 0.4
 """Seconds that a reader gets to notice that it is to stop."""
 
 _LONGEST_SOURCE = 500_000
@@ -62,7 +62,7 @@ class RecordingReader:
     def stop(self) -> None:
         """Read no further. May be called again."""
         self._stopping.set()
-        self._reader.join(_GRACE)
+        self._reader.join(_STOP_TIMEOUT)
 
     def _read(self) -> None:
         try:
@@ -79,7 +79,7 @@ class RecordingReader:
         waiting: list[AnyEvent] = []
         for events in self._recording.batches():
             waiting += events
-            if len(waiting) >= _DELIVERED:
+            if len(waiting) >= _BATCH:
                 self._deliver(waiting)
                 waiting = []
             if self._stopping.is_set():
@@ -130,9 +130,9 @@ class RecordedRun:
         self._reader = RecordingReader(recording, deliver, ended)
 
     @property
-    def state(self) -> State:
+    def state(self) -> RunState:
         """Whether the moment on screen moves or stands."""
-        return State.REPLAY_STANDS if self.paused else State.REPLAY_PLAYS
+        return RunState.REPLAY_STANDS if self.paused else RunState.REPLAY_PLAYS
 
     @property
     def virtual(self) -> bool:
@@ -158,9 +158,9 @@ class RecordedRun:
         """Read no further."""
         self._reader.stop()
 
-    def material(self) -> Material:
+    def material(self) -> ExportableRun:
         """What there is to export: all of the recording, however much of it has been read."""
-        return Material(self.setup.title, _ReadAgain(self._path), self.timeline.end)
+        return ExportableRun(self.setup.title, _ReadAgain(self._path), self.timeline.end)
 
     def pause(self) -> None:
         """Let the moment on screen stand."""
@@ -172,7 +172,7 @@ class RecordedRun:
 
     def change_speed(self, steps: int) -> None:
         """Go up (> 0) or down in ``speeds``."""
-        self.speed = beside(self.speed, self.speeds, steps)
+        self.speed = neighbouring_speed(self.speed, self.speeds, steps)
 
     def played(self, playhead: Playhead, elapsed: Nanoseconds) -> Playhead:
         """Move a playhead on by what is played in ``elapsed`` real time; at the end it stands."""
@@ -183,13 +183,13 @@ class RecordedRun:
         return moved
 
 
-def of_recording(recording: Recording) -> Subject:
+def of_recording(recording: Recording) -> ShownProgram:
     """Return a recording as a subject; the sources are those that were recorded."""
     about = recording.about
     path, source = _source_of(recording)
     setup = setup_of(about) or RunSetup(title=about.title, programs=(), clock=about.clock or "virtual")
     title = _plain(about.title) or _plain(recording.path.name)
-    return Subject(
+    return ShownProgram(
         heading=title,
         guide=_GUIDE.format(title=_escaped(title), facts="\n".join(_facts(recording))),
         node_path=path,

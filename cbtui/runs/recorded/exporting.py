@@ -29,7 +29,7 @@ FORMATS = {
 WIDTH = 1100
 
 
-class Source(Protocol):
+class EventSource(Protocol):
     """Where events come from: an open recording, or the event store of a live run."""
 
     def batches(self) -> "Iterator[list[AnyEvent]]":
@@ -41,7 +41,7 @@ class ExportError(Exception):
 
 
 @dataclass(frozen=True)
-class Wish:
+class ExportRequest:
     """What is to be written: paths by format, and the part (seconds) and width (pixels) of the picture.
 
     Files that exist are only replaced with ``replace``, and each when it is whole.
@@ -58,7 +58,9 @@ def _go_on(_: "Nanoseconds") -> None:
     """Know how far an export has come, and do nothing about it."""
 
 
-def export(source: Source, wish: Wish, reached: "Callable[[Nanoseconds], None]" = _go_on) -> None:
+def export(
+    source: EventSource, wish: ExportRequest, reached: "Callable[[Nanoseconds], None]" = _go_on
+) -> None:
     """Write what is wished for, in one pass over the events; ``reached`` is told how far that has come.
 
     What ``reached`` raises ends the export.
@@ -75,7 +77,8 @@ def export(source: Source, wish: Wish, reached: "Callable[[Nanoseconds], None]" 
     timeline = Timeline(until_ending=True) if {"svg", "markdown"} & wish.outputs.keys() else None
     with ExitStack() as open_files:
         outputs = [
-            open_files.enter_context(_Output(name, path, wish.replace)) for name, path in wish.outputs.items()
+            open_files.enter_context(_ExportFile(name, path, wish.replace))
+            for name, path in wish.outputs.items()
         ]
         for output in outputs:
             output.begin()
@@ -90,7 +93,7 @@ def export(source: Source, wish: Wish, reached: "Callable[[Nanoseconds], None]" 
             output.finish(timeline, wish)
 
 
-class _Output:
+class _ExportFile:
     """One file that is written."""
 
     def __init__(self, name: str, path: Path, replace: bool) -> None:
@@ -129,7 +132,7 @@ class _Output:
             with self._trouble():
                 self._writer.take(batch)
 
-    def finish(self, timeline: "Timeline | None", wish: Wish) -> None:
+    def finish(self, timeline: "Timeline | None", wish: ExportRequest) -> None:
         """Write the rest, or the page that is made of the whole run."""
         page = _page(self._name, timeline, wish) if timeline is not None else ""
         with self._trouble():
@@ -146,7 +149,7 @@ class _Output:
             raise ExportError(f"cannot write {self._path}: {error.strerror}") from None
 
 
-def _page(name: str, timeline: "Timeline", wish: Wish) -> str:
+def _page(name: str, timeline: "Timeline", wish: ExportRequest) -> str:
     """The text of a picture or a report; nothing for other formats."""
     from sim.export import report, svg
 
@@ -157,7 +160,7 @@ def _page(name: str, timeline: "Timeline", wish: Wish) -> str:
     return ""
 
 
-def _window(timeline: "Timeline", wish: Wish) -> "Window":
+def _window(timeline: "Timeline", wish: ExportRequest) -> "Window":
     from sim.trace.model import Window
 
     start = nearest_ns(wish.start)
@@ -167,7 +170,7 @@ def _window(timeline: "Timeline", wish: Wish) -> "Window":
     return Window(start, max(end, start + 1))
 
 
-def _picture_beside(wish: Wish) -> str | None:
+def _picture_beside(wish: ExportRequest) -> str | None:
     """Where the picture is, seen from the report."""
     picture = wish.outputs.get("svg")
     if picture is None:
@@ -175,7 +178,7 @@ def _picture_beside(wish: Wish) -> str | None:
     return Path(os.path.relpath(picture.resolve(), wish.outputs["markdown"].resolve().parent)).as_posix()
 
 
-def _read(source: Source) -> "Iterator[list[AnyEvent]]":
+def _read(source: EventSource) -> "Iterator[list[AnyEvent]]":
     try:
         yield from source.batches()
     except OSError as error:

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from sim.recording import Recording
 from sim.trace.events import AnyEvent
 
-_SOON = 1.0
+_QUIET_TIME = 1.0
 """Seconds that nobody minds to wait without a word."""
 _PERIOD = 0.2
 
@@ -20,7 +20,7 @@ class ReadingProgress:
 
     def batches(self) -> Iterator[list[AnyEvent]]:
         """The events, batch after batch. Raises what the recording's own do."""
-        due = time.monotonic() + _SOON
+        due = time.monotonic() + _QUIET_TIME
         shown = False
         try:
             for events in self._recording.batches():

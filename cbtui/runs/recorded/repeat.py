@@ -27,7 +27,7 @@ class CannotRepeatError(Exception):
     """A recording that cannot be repeated; the text is a sentence that says why."""
 
 
-def repeated(
+def repeated_setup(
     path: Path,
     request: RunRequest,
     *,
@@ -44,7 +44,7 @@ def repeated(
     """
     try:
         recording = read(path)
-        known = _Known()
+        known = _RecordedFacts()
         inputs = inputs_of(map(known.seen, chain.from_iterable(ReadingProgress(recording).batches())))
     except (RecordingError, UnknownInputError) as error:
         raise CannotRepeatError(str(error)) from None
@@ -87,7 +87,7 @@ def _again(recorded: RunSetup, request: RunRequest) -> RunSetup:
 
 
 @dataclass
-class _Known:
+class _RecordedFacts:
     """What its events tell of a recorded run."""
 
     last: int = 0

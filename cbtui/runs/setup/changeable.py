@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass
 
-from cbtui.runs.setup.changes import Place, short
+from cbtui.runs.setup.changes import CallbackPlace
 from cbtui.runs.setup.quantities import USUAL_SENSOR_RATE, Quantity
-from cbtui.runs.setup.subject import Subject
+from cbtui.runs.setup.shown_program import ShownProgram
+from cbtui.text.callback_names import short_name
 from lessons.lesson import number_after
 from sim.engine.setup import RobotUse, RunSetup
 from sim.trace.descriptions import executor_label
@@ -15,10 +16,10 @@ from sim.trace.timeline import Timeline
 
 
 @dataclass(frozen=True, slots=True)
-class Callback:
+class ChangeableCallback:
     """A callback as the run has it; ``group`` tells of its group in words, ``period`` is 0 for no timer."""
 
-    place: Place
+    place: CallbackPlace
     kind: EntityKind
     group: str
     period: Nanoseconds
@@ -30,7 +31,7 @@ class Callback:
 
 
 @dataclass(frozen=True, slots=True)
-class Argument:
+class ChangeableArgument:
     """A number that an argument of the program carries, and what it is now."""
 
     name: str
@@ -39,7 +40,7 @@ class Argument:
 
 
 @dataclass(frozen=True)
-class Changeable:
+class ChangeableSetup:
     """All of it.
 
     ``executor`` is the program's own, ``executor_now`` the run's; ``threads_argument`` carries the number of
@@ -49,21 +50,21 @@ class Changeable:
     executor: str
     executor_now: str
     threads_argument: str | None
-    callbacks: tuple[Callback, ...]
-    arguments: tuple[Argument, ...]
+    callbacks: tuple[ChangeableCallback, ...]
+    arguments: tuple[ChangeableArgument, ...]
     sensor_rate: float | None
 
 
-def changeable(subject: Subject, setup: RunSetup, timeline: Timeline) -> Changeable:
+def changeable(subject: ShownProgram, setup: RunSetup, timeline: Timeline) -> ChangeableSetup:
     """Return what can be changed about a subject's run, as far as it shows."""
     lesson = subject.lesson
     words = setup.programs[0].arguments if setup.programs else ()
     arguments = [
-        Argument(each.argument, Quantity(each.name, each.unit, each.least, each.most), number)
+        ChangeableArgument(each.argument, Quantity(each.name, each.unit, each.least, each.most), number)
         for each in (() if lesson is None else lesson.settings)
         if (number := number_after(each.argument, words)) is not None
     ]
-    return Changeable(
+    return ChangeableSetup(
         subject.executor,
         executor_label(timeline) or subject.executor,
         None if lesson is None else lesson.setup.threads_argument,
@@ -73,17 +74,19 @@ def changeable(subject: Subject, setup: RunSetup, timeline: Timeline) -> Changea
     )
 
 
-def callbacks_of(timeline: Timeline) -> dict[Place, Callback]:
+def callbacks_of(timeline: Timeline) -> dict[CallbackPlace, ChangeableCallback]:
     """Return the callbacks of the programs' own, in the order in which they were made."""
-    found: dict[Place, Callback] = {}
+    found: dict[CallbackPlace, ChangeableCallback] = {}
     for entity in timeline.entities.values():
         if _is_programs_own(entity):
             place = place_of(entity, timeline)
-            found.setdefault(place, Callback(place, entity.kind, _group_of(entity, timeline), entity.period))
+            found.setdefault(
+                place, ChangeableCallback(place, entity.kind, _group_of(entity, timeline), entity.period)
+            )
     return found
 
 
-def place_of(entity: Entity, timeline: Timeline) -> Place:
+def place_of(entity: Entity, timeline: Timeline) -> CallbackPlace:
     """Return the names by which a change names an entity's callback."""
     return timeline.nodes.get(entity.node, ""), entity.callback or entity.name
 
@@ -96,7 +99,7 @@ def _is_programs_own(entity: Entity) -> bool:
 def _group_of(entity: Entity, timeline: Timeline) -> str:
     group = timeline.groups[entity.group]
     others = [
-        short(member.spoken_name)
+        short_name(member.spoken_name)
         for member in timeline.group_members(group.id)
         if member.id != entity.id and _is_programs_own(member)
     ]

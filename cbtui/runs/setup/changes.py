@@ -8,14 +8,16 @@ from typing import TypeAlias, TypeVar
 
 import msgspec
 
+from cbtui.text.callback_names import short_name
 from lessons.lesson import with_argument
 from sim.engine.setup import GroupChange, PeriodChange, ProgramSetup, RealRos, RunSetup
+from sim.plural import counted
 from sim.units import SECOND
 
-Place: TypeAlias = tuple[str, str]
+CallbackPlace: TypeAlias = tuple[str, str]
 """A node's full name ("" for any node), and a callback's name on the trace."""
 
-WISHES = ("own", "shared", "reentrant", "default")
+GROUP_CHOICES = ("own", "shared", "reentrant", "default")
 """The groups that a callback can be put into, as ``GroupChange`` names them."""
 
 
@@ -25,28 +27,28 @@ Value = TypeVar("Value")
 
 @dataclass(frozen=True)
 class Changes:
-    """Other values than the program's; None, and what is not named, leave the program's.
+    """Values that replace the program's own; None, and what is not named, keep the program's.
 
-    ``groups`` are some of ``WISHES``, ``periods`` nanoseconds, ``settings`` numbers by the argument of the
-    program that carries them, ``sensor_rate`` is in Hz, ``seed`` chooses the order of threads. ``real`` is
-    the ROS 2 that it runs on instead of the model, and with that on the real clock.
-    ``whole_tracebacks`` changes what is printed of exceptions, and is no change of the program.
+    ``groups`` holds values of ``GROUP_CHOICES``, ``periods`` nanoseconds, ``settings`` numbers by the name of
+    their command-line argument. ``sensor_rate`` is in Hz; ``seed`` chooses the order of threads. ``real`` is
+    the ROS 2 on which the program runs instead of the model, and with that on the real clock.
+    ``whole_tracebacks`` affects only how exceptions are printed.
     """
 
     threads: int | None = None
-    groups: Mapping[Place, str] = field(default_factory=dict)
-    periods: Mapping[Place, int] = field(default_factory=dict)
+    groups: Mapping[CallbackPlace, str] = field(default_factory=dict)
+    periods: Mapping[CallbackPlace, int] = field(default_factory=dict)
     settings: Mapping[str, float] = field(default_factory=dict)
     sensor_rate: float | None = None
     seed: int | None = None
     real: RealRos | None = None
     whole_tracebacks: bool = field(default=False, compare=False)
 
-    def with_group(self, place: Place, wish: str | None) -> Changes:
+    def with_group(self, place: CallbackPlace, wish: str | None) -> Changes:
         """The same with another group for a callback."""
         return replace(self, groups=_changed(self.groups, place, wish))
 
-    def with_period(self, place: Place, period: int | None) -> Changes:
+    def with_period(self, place: CallbackPlace, period: int | None) -> Changes:
         """The same with another period for a timer, in nanoseconds."""
         return replace(self, periods=_changed(self.periods, place, period))
 
@@ -55,11 +57,11 @@ class Changes:
         left = {name: value for name, value in self.settings.items() if name != argument}
         return replace(self, settings=left if number is None else left | {argument: number})
 
-    def group_of(self, place: Place) -> str | None:
+    def group_of(self, place: CallbackPlace) -> str | None:
         """The group that was chosen for a callback of a node."""
         return self.groups.get(place, self.groups.get(("", place[1])))
 
-    def period_of(self, place: Place) -> int | None:
+    def period_of(self, place: CallbackPlace) -> int | None:
         """The period that was chosen for a timer of a node, in nanoseconds."""
         return self.periods.get(place, self.periods.get(("", place[1])))
 
@@ -105,15 +107,16 @@ class Changes:
     @property
     def words(self) -> str:
         """What is changed, as short as it can be said: ``odom own group, 4 threads``; "" for nothing."""
-        said = [f"{short(callback)} {wish} group" for (_, callback), wish in self.groups.items()]
+        said = [f"{short_name(callback)} {wish} group" for (_, callback), wish in self.groups.items()]
         said += [
-            f"{short(callback)} every {period / SECOND:g} s" for (_, callback), period in self.periods.items()
+            f"{short_name(callback)} every {period / SECOND:g} s"
+            for (_, callback), period in self.periods.items()
         ]
         said += [f"{argument} {number:g}" for argument, number in self.settings.items()]
         if self.sensor_rate is not None:
             said.append(f"sensors {self.sensor_rate:g} Hz")
         if self.threads is not None:
-            said.append(f"{self.threads} thread{'s'[: self.threads - 1]}")
+            said.append(counted(self.threads, "thread"))
         if self.real is not None:
             said.append("on real ROS 2")
         if self.seed is not None:
@@ -137,12 +140,9 @@ def _beyond(ours: Mapping[Key, Value], theirs: Mapping[Key, Value]) -> dict[Key,
     return {key: value for key, value in ours.items() if theirs.get(key) != value}
 
 
-def _changed(all_places: Mapping[Place, Value], place: Place, value: Value | None) -> dict[Place, Value]:
+def _changed(
+    all_places: Mapping[CallbackPlace, Value], place: CallbackPlace, value: Value | None
+) -> dict[CallbackPlace, Value]:
     """The same with another value at a place; what was said of any node's callback of that name goes."""
     left = {key: kept for key, kept in all_places.items() if key not in (place, ("", place[1]))}
     return left if value is None else left | {place: value}
-
-
-def short(callback: str) -> str:
-    """A callback's name as people say it: ``odom`` for ``odom_callback``."""
-    return callback.removesuffix("_callback") or callback

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from cbtui.runs.setup.changeable import Changeable
-from cbtui.runs.setup.changes import Changes, Place
+from cbtui.runs.setup.changeable import ChangeableSetup
+from cbtui.runs.setup.changes import CallbackPlace, Changes
 from sim.trace.events import EntityKind
 from sim.units import SECOND
 
@@ -19,7 +19,7 @@ _MAKERS = {
 }
 
 
-def code_of(changes: Changes, about: Changeable) -> list[str]:
+def code_of(changes: Changes, about: ChangeableSetup) -> list[str]:
     """Return the statements for all changes, some of several lines."""
     kinds = {callback.place: callback.kind for callback in about.callbacks}
     statements = [
@@ -36,7 +36,7 @@ def code_of(changes: Changes, about: Changeable) -> list[str]:
     return list(dict.fromkeys(statements))
 
 
-def code_of_threads(threads: int, about: Changeable) -> str:
+def code_of_threads(threads: int, about: ChangeableSetup) -> str:
     """Return the line that gives the executor a number of threads."""
     if about.threads_argument is not None:
         return code_of_argument(about.threads_argument, threads)
@@ -74,7 +74,7 @@ def code_of_group(callback: str, kind: EntityKind, wish: str) -> list[str]:
     return [f"{name} = {made}", f"{making},\n    callback_group={name})"]
 
 
-def _command_line(changes: Changes, about: Changeable) -> Iterator[str]:
+def _command_line(changes: Changes, about: ChangeableSetup) -> Iterator[str]:
     given = dict(changes.settings)
     if changes.threads is not None and about.threads_argument is not None:
         given[about.threads_argument] = changes.threads
@@ -82,7 +82,7 @@ def _command_line(changes: Changes, about: Changeable) -> Iterator[str]:
         yield "node.py … " + " ".join(f"{name} {number:g}" for name, number in given.items())
 
 
-def _kind(place: Place, kinds: dict[Place, EntityKind]) -> EntityKind:
+def _kind(place: CallbackPlace, kinds: dict[CallbackPlace, EntityKind]) -> EntityKind:
     """What makes a callback: of a node, or of the first that has one of that name."""
     node, name = place
     fitting = (kind for (owner, callback), kind in kinds.items() if callback == name and node in {"", owner})

@@ -6,7 +6,7 @@ from itertools import islice, takewhile
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from cbtui.runs.setup.recent import Kind, Opened
+from cbtui.runs.setup.recent import RecentEntry, RecentKind
 
 if TYPE_CHECKING:
     from sim.recording import Recording
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 PROGRAMS = (".py", ".xml", ".yaml", ".yml")
 """What the names of node and launch files end with."""
 RECORDINGS = (".mcap",)
-_LOOKED_AT = 5000
+_SCAN_LIMIT = 5000
 """How many names of a folder are looked at for a completion."""
 
 
@@ -22,14 +22,14 @@ class CannotOpenError(Exception):
     """Something that cannot be opened; the text is a sentence."""
 
 
-class Completion(NamedTuple):
+class PathCompletion(NamedTuple):
     """The text with what all possible names begin with, and the names, folders with a stroke."""
 
     text: str
     names: Sequence[str]
 
 
-def entry_for(text: str, at: float) -> Opened:
+def entry_for(text: str, at: float) -> RecentEntry:
     """Return what the person means by a path; ``at`` is now, in seconds since 1970.
 
     Raises:
@@ -45,7 +45,7 @@ def entry_for(text: str, at: float) -> Opened:
         raise CannotOpenError(
             f"{typed} is neither a program (.py, a launch file) nor a recording (.mcap) by its name."
         )
-    return Opened(kind, str(path.absolute()), int(at))
+    return RecentEntry(kind, str(path.absolute()), int(at))
 
 
 def check(path: Path) -> None:
@@ -81,13 +81,13 @@ def read_recording(path: Path) -> "Recording":
         raise CannotOpenError(f"{error}.") from None
 
 
-def completed(text: str) -> Completion:
+def completed(text: str) -> PathCompletion:
     """Complete a path as far as it has one way to go on; folders and what can be opened count."""
     folder, beginning = os.path.split(text)
     names = _names(_expanded(folder or "."), beginning)
     if not names:
-        return Completion(text, ())
-    return Completion(os.path.join(folder, _common_beginning(names)), names)  # noqa: PTH118 - as typed
+        return PathCompletion(text, ())
+    return PathCompletion(os.path.join(folder, _common_beginning(names)), names)  # noqa: PTH118 - as typed
 
 
 def _common_beginning(names: Sequence[str]) -> str:
@@ -99,7 +99,7 @@ def _names(folder: Path, beginning: str) -> list[str]:
     try:
         with os.scandir(folder) as found:
             every = [
-                f"{entry.name}/" if entry.is_dir() else entry.name for entry in islice(found, _LOOKED_AT)
+                f"{entry.name}/" if entry.is_dir() else entry.name for entry in islice(found, _SCAN_LIMIT)
             ]
     except (OSError, ValueError):
         return []
@@ -107,10 +107,10 @@ def _names(folder: Path, beginning: str) -> list[str]:
     return sorted(name for name in wanted if name.endswith(("/", *PROGRAMS, *RECORDINGS)))
 
 
-def _kind_of(path: Path) -> Kind | None:
+def _kind_of(path: Path) -> RecentKind | None:
     if path.suffix.lower() in RECORDINGS:
-        return Kind.RECORDING
-    return Kind.PROGRAM if path.suffix.lower() in PROGRAMS else None
+        return RecentKind.RECORDING
+    return RecentKind.PROGRAM if path.suffix.lower() in PROGRAMS else None
 
 
 def _expanded(text: str) -> Path:

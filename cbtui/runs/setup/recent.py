@@ -8,7 +8,7 @@ from pathlib import Path
 import msgspec
 
 from lessons.personal import state_folder
-from lessons.state_file import StateFile, Words
+from lessons.state_file import StateFile, StateFileTexts
 
 FILE_NAME = "recent.jsonl"
 FILES_KEPT = 20
@@ -16,10 +16,10 @@ FILES_KEPT = 20
 LESSONS_KEPT = 500
 """How many lessons are; more than there are."""
 _CLOCKS = ("real", "virtual")
-_WORDS = Words("entry", "what you open is not remembered", "the list goes on")
+_WORDS = StateFileTexts("entry", "what you open is not remembered", "the list goes on")
 
 
-class Kind(StrEnum):
+class RecentKind(StrEnum):
     """What was opened."""
 
     LESSON = "lesson"
@@ -27,13 +27,13 @@ class Kind(StrEnum):
     RECORDING = "recording"
 
 
-class Opened(msgspec.Struct, frozen=True):
+class RecentEntry(msgspec.Struct, frozen=True):
     """Something that was opened: ``what`` is a lesson's id or a file's absolute path.
 
     ``at`` is seconds since 1970; ``arguments`` and ``clock`` are how a program was run.
     """
 
-    kind: Kind
+    kind: RecentKind
     what: str
     at: int
     arguments: tuple[str, ...] = ()
@@ -46,10 +46,10 @@ class Opened(msgspec.Struct, frozen=True):
     @property
     def name(self) -> str:
         """The file's name without its folder, or the lesson's id."""
-        return self.what if self.kind is Kind.LESSON else Path(self.what).name
+        return self.what if self.kind is RecentKind.LESSON else Path(self.what).name
 
     @property
-    def key(self) -> tuple[Kind, str]:
+    def key(self) -> tuple[RecentKind, str]:
         """What two entries have in common that are about the same thing."""
         return self.kind, self.what
 
@@ -59,40 +59,40 @@ def usual_path() -> Path:
     return state_folder() / FILE_NAME
 
 
-class Recents:
+class RecentList:
     """The entries of a file of JSON lines, the newest first.
 
     A file that cannot be read or written leaves the entries in memory, see ``StateFile``. Not thread-safe.
     """
 
     def __init__(self, path: Path | None = None) -> None:
-        self._file = StateFile(usual_path() if path is None else path, Opened, _WORDS)
-        self._entries: tuple[Opened, ...] | None = None
+        self._file = StateFile(usual_path() if path is None else path, RecentEntry, _WORDS)
+        self._entries: tuple[RecentEntry, ...] | None = None
 
     @property
-    def entries(self) -> tuple[Opened, ...]:
+    def entries(self) -> tuple[RecentEntry, ...]:
         """Everything that is remembered; the file is read when this is asked for first."""
         if self._entries is None:
             self._entries = self._read()
         return self._entries
 
     @property
-    def files(self) -> list[Opened]:
+    def files(self) -> list[RecentEntry]:
         """The programs and recordings."""
-        return [entry for entry in self.entries if entry.kind is not Kind.LESSON]
+        return [entry for entry in self.entries if entry.kind is not RecentKind.LESSON]
 
     @property
     def lessons(self) -> dict[str, int]:
         """When each lesson was opened last, by its id."""
-        return {entry.what: entry.at for entry in self.entries if entry.kind is Kind.LESSON}
+        return {entry.what: entry.at for entry in self.entries if entry.kind is RecentKind.LESSON}
 
-    def note(self, entry: Opened) -> None:
+    def note(self, entry: RecentEntry) -> None:
         """Remember that something was opened."""
         with self._file.lock():
             before = self._read()
             self._keep([entry, *(each for each in before if each.key != entry.key)])
 
-    def forget(self, entry: Opened) -> None:
+    def forget(self, entry: RecentEntry) -> None:
         """Take something off the list."""
         with self._file.lock():
             self._keep([each for each in self._read() if each.key != entry.key])
@@ -101,7 +101,7 @@ class Recents:
         """Return what went wrong and was not told yet."""
         return self._file.troubles()
 
-    def _read(self) -> tuple[Opened, ...]:
+    def _read(self) -> tuple[RecentEntry, ...]:
         """Read the file again: another console may have written it."""
         content = self._file.read()
         if content is None:
@@ -111,15 +111,15 @@ class Recents:
             self._file.write(entries)
         return entries
 
-    def _keep(self, entries: Iterable[Opened]) -> None:
+    def _keep(self, entries: Iterable[RecentEntry]) -> None:
         self._entries = _bounded(entries)
         self._file.write(self._entries)
 
 
-def _bounded(entries: Iterable[Opened]) -> tuple[Opened, ...]:
+def _bounded(entries: Iterable[RecentEntry]) -> tuple[RecentEntry, ...]:
     every = list(entries)
-    files = (entry for entry in every if entry.kind is not Kind.LESSON)
-    lessons = (entry for entry in every if entry.kind is Kind.LESSON)
+    files = (entry for entry in every if entry.kind is not RecentKind.LESSON)
+    lessons = (entry for entry in every if entry.kind is RecentKind.LESSON)
     kept = [*islice(files, FILES_KEPT), *islice(lessons, LESSONS_KEPT)]
     return tuple(sorted(kept, key=every.index))
 
@@ -133,7 +133,7 @@ _UNITS = (
 """Seconds of a unit, how many of them are not said in it any more, and what one and several are called."""
 
 
-def ago(at: int, now: float) -> str:
+def time_ago(at: int, now: float) -> str:
     """Say in words how long before ``now`` a moment was; both are seconds since 1970."""
     passed = max(0, int(now) - at)
     if passed < 60:

@@ -4,12 +4,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from cbtui.screens.parts.navigation import TimeNavigation
-from cbtui.screens.parts.part import Part
+from cbtui.screens.parts.part import ScreenPart
 from cbtui.widgets.lanes import Lanes, Selection, start_of
 
 
 @dataclass
-class BarSelection(Part):
+class BarSelection(ScreenPart):
     """Selects one bar or lane, on one of the screen's lanes; ``changed`` is called when another one is."""
 
     lanes: Callable[[], Sequence[Lanes]]
@@ -34,7 +34,7 @@ class BarSelection(Part):
             lanes.selection = selection if lanes is (on or every[0]) else None
         self.changed()
 
-    def pick(self, message: Lanes.Picked) -> None:
+    def pick(self, message: Lanes.BarPicked) -> None:
         """Select what was pointed at, and go to that moment."""
         self.select(message.selection, message.control)
         self.navigation.seek(message.at)

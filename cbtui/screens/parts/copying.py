@@ -7,9 +7,9 @@ from textual.screen import Screen
 
 from cbtui.runs.live.live_run import ShownRun
 from cbtui.screens.parts.navigation import TimeNavigation
-from cbtui.screens.parts.part import Host, Part
+from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
-from cbtui.widgets.diagnosis import call_note, diagnose
+from cbtui.widgets.diagnosis import call_note, diagnosis_at
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.details import details_of_selection
 from sim.durations import duration, timestamp
@@ -20,11 +20,11 @@ from sim.trace.timeline import Timeline
 
 
 @dataclass
-class DetailsCopy(Part):
+class DetailsCopy(ScreenPart):
     """Copies what is selected, or else what the moment on screen means."""
 
     screen: Screen[None]
-    host: Host
+    host: ScreenHost
     runs: RunController[ShownRun]
     navigation: TimeNavigation
     heading: str
@@ -48,7 +48,7 @@ def summary(heading: str, timeline: Timeline, now: Nanoseconds, concurrency: Con
     """Say what a moment means, who runs and who waits for what."""
     label = executor_label(timeline)
     yield f"{heading}, t {timestamp(now)}" + (f", {label}" if label else "")
-    yield diagnose(timeline, now, concurrency).text
+    yield diagnosis_at(timeline, now, concurrency).text
     note = call_note(timeline, now)
     if note:
         yield note

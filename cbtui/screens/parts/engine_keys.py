@@ -3,20 +3,20 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from cbtui.runs.live.live_run import LiveRun, ShownRun, State
+from cbtui.runs.live.live_run import LiveRun, RunState, ShownRun
 from cbtui.runs.recorded.recording_file import CannotRecordError
 from cbtui.screens.parts.finishing import FileFinisher
 from cbtui.screens.parts.panes import PaneLayout
-from cbtui.screens.parts.part import Host, Part
+from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.shell import ShellView
 
 
 @dataclass
-class PaceKeys(Part):
+class PaceKeys(ScreenPart):
     """Pauses a run, lets it go on, and changes its speed."""
 
-    host: Host
+    host: ScreenHost
     runs: RunController[ShownRun]
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
@@ -52,10 +52,10 @@ class PaceKeys(Part):
 
 
 @dataclass
-class RecordingKey(Part):
+class RecordingKey(ScreenPart):
     """Records stretches of a run to files in the current folder."""
 
-    host: Host
+    host: ScreenHost
     runs: RunController[LiveRun]
     finisher: FileFinisher
 
@@ -77,7 +77,7 @@ class RecordingKey(Part):
 
 
 @dataclass
-class WorldKeys(Part):
+class WorldKeys(ScreenPart):
     """Calls the service that the run was set up with, and puts the robot back."""
 
     runs: RunController[LiveRun]
@@ -85,7 +85,7 @@ class WorldKeys(Part):
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer it to an engine that is there; a robot is put back by one that answers."""
         run = self.runs.run
-        return run.alive and (action != "reset_world" or run.state is not State.SILENT)
+        return run.alive and (action != "reset_world" or run.state is not RunState.SILENT)
 
     def action_call_service(self) -> None:
         """Call the lesson's service with true."""
@@ -101,7 +101,7 @@ class WorldKeys(Part):
 
 
 @dataclass
-class TypingKeys(Part):
+class TypingKeys(ScreenPart):
     """Goes to the line where ``ros2`` lines are typed, or input for the programs."""
 
     runs: RunController[LiveRun]

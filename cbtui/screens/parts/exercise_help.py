@@ -8,10 +8,9 @@ from textual.screen import Screen
 
 from cbtui.keys.keymap import keymap_of
 from cbtui.keys.named_keys import with_keys_in_force
-from cbtui.learning.lesson_page import Part as PagePart
-from cbtui.learning.lesson_page import Standing
+from cbtui.learning.lesson_page import PageSection, PageState
 from cbtui.screens.parts.learning import Learning
-from cbtui.screens.parts.part import Host, Part
+from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from lessons.description import Exercise
 from sim.foreign_file import MOST_OF_A_PROGRAM, read_text
 
@@ -20,7 +19,7 @@ _READING = 15.0
 
 
 @dataclass
-class ExerciseHelp(Part):
+class ExerciseHelp(ScreenPart):
     """Gives hints and shows the solution, once the exercise can be read.
 
     ``is_readable`` tells whether it can, ``is_done`` whether no hint is wanted any more; ``file`` is the
@@ -28,10 +27,10 @@ class ExerciseHelp(Part):
     """
 
     screen: Screen[None]
-    host: Host
+    host: ScreenHost
     learning: Learning
     file: Path | None
-    is_readable: Callable[[Standing], bool]
+    is_readable: Callable[[PageState], bool]
     is_done: Callable[[], bool] = lambda: False
 
     @property
@@ -58,7 +57,7 @@ class ExerciseHelp(Part):
         learning.store.take_hint(self.learning.lesson.id, number)
         await learning.learnt()
         if learning.guide.display:
-            learning.guide.go_to(PagePart.HINTS)
+            learning.guide.go_to(PageSection.HINTS)
         else:
             title = f"Hint {number} of {len(exercise.hints)}"
             hint = with_keys_in_force(exercise.hints[number - 1], keymap_of(self.screen.app))
@@ -66,7 +65,7 @@ class ExerciseHelp(Part):
 
     def action_solution(self) -> None:
         """Show the solution; the first time, ask whether that is wanted."""
-        from cbtui.screens.solution import AskingScreen  # with Pygments
+        from cbtui.screens.solution import ConfirmSolutionScreen  # with Pygments
 
         exercise, progress = self._exercise, self.learning.progress
         if exercise is None:
@@ -75,7 +74,7 @@ class ExerciseHelp(Part):
             self._show_solution(True)
         else:
             left = len(exercise.hints) - progress.hints
-            self.host.ask(AskingScreen(left, self.host.charset), self._show_solution)
+            self.host.ask(ConfirmSolutionScreen(left, self.host.charset), self._show_solution)
 
     def _show_solution(self, wanted: bool | None) -> None:
         from cbtui.screens.solution import SolutionScreen

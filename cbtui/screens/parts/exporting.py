@@ -7,25 +7,25 @@ from time import monotonic
 
 from cbtui.runs.live.live_export import LiveExport
 from cbtui.runs.live.live_run import ShownRun
-from cbtui.screens.export import Choice, ExportScreen
+from cbtui.screens.export import ExportChoice, ExportScreen
 from cbtui.screens.parts.finishing import FileFinisher
 from cbtui.screens.parts.navigation import TimeNavigation
-from cbtui.screens.parts.part import Host, Part
+from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
 
-EVERY = 0.25
+PROGRESS_INTERVAL = 0.25
 """Seconds after which it is told anew how far an export has come."""
-_SOON = 1.0
+_PROGRESS_AFTER = 1.0
 """Seconds after which it is told how far an export has come."""
-_GRACE = 3.0
+_EXIT_TIMEOUT = 3.0
 """Seconds that an export gets to come to its end when the screen is left."""
 
 
 @dataclass
-class Exports(Part):
+class Exports(ScreenPart):
     """Writes one export at a time, while the run and the screen go on."""
 
-    host: Host
+    host: ScreenHost
     runs: RunController[ShownRun]
     navigation: TimeNavigation
     finisher: FileFinisher
@@ -37,7 +37,7 @@ class Exports(Part):
     def percent(self) -> int | None:
         """How many per cent of an export are done; None if there is none that takes its time."""
         export = self._export
-        if export is None or export.over or self.clock() - self._began < _SOON:
+        if export is None or export.over or self.clock() - self._began < _PROGRESS_AFTER:
             return None
         return int(100 * export.share)
 
@@ -51,7 +51,7 @@ class Exports(Part):
     def leave(self) -> None:
         """Let an export come to its end, but not for long: what is half done then is taken away."""
         if self._export is not None:
-            asyncio.get_running_loop().call_later(_GRACE, self._export.give_up)
+            asyncio.get_running_loop().call_later(_EXIT_TIMEOUT, self._export.give_up)
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer an export of what there is."""
@@ -65,7 +65,7 @@ class Exports(Part):
             done = int(100 * self._export.share)
             self.host.tell(f"An export is being written, {done} % of it so far; the next can begin after it")
 
-    def _begin(self, choice: Choice | None) -> None:
+    def _begin(self, choice: ExportChoice | None) -> None:
         if choice is None:
             return
         window = self.navigation.window if choice.on_screen else None

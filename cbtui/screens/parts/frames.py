@@ -14,14 +14,14 @@ nobody reads as fast as lanes are seen to move."""
 _LANES_A_TEXT = 12
 """Frames of the lanes for each of log and code: lines that scroll past are read no faster."""
 
-_RESTS = 2.0
+_REST_FACTOR = 2.0
 """Seconds of rest for each second that a frame had to wait for a processor."""
 
-_LONGEST_REST = 0.5
+_MAX_REST = 0.5
 """Seconds after which a frame is drawn however short of processors the machine is."""
 
 
-class Extent(Enum):
+class FrameContent(Enum):
     """What a frame draws."""
 
     NOTHING = auto()
@@ -53,27 +53,27 @@ class FrameSchedule:
         """Note that the run has gone on."""
         self._grown = True
 
-    def next(self) -> Extent:
+    def next(self) -> FrameContent:
         """Count a frame, and return what it draws."""
         if self._clock() < self._rests_until and not self._stale:
-            return Extent.NOTHING
+            return FrameContent.NOTHING
         self._frames += 1
         if self._stale or ((self._grown or self._texts_behind) and self._frames % _LANES_A_TEXT == 0):
-            return Extent.ALL
+            return FrameContent.ALL
         if not self._grown:
-            return Extent.NOTHING
-        return Extent.ALL_BUT_TEXTS if self._frames % _LANES_A_PANE == 0 else Extent.LANES
+            return FrameContent.NOTHING
+        return FrameContent.ALL_BUT_TEXTS if self._frames % _LANES_A_PANE == 0 else FrameContent.LANES
 
     def is_due_before_next(self) -> bool:
         """Tell whether to draw without waiting for a frame: not if that was just done."""
         return self._stale and self._clock() - self._drawn_at >= 1 / FRAMES_A_SECOND
 
-    def drawn(self, extent: Extent) -> None:
+    def drawn(self, extent: FrameContent) -> None:
         """Note that everything, or all but the texts, is being drawn."""
         self._stale = self._grown = False
-        self._texts_behind = extent is not Extent.ALL
+        self._texts_behind = extent is not FrameContent.ALL
         self._drawn_at = self._clock()
 
     def rest(self, waited: float) -> None:
         """Draw nothing unasked for a while: the last frame waited so many seconds for a processor."""
-        self._rests_until = self._clock() + min(_RESTS * waited, _LONGEST_REST)
+        self._rests_until = self._clock() + min(_REST_FACTOR * waited, _MAX_REST)

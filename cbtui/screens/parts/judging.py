@@ -4,12 +4,12 @@ import asyncio
 from dataclasses import replace
 from pathlib import Path
 
-from cbtui.runs.judged.checking import Checked, Observed
+from cbtui.runs.judged.checking import CheckedFile, ObservedRun
 from cbtui.runs.judged.run_budget import RunBudget
 from cbtui.runs.live.file_watch import content_of
 from cbtui.runs.live.live_run import LiveRun
-from cbtui.widgets.checks import Sheet, Standing
-from cbtui.widgets.checks.exercise_sheet import ExerciseWords, Keys
+from cbtui.widgets.checks import ChecksSheet, CheckStatus
+from cbtui.widgets.checks.exercise_sheet import ExerciseKeys, ExerciseTexts
 from lessons.judge import Judge
 from lessons.lesson import Lesson
 from sim.trace.model import Nanoseconds
@@ -25,7 +25,7 @@ class Judging:
         self.file = file
         self.budget = RunBudget()
         """What the run may take, and has taken."""
-        self.sheet: Sheet | None = None
+        self.sheet: ChecksSheet | None = None
         """What came of the run on screen; None as long as it is not judged."""
         self.is_gone = False
         """Whether there is no file."""
@@ -55,20 +55,20 @@ class Judging:
             self.budget.pass_time()
         return self.budget.spent(run.timeline, self.file.name)
 
-    async def judge(self, observed: Observed) -> Checked:
+    async def judge(self, observed: ObservedRun) -> CheckedFile:
         """Judge a run that is over, on the thread that draws it: others may not read it meanwhile."""
         judged = []
         if observed.trouble is None:
             for check in self._judge.checks:
                 judged.append(self._judge.judge(check, observed.timeline))
                 await asyncio.sleep(0)
-        return Checked(tuple(judged), len(self._judge.checks), observed)
+        return CheckedFile(tuple(judged), len(self._judge.checks), observed)
 
-    def words(self, keys: Keys) -> ExerciseWords:
+    def words(self, keys: ExerciseKeys) -> ExerciseTexts:
         """Return what makes sentences on the exercise that name these keys."""
-        return ExerciseWords(self._lesson, self._judge.checks, self.file.name, self._following, keys)
+        return ExerciseTexts(self._lesson, self._judge.checks, self.file.name, self._following, keys)
 
-    def sheet_at(self, end: Nanoseconds, words: ExerciseWords) -> Sheet:
+    def sheet_at(self, end: Nanoseconds, words: ExerciseTexts) -> ChecksSheet:
         """Return what to show of the run, which has come to ``end``."""
         sheet = self.sheet or words.running(end)
-        return replace(sheet, news=words.gone, standing=Standing.FAILED) if self.is_gone else sheet
+        return replace(sheet, news=words.gone, standing=CheckStatus.FAILED) if self.is_gone else sheet

@@ -9,7 +9,7 @@ from textual.widget import Widget
 from cbtui.keys.action import Action, Scope
 from cbtui.looks.theme import Charset
 from cbtui.screens.layout import Layout
-from cbtui.screens.parts.part import Parts
+from cbtui.screens.parts.part import ScreenParts
 from cbtui.screens.sized import SizedScreen
 from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.code import CodeView
@@ -52,7 +52,7 @@ class OfferedKeys:
     """Tells which actions have a meaning now, and shows their keys."""
 
     screen: SizedScreen[Any]
-    parts: Parts
+    parts: ScreenParts
     charset: Charset
     _shown: tuple[Action, ...] = ()
 

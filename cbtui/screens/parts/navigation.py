@@ -6,20 +6,20 @@ from dataclasses import dataclass, field
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.live.playhead import SPANS, Playhead
 from cbtui.screens.moment import MomentScreen
-from cbtui.screens.parts.part import Asker, Part
+from cbtui.screens.parts.part import DialogHost, ScreenPart
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 
 @dataclass
-class TimeNavigation(Part):
+class TimeNavigation(ScreenPart):
     """Holds the playhead of a screen, and moves it through the time of one run or of several.
 
     ``end`` is the last moment there is, ``moved`` is called whenever the playhead was moved, and ``live``
     gives the run that can be asked for later moments, where there is one.
     """
 
-    host: Asker
+    host: DialogHost
     timelines: Callable[[], Sequence[Timeline]]
     end: Callable[[], Nanoseconds]
     moved: Callable[[], None]

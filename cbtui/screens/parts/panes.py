@@ -9,7 +9,7 @@ from textual.widget import Widget
 
 from cbtui.keys.action import Scope
 from cbtui.keys.keymap import keymap_of
-from cbtui.screens.parts.part import Host, Part
+from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.terminal.editor import EditorError, edit
 from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.code import CodeView
@@ -30,14 +30,14 @@ _INSIDES: dict[str, type[Widget]] = {"log": LogLines, "shell": ShellOutput}
 
 
 @dataclass
-class PaneLayout(Part):
+class PaneLayout(ScreenPart):
     """Arranges the panes ``names`` of a screen, the current one of which can fill it, as the lanes can.
 
     ``changes`` tells in words what the person changed about the run.
     """
 
     screen: Screen[None]
-    host: Host
+    host: ScreenHost
     names: tuple[str, ...]
     current: str
     changes: Callable[[], str]

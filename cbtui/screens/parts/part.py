@@ -11,7 +11,7 @@ from cbtui.looks.theme import Charset
 from cbtui.screens.console import Console
 
 
-class Part:
+class ScreenPart:
     """A part of a screen. Its methods ``action_<id>`` do what the registry's actions are on that screen."""
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
@@ -19,7 +19,7 @@ class Part:
         return True
 
 
-class Asker(Protocol):
+class DialogHost(Protocol):
     """A screen that asks questions."""
 
     @property
@@ -34,7 +34,7 @@ class Asker(Protocol):
         """Lay another screen over this one; ``take`` gets what it comes to."""
 
 
-class Host(Asker, Protocol):
+class ScreenHost(DialogHost, Protocol):
     """A screen as its parts see it."""
 
     @property
@@ -51,11 +51,13 @@ class Host(Asker, Protocol):
         """Return the key in force of one of a lesson's actions, as people write it."""
 
 
-class Parts:
+class ScreenParts:
     """The actions of a screen: those of its parts, its own methods ``action_<id>``, and more by their ids."""
 
-    def __init__(self, screen: Screen[Any], scope: Scope, *parts: Part, **more: Callable[[], object]) -> None:
-        self._homes: dict[str, Part] = {}
+    def __init__(
+        self, screen: Screen[Any], scope: Scope, *parts: ScreenPart, **more: Callable[[], object]
+    ) -> None:
+        self._homes: dict[str, ScreenPart] = {}
         for part in parts:
             for name in dir(part):
                 if name.startswith("action_"):

@@ -7,14 +7,13 @@ from dataclasses import dataclass
 from textual.message import Message
 from textual.screen import Screen
 
-from cbtui.learning.lesson_page import Part as PagePart
-from cbtui.learning.lesson_page import introduction, predicted
-from cbtui.learning.outcome import Outcome, OutcomeRun
+from cbtui.learning.lesson_page import PageSection, all_predicted, introduction
+from cbtui.learning.outcome import OutcomeRun, PredictionOutcome
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.screens.parts.learning import Learning
-from cbtui.screens.parts.part import Host, Part
+from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
-from cbtui.screens.prediction import PredictionScreen, Way
+from cbtui.screens.prediction import PredictionExit, PredictionScreen
 
 _SECOND = 1_000_000_000
 _TIMEOUT = 1.0
@@ -22,18 +21,18 @@ _TIMEOUT = 1.0
 
 
 @dataclass
-class Predictions(Part):
+class Predictions(ScreenPart):
     """Asks what the learner expects, and tells what is true when enough of the run was seen."""
 
     class Found(Message):
         """The run that predictions are held against is over."""
 
-        def __init__(self, outcome: Outcome) -> None:
+        def __init__(self, outcome: PredictionOutcome) -> None:
             super().__init__()
             self.outcome = outcome
 
     screen: Screen[None]
-    host: Host
+    host: ScreenHost
     runs: RunController[LiveRun]
     learning: Learning
     _run: OutcomeRun | None = None
@@ -53,9 +52,9 @@ class Predictions(Part):
     def can_predict(self) -> bool:
         """Whether there is a question left, and nothing was shown yet that answers it."""
         progress = self.learning.progress
-        return not progress.seen and not predicted(self.learning.lesson, progress)
+        return not progress.seen and not all_predicted(self.learning.lesson, progress)
 
-    def ask(self, go_on: Callable[[Way | None], Awaitable[None]]) -> None:
+    def ask(self, go_on: Callable[[PredictionExit | None], Awaitable[None]]) -> None:
         """Ask the questions that are left."""
         lesson, learning = self.learning.lesson, self.learning
         screen = PredictionScreen(
@@ -70,7 +69,7 @@ class Predictions(Part):
     def action_predict(self) -> None:
         """Answer the questions that are left."""
 
-        async def go_on(_: Way | None) -> None:
+        async def go_on(_: PredictionExit | None) -> None:
             await self.learning.learnt()
 
         if self.can_predict:
@@ -106,8 +105,8 @@ class Predictions(Part):
         else:
             await self._explain()
 
-    async def _explain_after(self, way: Way | None) -> None:
-        if way is Way.ON:
+    async def _explain_after(self, way: PredictionExit | None) -> None:
+        if way is PredictionExit.ON:
             await self._explain()
         else:
             await self.learning.learnt()
@@ -120,7 +119,7 @@ class Predictions(Part):
         self._wanted = True
         self._find_out()
         await learning.learnt()
-        learning.read(PagePart.SHOWN if self.learning.lesson.predictions else PagePart.EXPLANATION)
+        learning.read(PageSection.SHOWN if self.learning.lesson.predictions else PageSection.EXPLANATION)
 
     def _find_out(self) -> None:
         """Run the lesson once more beside the run on screen, if it is not known yet what is true."""
@@ -141,4 +140,4 @@ class Predictions(Part):
         self.learning.finds_out = False
         await self.learning.learnt(message.outcome)
         if self._wanted:
-            self.learning.guide.go_to(PagePart.SHOWN)
+            self.learning.guide.go_to(PageSection.SHOWN)

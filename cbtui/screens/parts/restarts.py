@@ -7,25 +7,31 @@ from typing import Any
 
 from textual.screen import Screen
 
-from cbtui.runs.compared_runs import Side, side_of
-from cbtui.runs.live.live_run import LiveRun, State
-from cbtui.runs.setup.changeable import Callback, Changeable, callbacks_of, changeable, place_of
+from cbtui.runs.compared_runs import ComparedSide, compared_side
+from cbtui.runs.live.live_run import LiveRun, RunState
+from cbtui.runs.setup.changeable import (
+    ChangeableCallback,
+    ChangeableSetup,
+    callbacks_of,
+    changeable,
+    place_of,
+)
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.equivalent_code import code_of
-from cbtui.runs.setup.subject import Subject
+from cbtui.runs.setup.shown_program import ShownProgram
 from cbtui.screens.compare import CompareScreen
-from cbtui.screens.parts.part import Host, Part
+from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
 from cbtui.screens.parts.selection import LaneSelection
 from cbtui.screens.setup import SetupScreen
-from cbtui.screens.setup_rows import GroupRow, NumberRow, Row, ThreadsRow
+from cbtui.screens.setup_rows import GroupRow, NumberRow, SettingRow, ThreadsRow
 
 _TOLD = 2
 """Statements of code that are told of as a run begins again; more would cover what there is to see."""
 
 
 @dataclass
-class Restarts(Part):
+class Restarts(ScreenPart):
     """Runs again with changes, and keeps the run before.
 
     ``changes`` is what the run on screen has other than its program says. ``began`` is called when another
@@ -33,13 +39,13 @@ class Restarts(Part):
     run again before it is over.
     """
 
-    host: Host
+    host: ScreenHost
     runs: RunController[LiveRun]
     changes: Changes
     began: Callable[[], None]
     speed: Callable[[], float | None]
     at_any_time: bool = False
-    before: Side | None = None
+    before: ComparedSide | None = None
     """The run before the one on screen."""
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
@@ -47,7 +53,7 @@ class Restarts(Part):
         run = self.runs.run
         match action:
             case "run_again":
-                return self.at_any_time or not run.alive or run.state is State.SILENT
+                return self.at_any_time or not run.alive or run.state is RunState.SILENT
             case "compare":
                 return self.before is not None
         return True
@@ -60,7 +66,7 @@ class Restarts(Part):
         """Run again with these changes, at a speed."""
         before = self.runs.run
         if before.timeline.end > 0:
-            self.before = side_of(before, self.changes).at_rest()
+            self.before = compared_side(before, self.changes).at_rest()
         self.changes = changes
         self.runs.begin(speed)
         self.began()
@@ -78,19 +84,19 @@ class Restarts(Part):
     def action_compare(self) -> None:
         """Put this run and the one before above each other."""
         if self.before is not None:
-            now = side_of(self.runs.run, self.changes)
+            now = compared_side(self.runs.run, self.changes)
             self.host.ask(CompareScreen(self.before, now, self.host.charset), None)
 
 
 @dataclass
-class SetUpKeys(Part):
+class SetUpKeys(ScreenPart):
     """Changes how a program is set up, and runs it again so."""
 
-    host: Host
+    host: ScreenHost
     runs: RunController[LiveRun]
     restarts: Restarts
     selection: LaneSelection
-    subject: Subject
+    subject: ShownProgram
 
     def action_threads(self) -> None:
         """Ask for a number of threads."""
@@ -111,19 +117,19 @@ class SetUpKeys(Part):
         self._open_set_up(lambda row: isinstance(row, NumberRow) and row.what in {name, name or row.what})
 
     @property
-    def _changeable(self) -> Changeable:
+    def _changeable(self) -> ChangeableSetup:
         run = self.runs.run
         return changeable(self.subject, run.setup, run.timeline)
 
     @property
-    def _selected_callback(self) -> Callback | None:
+    def _selected_callback(self) -> ChangeableCallback | None:
         """The selected callback, if it is one of the program's own."""
         selected, timeline = self.selection.callback, self.runs.timeline
         # A run that begins anew has yet to make it.
         entity = None if selected is None else timeline.entities.get(selected)
         return None if entity is None else callbacks_of(timeline).get(place_of(entity, timeline))
 
-    def _ask(self, row: Row) -> None:
+    def _ask(self, row: SettingRow) -> None:
         """Ask for one thing, and run again with the answer at once."""
 
         async def take(answer: Any) -> None:
@@ -133,7 +139,7 @@ class SetUpKeys(Part):
         question: Screen[Any] = row.ask(self.restarts.changes, self.host.charset)
         self.host.ask(question, take)
 
-    def _open_set_up(self, first: Callable[[Row], bool]) -> None:
+    def _open_set_up(self, first: Callable[[SettingRow], bool]) -> None:
         screen = SetupScreen(self._changeable, self.restarts.changes, first, self.host.charset)
         self.host.ask(screen, self._run_with)
 

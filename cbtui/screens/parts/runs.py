@@ -10,16 +10,16 @@ from textual.message import Message
 from cbtui.engines.session import Deliver, Ended
 from cbtui.runs.live.findings import FindingsMonitor
 from cbtui.runs.live.live_run import ShownRun
-from cbtui.terminal.processor import not_computing, waited
+from cbtui.terminal.processor import cpu_wait, time_off_cpu
 from sim.trace.events import AnyEvent
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.timeline import Timeline
 
-_AT_ONCE = 256
+_MESSAGE_SIZE = 256
 """Events that the screen takes before keys have their turn: of lines as long as they come, a megabyte."""
 _TIMEOUT = 1.0
 """Seconds for which a source waits for a screen that takes nothing: it may be gone."""
-_LONGEST_REST = 0.1
+_MAX_REST = 0.1
 """Seconds after which more is handed over, however short of processors the machine is."""
 
 RunT_co = TypeVar("RunT_co", bound=ShownRun, covariant=True)
@@ -89,13 +89,13 @@ class RunController(Generic[RunT_co]):
         Another thread is held up until the screen has taken a part, and then rests for as long as both had
         to wait for a processor: a process that always wants one gets it late when a key comes.
         """
-        for first in range(0, len(events), _AT_ONCE):
-            message = self.Delivered(run, events[first : first + _AT_ONCE])
-            before = not_computing()
+        for first in range(0, len(events), _MESSAGE_SIZE):
+            message = self.Delivered(run, events[first : first + _MESSAGE_SIZE])
+            before = time_off_cpu()
             self._post(message)
             if threading.current_thread() is not threading.main_thread():
                 message.taken.wait(_TIMEOUT)
-                time.sleep(min(waited(before), _LONGEST_REST))
+                time.sleep(min(cpu_wait(before), _MAX_REST))
 
     def take(self, message: Delivered) -> str | None:
         """Add events to the run, if they are of the one on screen; a sentence on what goes wrong."""

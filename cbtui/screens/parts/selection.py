@@ -10,24 +10,24 @@ from cbtui.screens.diagnoses import DiagnosesScreen
 from cbtui.screens.parts.bars import BarSelection
 from cbtui.screens.parts.navigation import TimeNavigation
 from cbtui.screens.parts.panes import PaneLayout
-from cbtui.screens.parts.part import Host, Part
+from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.code import CodeView
 from cbtui.widgets.lanes import Lanes, Selection
 from cbtui.widgets.lanes.rows import all_lanes
-from cbtui.widgets.lanes.selection import beside
+from cbtui.widgets.lanes.selection import neighbouring_bar
 from sim.trace.events import EntityId
 
 
 @dataclass
-class LaneSelection(Part):
+class LaneSelection(ScreenPart):
     """Goes along the lanes of one run, and from them to the code and back.
 
     ``service`` has a lane before its first call.
     """
 
     screen: Screen[None]
-    host: Host
+    host: ScreenHost
     runs: RunController[ShownRun]
     navigation: TimeNavigation
     bars: BarSelection
@@ -118,4 +118,4 @@ class LaneSelection(Part):
         if lane is None:
             return None
         after = min(self.navigation.now + 1, timeline.end)
-        return Selection(lane, beside(timeline, lane, after, -1))
+        return Selection(lane, neighbouring_bar(timeline, lane, after, -1))

@@ -5,17 +5,18 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from cbtui.runs.judged.check_text import faults, verdict_line
-from cbtui.runs.judged.checking import Checked
-from cbtui.widgets.checks import Row, Sheet, Standing
+from cbtui.runs.judged.checking import CheckedFile
+from cbtui.widgets.checks import CheckRow, ChecksSheet, CheckStatus
 from lessons.checks import Check
-from lessons.judge import Judged
+from lessons.judge import JudgedCheck
 from lessons.lesson import Lesson
+from sim.plural import counted
 from sim.trace.model import Nanoseconds
 from sim.units import SECOND
 
 
 @dataclass(frozen=True)
-class Keys:
+class ExerciseKeys:
     """The keys that sentences name, as people write them."""
 
     editor: str
@@ -24,36 +25,37 @@ class Keys:
     next_lesson: str
 
 
-class ExerciseWords:
+class ExerciseTexts:
     """Words on one lesson's exercise; ``name`` is the learner's file's, ``following`` the next lesson."""
 
     def __init__(
-        self, lesson: Lesson, checks: Sequence[Check], name: str, following: Lesson | None, keys: Keys
+        self, lesson: Lesson, checks: Sequence[Check], name: str, following: Lesson | None, keys: ExerciseKeys
     ) -> None:
         assert lesson.exercise is not None, "only exercises are told about here"
         self._asks = " ".join(lesson.exercise.asks.split())
         self._seconds = lesson.run.seconds
-        self._open = tuple(Row(check.asks) for check in checks)
+        self._open = tuple(CheckRow(check.asks) for check in checks)
         self._name = name
         self._following = following
         self._keys = keys
 
-    def running(self, at: Nanoseconds) -> Sheet:
+    def running(self, at: Nanoseconds) -> ChecksSheet:
         """Tell of a run that has come to a moment, and is not judged yet."""
         news = f"{self._name} runs: {at / SECOND:.1f} s of {self._seconds:g} s"
-        return Sheet(news, Standing.OPEN, self._open, asks=self._asks)
+        return ChecksSheet(news, CheckStatus.OPEN, self._open, asks=self._asks)
 
-    def judged(self, checked: Checked) -> Sheet:
+    def judged(self, checked: CheckedFile) -> ChecksSheet:
         """Show the results of a run."""
         if checked.run.trouble is not None:
             news = f"{checked.run.trouble.rstrip('.')}. {self._way_on}"
-            return Sheet(news, Standing.FAILED, self._open, asks=self._asks)
+            return ChecksSheet(news, CheckStatus.FAILED, self._open, asks=self._asks)
         rows = tuple(map(_row, checked.judged))
         if checked.good:
-            return Sheet(self._done(checked.total), Standing.PASSED, rows, asks=self._asks)
+            return ChecksSheet(self._done(checked.total), CheckStatus.PASSED, rows, asks=self._asks)
         failed = checked.total - checked.passed
-        news = f"{failed} of {_checks(checked.total)} {'fails' if failed == 1 else 'fail'}. {self._way_on}"
-        return Sheet(news, Standing.FAILED, rows, tuple(faults(checked.run.timeline)), self._asks)
+        fail = "fails" if failed == 1 else "fail"
+        news = f"{failed} of {counted(checked.total, 'check')} {fail}. {self._way_on}"
+        return ChecksSheet(news, CheckStatus.FAILED, rows, tuple(faults(checked.run.timeline)), self._asks)
 
     def page(self, file: Path) -> str:
         """Return what is asked, and how to go about it, as Markdown."""
@@ -75,16 +77,12 @@ class ExerciseWords:
         return f"{self._keys.editor} opens {self._name}; saving it checks it again."
 
     def _done(self, total: int) -> str:
-        done = f"All {_checks(total)} pass: the exercise is done."
+        done = f"All {counted(total, 'check')} pass: the exercise is done."
         if self._following is None:
             return f"{done} It belongs to the last lesson."
         return f"{done} {self._keys.next_lesson} opens the next lesson, {self._following.title}."
 
 
-def _row(judged: Judged) -> Row:
-    standing = Standing.PASSED if judged.verdict.passed else Standing.FAILED
-    return Row(judged.check.asks, standing, verdict_line(judged), judged.verdict.at)
-
-
-def _checks(count: int) -> str:
-    return f"{count} check{'s' * (count != 1)}"
+def _row(judged: JudgedCheck) -> CheckRow:
+    standing = CheckStatus.PASSED if judged.verdict.passed else CheckStatus.FAILED
+    return CheckRow(judged.check.asks, standing, verdict_line(judged), judged.verdict.at)

@@ -15,7 +15,7 @@ _INDENT = 2
 _LEAST_WIDTH = 20
 
 
-class Kind(StrEnum):
+class ChecksStyle(StrEnum):
     """What a piece of text is; the value is its component class."""
 
     PASSED = "checks--passed"
@@ -27,13 +27,13 @@ class Kind(StrEnum):
     TEXT = "checks--text"
 
 
-class Standing(Enum):
+class CheckStatus(Enum):
     """How a check, or all of an exercise, stands: a sign and how that looks."""
 
-    PASSED = (PASSED, Kind.PASSED)
-    FAILED = (FAILED, Kind.FAILED)
-    OPEN = ("·", Kind.OPEN)
-    WRONG = ("!", Kind.FAILED)
+    PASSED = (PASSED, ChecksStyle.PASSED)
+    FAILED = (FAILED, ChecksStyle.FAILED)
+    OPEN = ("·", ChecksStyle.OPEN)
+    WRONG = ("!", ChecksStyle.FAILED)
 
     @property
     def sign(self) -> str:
@@ -41,23 +41,23 @@ class Standing(Enum):
         return self.value[0]
 
     @property
-    def kind(self) -> Kind:
+    def kind(self) -> ChecksStyle:
         """How it looks."""
         return self.value[1]
 
 
 @dataclass(frozen=True)
-class Row:
+class CheckRow:
     """A check: what it asks, how it stands, what was expected and seen, and the moment to look at."""
 
     asks: str
-    standing: Standing = Standing.OPEN
+    standing: CheckStatus = CheckStatus.OPEN
     detail: str = ""
     at: Nanoseconds | None = None
 
 
 @dataclass(frozen=True)
-class Sheet:
+class ChecksSheet:
     """Everything that the pane tells.
 
     ``news`` says how the exercise stands, ``faults`` what else is wrong with the run, ``asks`` what is to be
@@ -65,56 +65,56 @@ class Sheet:
     """
 
     news: str
-    standing: Standing
-    rows: tuple[Row, ...]
+    standing: CheckStatus
+    rows: tuple[CheckRow, ...]
     faults: tuple[str, ...] = ()
     asks: str = ""
 
     @property
     def note(self) -> str:
         """How many checks passed, as short as it can be said; "" where none was judged."""
-        passed = sum(row.standing is Standing.PASSED for row in self.rows)
-        judged = any(row.standing is not Standing.OPEN for row in self.rows)
+        passed = sum(row.standing is CheckStatus.PASSED for row in self.rows)
+        judged = any(row.standing is not CheckStatus.OPEN for row in self.rows)
         return f"{self.standing.sign} {passed} of {len(self.rows)} pass" if judged else ""
 
 
-class Line(NamedTuple):
+class ChecksLine(NamedTuple):
     """Pieces of text with their kinds, and the place of the check that the line is about, if it is."""
 
-    pieces: tuple[tuple[str, Kind], ...]
+    pieces: tuple[tuple[str, ChecksStyle], ...]
     row: int | None = None
 
 
-def lines_of(sheet: Sheet, width: int) -> list[Line]:
+def lines_of(sheet: ChecksSheet, width: int) -> list[ChecksLine]:
     """Return the lines of a sheet, each at most ``width`` columns wide."""
     return list(_lines(sheet, max(_LEAST_WIDTH, width)))
 
 
-def _lines(sheet: Sheet, width: int) -> Iterator[Line]:
-    yield from _signed(sheet.standing, sheet.news, Kind.TITLE, width)
+def _lines(sheet: ChecksSheet, width: int) -> Iterator[ChecksLine]:
+    yield from _signed(sheet.standing, sheet.news, ChecksStyle.TITLE, width)
     for place, row in enumerate(sheet.rows):
-        for line in _signed(row.standing, row.asks, Kind.ASKS, width):
+        for line in _signed(row.standing, row.asks, ChecksStyle.ASKS, width):
             yield line._replace(row=place)
         for text in _wrapped(row.detail, width - _INDENT):
-            yield Line(((f"{' ' * _INDENT}{text}", Kind.DETAIL),), place)
+            yield ChecksLine(((f"{' ' * _INDENT}{text}", ChecksStyle.DETAIL),), place)
     yield from _titled("What is asked")
-    yield from (Line(((text, Kind.TEXT),)) for text in _wrapped(sheet.asks, width))
+    yield from (ChecksLine(((text, ChecksStyle.TEXT),)) for text in _wrapped(sheet.asks, width))
     if sheet.faults:
         yield from _titled("What else is wrong with the run")
     for fault in sheet.faults:
-        yield from _signed(Standing.WRONG, fault, Kind.TEXT, width)
+        yield from _signed(CheckStatus.WRONG, fault, ChecksStyle.TEXT, width)
 
 
-def _titled(title: str) -> Iterator[Line]:
-    yield Line(())
-    yield Line(((title, Kind.TITLE),))
+def _titled(title: str) -> Iterator[ChecksLine]:
+    yield ChecksLine(())
+    yield ChecksLine(((title, ChecksStyle.TITLE),))
 
 
-def _signed(standing: Standing, text: str, kind: Kind, width: int) -> Iterator[Line]:
+def _signed(standing: CheckStatus, text: str, kind: ChecksStyle, width: int) -> Iterator[ChecksLine]:
     first, *others = _wrapped(text, width - _INDENT) or [""]
-    yield Line(((f"{standing.sign} ", standing.kind), (first, kind)))
+    yield ChecksLine(((f"{standing.sign} ", standing.kind), (first, kind)))
     for other in others:
-        yield Line(((" " * _INDENT, kind), (other, kind)))
+        yield ChecksLine(((" " * _INDENT, kind), (other, kind)))
 
 
 def _wrapped(text: str, width: int) -> list[str]:

@@ -7,23 +7,22 @@ from rich.style import Style
 from textual.binding import BindingType
 from textual.events import Click
 from textual.geometry import Size
-from textual.message import Message
 from textual.reactive import var
 from textual.strip import Strip
 
 from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
-from cbtui.widgets.checks.sheet import Kind, Line, Sheet, Standing, lines_of
-from cbtui.widgets.inked import Inked
+from cbtui.widgets.checks.sheet import ChecksLine, ChecksSheet, ChecksStyle, CheckStatus, lines_of
+from cbtui.widgets.inked_view import InkedView
 from sim.trace.model import Nanoseconds
 
 _PICKED = "checks--picked"
 
 
-class ChecksView(Inked):
+class ChecksView(InkedView):
     """Shows a sheet. The first check that fails is picked by itself when there are new ones."""
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = {*(kind.value for kind in Kind), _PICKED}
+    COMPONENT_CLASSES: ClassVar[set[str]] = {*(kind.value for kind in ChecksStyle), _PICKED}
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.CHECKS)]
     can_focus = True
 
@@ -32,19 +31,12 @@ class ChecksView(Inked):
     picked: var[int | None] = var(None)
     """The place of the picked check."""
 
-    class MomentPicked(Message):
-        """The person wants to see the moment that a check speaks of: ``at`` nanoseconds into the run."""
-
-        def __init__(self, at: Nanoseconds) -> None:
-            super().__init__()
-            self.at = at
-
-    def __init__(self, sheet: Sheet, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
+    def __init__(self, sheet: ChecksSheet, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
         super().__init__(id=id)
         self._sheet = sheet
-        self._lines: list[Line] = []
+        self._lines: list[ChecksLine] = []
 
-    def show(self, sheet: Sheet) -> None:
+    def show(self, sheet: ChecksSheet) -> None:
         """Show another sheet."""
         if sheet == self._sheet:
             return
@@ -65,7 +57,7 @@ class ChecksView(Inked):
         self.virtual_size = Size(width, len(self._lines))
 
     def _pick_what_fails(self) -> None:
-        failing = (place for place, row in enumerate(self._sheet.rows) if row.standing is Standing.FAILED)
+        failing = (place for place, row in enumerate(self._sheet.rows) if row.standing is CheckStatus.FAILED)
         self.picked = next(failing, None)
         self.scroll_to(y=0, animate=False, immediate=True, force=True)
         if self.picked is not None:

@@ -8,7 +8,7 @@ from pygments.lexers.python import PythonLexer
 from pygments.token import Token, _TokenType
 
 
-class Kind(StrEnum):
+class TokenKind(StrEnum):
     """What a word of source is; the value is the component class that styles it."""
 
     PLAIN = "code--plain"
@@ -20,49 +20,49 @@ class Kind(StrEnum):
     COMMENT = "code--comment"
 
 
-class Word(NamedTuple):
+class SourceToken(NamedTuple):
     """A piece of a line."""
 
     text: str
-    kind: Kind
+    kind: TokenKind
 
 
-_KINDS: dict[_TokenType, Kind] = {
-    Token.Comment: Kind.COMMENT,
-    Token.Keyword: Kind.KEYWORD,
-    Token.Operator.Word: Kind.KEYWORD,
-    Token.Name.Function: Kind.NAME,
-    Token.Name.Class: Kind.NAME,
-    Token.Name.Decorator: Kind.NAME,
-    Token.Name.Builtin: Kind.BUILTIN,
-    Token.Literal.String: Kind.STRING,
-    Token.Literal.Number: Kind.NUMBER,
+_KINDS: dict[_TokenType, TokenKind] = {
+    Token.Comment: TokenKind.COMMENT,
+    Token.Keyword: TokenKind.KEYWORD,
+    Token.Operator.Word: TokenKind.KEYWORD,
+    Token.Name.Function: TokenKind.NAME,
+    Token.Name.Class: TokenKind.NAME,
+    Token.Name.Decorator: TokenKind.NAME,
+    Token.Name.Builtin: TokenKind.BUILTIN,
+    Token.Literal.String: TokenKind.STRING,
+    Token.Literal.Number: TokenKind.NUMBER,
 }
 
 
-def highlight(source: str) -> list[list[Word]]:
+def highlight(source: str) -> list[list[SourceToken]]:
     """Return the lines of a Python source; tabs become spaces."""
-    lines: list[list[Word]] = [[]]
+    lines: list[list[SourceToken]] = [[]]
     for kind, text in _tokens(source):
         first, *others = text.split("\n")
         if first:
-            lines[-1].append(Word(first, kind))
-        lines += [[Word(other, kind)] if other else [] for other in others]
+            lines[-1].append(SourceToken(first, kind))
+        lines += [[SourceToken(other, kind)] if other else [] for other in others]
     while lines and not lines[-1]:
         lines.pop()
     return lines
 
 
-def _tokens(source: str) -> Iterator[tuple[Kind, str]]:
+def _tokens(source: str) -> Iterator[tuple[TokenKind, str]]:
     lexer = PythonLexer(stripnl=False, tabsize=4)
     for token, text in lexer.get_tokens(source):
         yield _kind_of(token), text
 
 
-def _kind_of(token: _TokenType) -> Kind:
+def _kind_of(token: _TokenType) -> TokenKind:
     kind: _TokenType | None = token
     while kind is not None and kind is not Token:
         if kind in _KINDS:
             return _KINDS[kind]
         kind = kind.parent
-    return Kind.PLAIN
+    return TokenKind.PLAIN

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from enum import Enum, auto
 
 from cbtui.looks.theme import GLYPHS, Charset
-from cbtui.widgets.code.files import SourceFile, SourceFiles
+from cbtui.widgets.code.source_files import SourceFile, SourceFiles
 from cbtui.widgets.lanes.names import short_thread
 from sim.durations import duration
 from sim.trace.descriptions import why_waiting
@@ -21,7 +21,7 @@ JUST_NOW: Nanoseconds = 250_000_000
 _LONG: Nanoseconds = 300_000_000
 
 
-class Doing(Enum):
+class CallbackActivity(Enum):
     """What a callback is doing; the more telling, the later."""
 
     IDLE = auto()
@@ -31,7 +31,7 @@ class Doing(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Marked:
+class CallbackMark:
     """A callback's lines in the source and what it is doing.
 
     ``texts`` says so, in fewer and fewer words; ``number`` and ``letter`` are those of its group.
@@ -40,20 +40,20 @@ class Marked:
     entity: EntityId
     first_line: int
     last_line: int
-    doing: Doing
+    doing: CallbackActivity
     texts: tuple[str, ...]
     letter: str
     number: int
     running_long: bool = False
 
 
-def marks_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[SourceFile, list[Marked]]:
+def marks_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[SourceFile, list[CallbackMark]]:
     """Return the callbacks of each file at a moment, in the order of their lines.
 
     A callback that several entities share is marked once, with what the most telling of them is doing.
     """
     moment = timeline.moment(at)
-    found: defaultdict[SourceFile, dict[int, Marked]] = defaultdict(dict)
+    found: defaultdict[SourceFile, dict[int, CallbackMark]] = defaultdict(dict)
     active = timeline.active_since(at - JUST_NOW)
     for number in sorted(active.union(roster_of(timeline).places.values())):
         entity = timeline.entities[number]
@@ -67,10 +67,10 @@ def marks_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[So
     return {file: [marks[line] for line in sorted(marks)] for file, marks in found.items()}
 
 
-def _marked(entity: Entity, timeline: Timeline, moment: Moment) -> Marked:
+def _marked(entity: Entity, timeline: Timeline, moment: Moment) -> CallbackMark:
     group = timeline.groups[entity.group]
     doing, texts, since = _doing(entity, timeline, moment)
-    return Marked(
+    return CallbackMark(
         entity.id,
         entity.first_line,
         entity.last_line,
@@ -78,25 +78,27 @@ def _marked(entity: Entity, timeline: Timeline, moment: Moment) -> Marked:
         texts,
         group.letter,
         list(timeline.groups).index(group.id),
-        doing is Doing.RUNS and moment.at - since >= _LONG,
+        doing is CallbackActivity.RUNS and moment.at - since >= _LONG,
     )
 
 
-def _doing(entity: Entity, timeline: Timeline, moment: Moment) -> tuple[Doing, tuple[str, ...], Nanoseconds]:
+def _doing(
+    entity: Entity, timeline: Timeline, moment: Moment
+) -> tuple[CallbackActivity, tuple[str, ...], Nanoseconds]:
     running = list(_running(entity.id, moment))
     if running:
         threads = _threads(running, timeline)
         lasted = duration(moment.at - running[0].start)
         texts = (f"▶ {threads} {lasted}", f"▶ {threads}", f"▶ {lasted}")
-        return Doing.RUNS, (*_standing_still(running, moment, lasted), *texts), running[0].start
+        return CallbackActivity.RUNS, (*_standing_still(running, moment, lasted), *texts), running[0].start
     wait = moment.waiting.get(entity.id)
     if wait is not None:
         waited = f"{GLYPHS[Charset.BRAILLE].hatch[wait.reason]} waits {duration(moment.at - wait.since)}"
-        return Doing.WAITS, (f"{waited}: {why_waiting(wait, timeline)}", waited), wait.since
+        return CallbackActivity.WAITS, (f"{waited}: {why_waiting(wait, timeline)}", waited), wait.since
     recent = timeline.spans_of(entity.id, Window(moment.at - JUST_NOW, moment.at + 1))
     if recent:
-        return Doing.RAN, (f"· {_threads(recent[-1:], timeline)}",), recent[-1].start
-    return Doing.IDLE, ("",), 0
+        return CallbackActivity.RAN, (f"· {_threads(recent[-1:], timeline)}",), recent[-1].start
+    return CallbackActivity.IDLE, ("",), 0
 
 
 def _running(entity: EntityId, moment: Moment) -> Iterator[Span]:

@@ -18,10 +18,10 @@ from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role
 from cbtui.text.cells import fit, visible
-from cbtui.widgets.code.files import SourceFile, SourceFiles
-from cbtui.widgets.code.highlight import Kind, Word
-from cbtui.widgets.code.marks import Doing, Marked, marks_at
-from cbtui.widgets.inked import Inked
+from cbtui.widgets.code.highlight import SourceToken, TokenKind
+from cbtui.widgets.code.marks import CallbackActivity, CallbackMark, marks_at
+from cbtui.widgets.code.source_files import SourceFile, SourceFiles
+from cbtui.widgets.inked_view import InkedView
 from sim.trace.events import EntityId, Reason
 from sim.trace.model import Entity, Nanoseconds
 from sim.trace.timeline import Timeline
@@ -31,21 +31,26 @@ _LEAST_CODE = 20
 
 _CURSOR = "code--cursor"
 
-_INKS = {Doing.IDLE: Role.FAINT, Doing.RAN: Role.FAINT, Doing.WAITS: Role.WARN, Doing.RUNS: Role.LABEL}
+_INKS = {
+    CallbackActivity.IDLE: Role.FAINT,
+    CallbackActivity.RAN: Role.FAINT,
+    CallbackActivity.WAITS: Role.WARN,
+    CallbackActivity.RUNS: Role.LABEL,
+}
 _EDGES = {
-    Doing.RUNS: ("▌", Role.BAR),
-    Doing.WAITS: (GLYPHS[Charset.BRAILLE].hatch[Reason.GROUP_HELD], Role.HATCH),
+    CallbackActivity.RUNS: ("▌", Role.BAR),
+    CallbackActivity.WAITS: (GLYPHS[Charset.BRAILLE].hatch[Reason.GROUP_HELD], Role.HATCH),
 }
 
 
-class Place(NamedTuple):
+class SourceLocation(NamedTuple):
     """A line of a file, counted from 1."""
 
     path: Path
     line: int
 
 
-class CodeView(Inked):
+class CodeView(InkedView):
     """The learner's source; beside each callback stands which thread runs it, or that it waits and why.
 
     Of several files it shows the one whose callback was asked for, or has begun to run for a while. ``note``
@@ -54,7 +59,7 @@ class CodeView(Inked):
     callback it belongs to.
     """
 
-    COMPONENT_CLASSES: ClassVar[set[str]] = {*(kind.value for kind in Kind), _CURSOR}
+    COMPONENT_CLASSES: ClassVar[set[str]] = {*(kind.value for kind in TokenKind), _CURSOR}
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.CODE)]
 
     note: var[str] = var("")
@@ -84,7 +89,7 @@ class CodeView(Inked):
         super().__init__(id=id)
         self._files = SourceFiles(path, source, recorded)
         self._file = self._files.main
-        self._marks: dict[SourceFile, list[Marked]] = {}
+        self._marks: dict[SourceFile, list[CallbackMark]] = {}
         self._long: set[tuple[Path, int]] = set()
         self._placed = False
         self._changed = False
@@ -116,9 +121,9 @@ class CodeView(Inked):
             self.refresh()
 
     @property
-    def place(self) -> Place:
+    def place(self) -> SourceLocation:
         """The picked line, or else the first one in view."""
-        return Place(self._file.path, self.picked or self.scroll_offset.y + 1)
+        return SourceLocation(self._file.path, self.picked or self.scroll_offset.y + 1)
 
     # files
 
@@ -154,7 +159,7 @@ class CodeView(Inked):
         self.note = visible(self._file.path.name, Charset.BRAILLE) + (changed if self._changed else "")
 
     @property
-    def _marked(self) -> list[Marked]:
+    def _marked(self) -> list[CallbackMark]:
         """The callbacks of the file that is shown."""
         return self._marks.get(self._file, [])
 
@@ -236,7 +241,7 @@ class CodeView(Inked):
         code = self._code(number)
         left = self.scroll_offset.x
         line = Strip([*self._gutter(number + 1, marked), *code.crop(left, left + width - _GUTTER)])
-        if marked is None or marked.first_line != number + 1 or marked.doing is Doing.IDLE:
+        if marked is None or marked.first_line != number + 1 or marked.doing is CallbackActivity.IDLE:
             line = line.adjust_cell_length(width, self.in_class(""))
         else:
             line = self._with_mark(line, marked, width)
@@ -284,12 +289,12 @@ class CodeView(Inked):
         if not top <= line < top + height - 2:
             self.scroll_to(y=max(0, line - 1), animate=False, force=True)
 
-    def _marked_at(self, line: int) -> Marked | None:
+    def _marked_at(self, line: int) -> CallbackMark | None:
         """Return the innermost callback that a line belongs to."""
         inside = [marked for marked in self._marked if marked.first_line <= line <= marked.last_line]
         return inside[-1] if inside else None
 
-    def _gutter(self, line: int, marked: Marked | None) -> list[Segment]:
+    def _gutter(self, line: int, marked: CallbackMark | None) -> list[Segment]:
         number = Segment(f"{line:>4} ", self.in_ink(Ink(Role.FAINT)))
         if marked is None:
             return [number, Segment("  ", self.in_class(""))]
@@ -299,7 +304,7 @@ class CodeView(Inked):
         glyph, role = _EDGES.get(marked.doing, (" ", Role.FAINT))
         return [number, Segment(f"{glyph} ", self.in_ink(Ink(role, marked.number)))]
 
-    def _with_mark(self, line: Strip, marked: Marked, width: int) -> Strip:
+    def _with_mark(self, line: Strip, marked: CallbackMark, width: int) -> Strip:
         """Put what a callback does at the right, in as many words as the code leaves room for."""
         room = width - line.cell_length - 1
         texts = [f" {text} " for text in marked.texts]
@@ -314,12 +319,12 @@ class CodeView(Inked):
             self._drawn[number] = Strip([self._segment(word) for word in self._file.lines[number]])
         return self._drawn[number]
 
-    def _segment(self, word: Word) -> Segment:
+    def _segment(self, word: SourceToken) -> Segment:
         style = self.in_class(word.kind.value)
         return Segment(visible(word.text, Charset.BRAILLE), style)
 
 
-def changed_lines(before: Sequence[Marked], after: Sequence[Marked]) -> Iterator[tuple[int, int]]:
+def changed_lines(before: Sequence[CallbackMark], after: Sequence[CallbackMark]) -> Iterator[tuple[int, int]]:
     """Yield the first line and the number of lines of each stretch of source that looks different."""
     known = {marked.first_line: marked for marked in before}
     for marked in after:

@@ -5,11 +5,11 @@ from dataclasses import dataclass
 from cbtui.looks.theme import GLYPHS, Ink, Role, texture_of
 from cbtui.widgets.factory.canvas import PLAIN, WARN, Canvas
 from cbtui.widgets.factory.glyphs import Walls
-from cbtui.widgets.factory.large_seats import LargeSeats
-from cbtui.widgets.factory.plan import LARGE, Columns, Density, Place
-from cbtui.widgets.factory.scene import Area, Scene
-from cbtui.widgets.factory.seats import Seats
-from cbtui.widgets.factory.words import first_fitting, seats_of
+from cbtui.widgets.factory.large_seats import LargeSeatPainter
+from cbtui.widgets.factory.plan import LARGE, AreaPlacement, Density, FactoryColumns
+from cbtui.widgets.factory.scene import Area, FactoryScene
+from cbtui.widgets.factory.seats import SeatPainter
+from cbtui.widgets.factory.texts import admission_texts, first_fitting
 
 _SWATCH = 2
 """Columns of a group's texture beside its letter, as in the lanes."""
@@ -17,12 +17,12 @@ _LONGEST_QUEUE = len("  1 waits ")
 
 
 @dataclass(frozen=True, slots=True)
-class Areas:
+class AreaPainter:
     """Draws areas."""
 
     canvas: Canvas
-    scene: Scene
-    columns: Columns
+    scene: FactoryScene
+    columns: FactoryColumns
 
     def top(self, area: Area, line: int, joined: bool) -> None:
         """Draw the upper wall with the group's letter and its seats; ``joined`` to the area above."""
@@ -32,7 +32,7 @@ class Areas:
         at, end = self.columns.belts + 2, self.columns.right_wall
         at = self.canvas.write(at, line, f" {area.group.letter}", Ink(Role.LETTER, area.number), end - at)
         at = self._texture(area, at, line, end)
-        seats = first_fitting([f" {text} " for text in seats_of(area)], end - at - 1)
+        seats = first_fitting([f" {text} " for text in admission_texts(area)], end - at - 1)
         at = self.canvas.write(at, line, seats, PLAIN, len(seats))
         if area.waiting:
             ways = ("waits outside", "waits") if area.waiting == 1 else ("wait outside", "wait")
@@ -41,7 +41,7 @@ class Areas:
 
     def _texture(self, area: Area, at: int, line: int, end: int) -> int:
         """Draw the group's texture if there is room for every word too; return the column after it."""
-        words = max(len(f" {seats_of(each)[0]} ") for each in self.scene.areas)
+        words = max(len(f" {admission_texts(each)[0]} ") for each in self.scene.areas)
         if end - at - 1 < 1 + _SWATCH + words + _LONGEST_QUEUE:
             return at
         texture = texture_of(area.number, GLYPHS[self.canvas.charset])
@@ -53,7 +53,7 @@ class Areas:
         walls = self._walls(area)
         self._wall(area, line, walls.bottom_left, walls.bottom_right)
 
-    def inner(self, place: Place, density: Density) -> None:
+    def inner(self, place: AreaPlacement, density: Density) -> None:
         """Draw side walls, seats and workers, and the group's letter where no upper wall tells it."""
         area, ink = place.area, Ink(Role.LINE, place.area.number)
         for line in range(place.first, place.first + place.rows):
@@ -62,7 +62,7 @@ class Areas:
         at = self.columns.belts + 1
         if not density.top:
             at = self.canvas.write(at, place.first, area.group.letter, Ink(Role.LETTER, area.number), 3)
-        seats = LargeSeats if density is LARGE else Seats
+        seats = LargeSeatPainter if density is LARGE else SeatPainter
         seats(self.canvas, self.scene, place, self.columns, at).draw()
 
     def _walls(self, area: Area) -> Walls:

@@ -4,8 +4,8 @@ from collections.abc import Sequence
 
 from cbtui.looks.theme import GLYPHS, Ink, Role
 from cbtui.widgets.factory.canvas import FAINT, PLAIN, STRONG, WARN, Canvas
-from cbtui.widgets.factory.scene import Area, Belt, Scene
-from cbtui.widgets.factory.words import belt_name, details, first_fitting, level, reasons
+from cbtui.widgets.factory.scene import Area, Belt, FactoryScene
+from cbtui.widgets.factory.texts import belt_details, belt_name, first_fitting, queue_level, wait_texts
 from sim.durations import duration
 from sim.trace.events import EntityKind
 
@@ -16,10 +16,10 @@ _LONGEST_NAME = 18
 _SHORTEST_NAME = 5
 
 
-class Belts:
+class BeltPainter:
     """Draws belts that end at the column ``door``, just before an area's wall."""
 
-    def __init__(self, canvas: Canvas, scene: Scene, door: int) -> None:
+    def __init__(self, canvas: Canvas, scene: FactoryScene, door: int) -> None:
         self._canvas = canvas
         self._glyphs = canvas.glyphs
         self._scene = scene
@@ -31,7 +31,7 @@ class Belts:
 
     def draw(self, belt: Belt, area: Area, line: int, rows: int) -> None:
         """Draw a belt in one row, or in more with the reason of its wait in the second one."""
-        why = reasons(belt, self._scene.timeline, self._scene.now)
+        why = wait_texts(belt, self._scene.timeline, self._scene.now)
         at = self._head(belt, line)
         room = self._door - at
         boxes = self._boxes(belt)
@@ -61,7 +61,7 @@ class Belts:
             text, ink = f"{self._glyphs.clock} {duration(belt.entity.period)}", PLAIN
             width = len(text)
         else:
-            text = level(belt)
+            text = queue_level(belt)
             ink = WARN if belt.full else PLAIN if belt.queue.depth else FAINT
             width = self._level if self._door > 24 else len(text)
         self._canvas.write(at, line, text, ink, self._door - at)
@@ -77,7 +77,7 @@ class Belts:
         What is lost may push boxes together, the rest may not.
         """
         left_over = []
-        for text, warns in details(belt, self._scene.now):
+        for text, warns in belt_details(belt, self._scene.now):
             ink = WARN if warns else FAINT
             least = min(boxes, _LEAST_BOXES) if warns else boxes
             if at + len(text) + 1 + least <= self._door:
@@ -165,5 +165,5 @@ def _ink_of(belt: Belt) -> Ink:
 
 def _widest_level(belt: Belt) -> str:
     if belt.entity.kind is EntityKind.CLIENT:
-        return max(level(belt), "1 reply", key=len)
-    return f"{belt.entity.depth}/{belt.entity.depth} !" if belt.entity.depth > 0 else level(belt)
+        return max(queue_level(belt), "1 reply", key=len)
+    return f"{belt.entity.depth}/{belt.entity.depth} !" if belt.entity.depth > 0 else queue_level(belt)

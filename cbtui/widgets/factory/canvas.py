@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from cbtui.looks.theme import Charset, Ink, Role, Run
-from cbtui.text.cells import Row, fit
+from cbtui.looks.theme import Charset, Ink, Role, TextRun
+from cbtui.text.cells import CellRow, fit
 from cbtui.widgets.factory.glyphs import FACTORY_GLYPHS, FactoryGlyphs
 
 PLAIN = Ink(Role.TEXT, 0)
@@ -21,7 +21,7 @@ class Canvas:
         self.glyphs: FactoryGlyphs = FACTORY_GLYPHS[charset]
         self.width = width
         self.height = height
-        self._rows = [Row(width, charset) for _ in range(height)]
+        self._rows = [CellRow(width, charset) for _ in range(height)]
 
     def put(self, column: int, line: int, glyph: str, ink: Ink) -> None:
         """Put one glyph."""
@@ -42,6 +42,6 @@ class Canvas:
         self._rows[line].write(column, shown, ink)
         return column + min(room, len(text))
 
-    def runs(self) -> Sequence[Sequence[Run]]:
+    def runs(self) -> Sequence[Sequence[TextRun]]:
         """Return the rows as runs of one ink each."""
         return tuple(tuple(row.runs()) for row in self._rows)

@@ -1,11 +1,11 @@
 """Draws seats and workers three rows high, for a picture that a whole class can see."""
 
 from cbtui.looks.theme import Ink
+from cbtui.text.callback_names import short_name
 from cbtui.widgets.factory.canvas import FAINT, PLAIN, STRONG, Canvas
-from cbtui.widgets.factory.scene import Stay, Worker
-from cbtui.widgets.factory.seats import Seats
-from cbtui.widgets.factory.words import first_fitting, just_done, kept_by, stuck
-from cbtui.widgets.lanes.status import short
+from cbtui.widgets.factory.scene import FactoryWorker, WorkerState
+from cbtui.widgets.factory.seats import SeatPainter
+from cbtui.widgets.factory.texts import blocked_texts, finished_texts, first_fitting, suspended_texts
 from sim.trace.model import Entity
 
 _CHAIR = 7
@@ -19,15 +19,15 @@ def draw_figure(canvas: Canvas, at: int, line: int, head: str, legs: str, ink: I
     canvas.write(at, line + 2, legs, ink, 3)
 
 
-class LargeSeats(Seats):
+class LargeSeatPainter(SeatPainter):
     """Draws armchairs in walled areas and stools in open ones."""
 
     tall = 3
 
-    def _worker(self, worker: Worker, line: int, rows: int) -> None:
-        trouble = stuck(worker, self._scene.now)
+    def _worker(self, worker: FactoryWorker, line: int, rows: int) -> None:
+        trouble = blocked_texts(worker, self._scene.now)
         self._seat(self._start + 1, line)
-        if worker.stay is Stay.COMES:
+        if worker.stay is WorkerState.COMES:
             self._walker(worker, line)
         else:
             canvas = self._canvas
@@ -36,15 +36,15 @@ class LargeSeats(Seats):
         at, room = self._start + _WORDS_AT, self._end - self._start - _WORDS_AT
         took = self._took(worker)
         callback = self._callback(worker)
-        name = first_fitting((callback, short(callback)), room - len(took) - 4) or short(callback)
+        name = first_fitting((callback, short_name(callback)), room - len(took) - 4) or short_name(callback)
         after = self._canvas.write(at, line + 1, f" {name} ", self._chip_ink, room - len(took) - 3)
         self._canvas.write(after + 1, line + 1, took, STRONG, self._end - after - 1)
         self._name(worker, trouble, at + 1, line + 2)
 
-    def _left(self, worker: Worker, line: int, rows: int) -> None:
+    def _left(self, worker: FactoryWorker, line: int, rows: int) -> None:
         self._seat(self._start + 1, line)
         self._walker(worker, line)
-        self._words(just_done(worker, self._callback(worker)), line, FAINT)
+        self._words(finished_texts(worker, self._callback(worker)), line, FAINT)
 
     def _free(self, line: int, rows: int) -> None:
         self._seat(self._start + 1, line)
@@ -52,7 +52,7 @@ class LargeSeats(Seats):
 
     def _kept(self, entity: Entity, line: int, rows: int) -> None:
         self._seat(self._start + 1, line)
-        self._words(kept_by(entity), line, PLAIN)
+        self._words(suspended_texts(entity), line, PLAIN)
 
     def _free_seats(self, line: int) -> None:
         for place in range(min(4, (self._end - self._start) // (_CHAIR + 1))):
@@ -69,8 +69,8 @@ class LargeSeats(Seats):
         for below, row in enumerate(rows, start=1):
             self._canvas.write(at, line + below, row, self._line_ink, _CHAIR)
 
-    def _walker(self, worker: Worker, line: int) -> None:
-        glyphs, comes = self._canvas.glyphs, worker.stay is Stay.COMES
+    def _walker(self, worker: FactoryWorker, line: int) -> None:
+        glyphs, comes = self._canvas.glyphs, worker.stay is WorkerState.COMES
         head = glyphs.busy if comes else glyphs.idle
         legs = glyphs.figure.comes if comes else glyphs.figure.leaves
         draw_figure(self._canvas, self._aisle_place(worker, 3), line, head, legs, self._bar_ink)

@@ -2,14 +2,15 @@
 
 from collections.abc import Sequence
 
-from cbtui.looks.theme import Charset, Run
-from cbtui.widgets.factory.areas import Areas
-from cbtui.widgets.factory.belts import Belts
+from cbtui.looks.theme import Charset, TextRun
+from cbtui.widgets.factory.areas import AreaPainter
+from cbtui.widgets.factory.belts import BeltPainter
 from cbtui.widgets.factory.canvas import FAINT, STRONG, WARN, Canvas
-from cbtui.widgets.factory.plan import LARGE, LEAST_HEIGHT, LEAST_WIDTH, Place, Plan, plan_for
-from cbtui.widgets.factory.scene import Scene, scene_of
-from cbtui.widgets.factory.words import first_fitting, headline
+from cbtui.widgets.factory.plan import LARGE, LEAST_HEIGHT, LEAST_WIDTH, AreaPlacement, FactoryPlan, plan_for
+from cbtui.widgets.factory.scene import FactoryScene, scene_of
+from cbtui.widgets.factory.texts import first_fitting, headline
 from cbtui.widgets.factory.yard import draw_bench, draw_large_yard, draw_yard
+from sim.plural import plural
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 
@@ -32,7 +33,7 @@ class FactoryPainter:
 
     def paint(
         self, timeline: Timeline, now: Nanoseconds, width: int, height: int, glance: Nanoseconds = GLANCE
-    ) -> Sequence[Sequence[Run]]:
+    ) -> Sequence[Sequence[TextRun]]:
         """Paint the factory at ``now`` in ``width`` x ``height`` cells.
 
         A worker whose callback began or ended less than ``glance`` nanoseconds ago is seen walking.
@@ -49,11 +50,11 @@ class FactoryPainter:
         return canvas.runs()
 
 
-def _draw(canvas: Canvas, scene: Scene, plan: Plan, words: Sequence[str]) -> None:
+def _draw(canvas: Canvas, scene: FactoryScene, plan: FactoryPlan, words: Sequence[str]) -> None:
     columns = plan.columns
-    areas = Areas(canvas, scene, columns)
-    belts = Belts(canvas, scene, door=columns.belts - 1)
-    above: Place | None = None
+    areas = AreaPainter(canvas, scene, columns)
+    belts = BeltPainter(canvas, scene, door=columns.belts - 1)
+    above: AreaPlacement | None = None
     for place in plan.places:
         if plan.density.top:
             areas.top(place.area, place.first - 1, joined=above is not None and not plan.density.bottom)
@@ -67,7 +68,7 @@ def _draw(canvas: Canvas, scene: Scene, plan: Plan, words: Sequence[str]) -> Non
     _draw_words(canvas, scene, plan, words)
 
 
-def _draw_belts(belts: Belts, place: Place, plan: Plan) -> None:
+def _draw_belts(belts: BeltPainter, place: AreaPlacement, plan: FactoryPlan) -> None:
     rows = plan.density.belt
     hidden = len(place.area.belts) - len(place.belts) + place.area.more
     line = place.first
@@ -78,9 +79,9 @@ def _draw_belts(belts: Belts, place: Place, plan: Plan) -> None:
         belts.more(hidden, line)
 
 
-def _draw_words(canvas: Canvas, scene: Scene, plan: Plan, words: Sequence[str]) -> None:
+def _draw_words(canvas: Canvas, scene: FactoryScene, plan: FactoryPlan, words: Sequence[str]) -> None:
     columns = plan.columns
-    more = f" +{plan.hidden} more group{'' if plan.hidden == 1 else 's'} " if plan.hidden else ""
+    more = f" +{plan.hidden} more {plural(plan.hidden, 'group')} " if plan.hidden else ""
     canvas.write(canvas.width - len(more), 0, more, FAINT, len(more))
     if plan.headline is not None:
         own = not plan.places or plan.places[0].first - plan.density.top > plan.headline

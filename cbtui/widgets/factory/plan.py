@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from cbtui.widgets.factory.scene import Area, Scene
-from cbtui.widgets.factory.words import cast
+from cbtui.widgets.factory.scene import Area, FactoryScene
+from cbtui.widgets.factory.texts import counts_text
 
 LEAST_WIDTH = 30
 LEAST_HEIGHT = 3
@@ -22,7 +22,7 @@ _BENCH_FROM = 5
 
 
 @dataclass(frozen=True, slots=True)
-class Columns:
+class FactoryColumns:
     """Where things stand from left to right; ``yard`` is the width of the workers' own column, or 0."""
 
     width: int
@@ -42,14 +42,14 @@ class Columns:
         return self.belts + self.area
 
 
-def columns_for(width: int) -> Columns:
+def columns_for(width: int) -> FactoryColumns:
     """Share out a width of ``LEAST_WIDTH`` or more."""
     yard = _YARD if width >= _YARD_FROM else 0
     aisle = 7 if yard else 5 if width >= _ROOMY else 3
     rest = width - yard - aisle
     share = rest // 2 if width < _ROOMY else rest * 46 // 100
     area = max(_LEAST_AREA, min(share, _AREA_BESIDE_YARD if yard else _AREA))
-    return Columns(width, rest - area, area, aisle, yard)
+    return FactoryColumns(width, rest - area, area, aisle, yard)
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,12 +62,12 @@ class Density:
     last: int
     seat: int = 1
 
-    def rows(self, area: Area, scene: Scene) -> int:
+    def rows(self, area: Area, scene: FactoryScene) -> int:
         """Return the rows between an area's walls."""
         seats = min(max(len(scene.workers), 2), 4) if area.is_open and self.belt > 1 else 1
         return max(len(area.belts) * self.belt, seats * self.seat)
 
-    def height(self, areas: Sequence[Area], scene: Scene) -> int:
+    def height(self, areas: Sequence[Area], scene: FactoryScene) -> int:
         """Return the rows of some areas with their walls."""
         return sum(self.top + self.rows(area, scene) + self.bottom for area in areas) + self.last
 
@@ -86,7 +86,7 @@ DENSITIES = (
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class AreaPlacement:
     """Where an area stands: its first row between the walls, how many there are, and which belts it shows."""
 
     area: Area
@@ -96,20 +96,20 @@ class Place:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class FactoryPlan:
     """A whole picture's arrangement. Rows that are None are not shown."""
 
-    columns: Columns
+    columns: FactoryColumns
     height: int
     density: Density
-    places: tuple[Place, ...]
+    places: tuple[AreaPlacement, ...]
     hidden: int
     headline: int | None
     captions: int | None
     bench: int | None
 
 
-def plan_for(scene: Scene, width: int, height: int) -> Plan:
+def plan_for(scene: FactoryScene, width: int, height: int) -> FactoryPlan:
     """Arrange a scene in at least ``LEAST_WIDTH`` x ``LEAST_HEIGHT``.
 
     The arrangement depends on who is there and not on what they do, so that it stands still, but for what is
@@ -117,7 +117,7 @@ def plan_for(scene: Scene, width: int, height: int) -> Plan:
     """
     columns = columns_for(width)
     bench = 0 if columns.yard or height < _BENCH_FROM else 1
-    beside = len(cast(scene)) + 2 <= columns.belts
+    beside = len(counts_text(scene)) + 2 <= columns.belts
     own = 1 if height >= _HEADLINE_FROM else 0
     room = height - bench
     for density in DENSITIES if columns.yard else DENSITIES[1:]:
@@ -129,7 +129,7 @@ def plan_for(scene: Scene, width: int, height: int) -> Plan:
     return _arranged(scene, columns, height, density, shown, 1, bench)
 
 
-def _most_telling(scene: Scene, room: int, density: Density) -> Sequence[Area]:
+def _most_telling(scene: FactoryScene, room: int, density: Density) -> Sequence[Area]:
     """Return as many areas as there is room for, those first where something waits or runs; one at least."""
     worths = {area.group.id: _worth(area) for area in scene.areas}
     left, chosen = room, set[int]()
@@ -150,14 +150,14 @@ def _worth(area: Area) -> int:
 
 
 def _arranged(
-    scene: Scene,
-    columns: Columns,
+    scene: FactoryScene,
+    columns: FactoryColumns,
     height: int,
     density: Density,
     areas: Sequence[Area],
     before: int,
     bench: int,
-) -> Plan:
+) -> FactoryPlan:
     spare = height - bench - before - density.height(areas, scene)
     if spare > 0 and not before:
         before, spare = 1, spare - 1
@@ -168,11 +168,11 @@ def _arranged(
     for area in areas:
         rows = max(1, min(density.rows(area, scene), height - bench - at))
         at += density.top
-        places.append(Place(area, at, rows, _belts_shown(area, rows // density.belt)))
+        places.append(AreaPlacement(area, at, rows, _belts_shown(area, rows // density.belt)))
         at += rows + density.bottom + max(0, gap)
     at += density.last
     bench_at = min(height - 1, at + (1 if height - 1 - at >= 1 else 0))
-    return Plan(
+    return FactoryPlan(
         columns,
         height,
         density,

@@ -18,7 +18,7 @@ STEPS = 3
 _LOOKS_BACK = (64, 8, 1)
 
 
-class Stay(Enum):
+class WorkerState(Enum):
     """What a worker is doing."""
 
     NEVER = auto()
@@ -29,11 +29,11 @@ class Stay(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Worker:
+class FactoryWorker:
     """A thread. ``span`` is the call it runs or has just run, ``step`` (0 to 2) how far it has walked."""
 
     name: str
-    stay: Stay
+    stay: WorkerState
     span: Span | None = None
     step: int = 0
     blocked: Blocked | None = None
@@ -41,11 +41,11 @@ class Worker:
     @property
     def inside(self) -> bool:
         """Whether it has a seat: its callback runs, though it may still be on its way."""
-        return self.stay in (Stay.COMES, Stay.WORKS)
+        return self.stay in (WorkerState.COMES, WorkerState.WORKS)
 
 
 @dataclass(frozen=True, slots=True)
-class Tick:
+class TimerTick:
     """A timer's time: when it falls due next (None where nothing tells), and how late its last call came."""
 
     due: Nanoseconds | None
@@ -59,7 +59,7 @@ class Belt:
     entity: Entity
     queue: Queue
     wait: Wait | None
-    tick: Tick | None
+    tick: TimerTick | None
 
     @property
     def waits_for_others(self) -> bool:
@@ -83,7 +83,7 @@ class Area:
     group: Group
     number: int
     belts: tuple[Belt, ...]
-    visitors: tuple[Worker, ...]
+    visitors: tuple[FactoryWorker, ...]
     kept: tuple[Entity, ...]
     more: int = 0
     """Callbacks of the group that have no belt, where there are more than anybody could look at."""
@@ -105,12 +105,12 @@ class Area:
 
 
 @dataclass(frozen=True)
-class Scene:
+class FactoryScene:
     """The factory at the moment ``now``."""
 
     timeline: Timeline
     now: Nanoseconds
-    workers: tuple[Worker, ...]
+    workers: tuple[FactoryWorker, ...]
     areas: tuple[Area, ...]
     more: int = 0
     """Groups that have no area, where there are more than anybody could look at."""
@@ -126,12 +126,12 @@ class Scene:
             yield from (belt.wait for belt in area.belts if belt.wait and belt.waits_for_others)
 
 
-def scene_of(timeline: Timeline, now: Nanoseconds, glance: Nanoseconds) -> Scene:
+def scene_of(timeline: Timeline, now: Nanoseconds, glance: Nanoseconds) -> FactoryScene:
     """Return the factory at ``now``; whoever began or ended less than ``glance`` ago is seen walking."""
-    return _Staging(timeline, now, max(glance, 1)).scene()
+    return _SceneBuilder(timeline, now, max(glance, 1)).scene()
 
 
-class _Staging:
+class _SceneBuilder:
     """One scene while it is put together."""
 
     def __init__(self, timeline: Timeline, now: Nanoseconds, glance: Nanoseconds) -> None:
@@ -141,7 +141,7 @@ class _Staging:
         self._moment: Moment = timeline.moment(now)
         self._numbers = {group: place for place, group in enumerate(timeline.groups)}
 
-    def scene(self) -> Scene:
+    def scene(self) -> FactoryScene:
         members: dict[int, list[Entity]] = {}
         groups: dict[int, Group] = {}
         workers = []
@@ -156,23 +156,29 @@ class _Staging:
                 case MemberLane(entity, group):
                     members[group.id].append(entity)
         hired = sum(executor.threads for executor in self._timeline.executors.values())
-        workers += [Worker(f"worker {number + 1}", Stay.NEVER) for number in range(len(workers), hired)]
+        workers += [
+            FactoryWorker(f"worker {number + 1}", WorkerState.NEVER) for number in range(len(workers), hired)
+        ]
         areas = tuple(self._area(group, members[group.id], workers) for group in groups.values())
         more = roster_of(self._timeline).groups - len(areas)
-        return Scene(self._timeline, self._now, tuple(workers), areas, more)
+        return FactoryScene(self._timeline, self._now, tuple(workers), areas, more)
 
-    def _worker(self, thread: ThreadId, name: str) -> Worker:
+    def _worker(self, thread: ThreadId, name: str) -> FactoryWorker:
         span = self._moment.running.get(thread)
         if span is not None:
             since = self._now - span.start
             blocked = self._moment.blocked.get(thread)
             if since < self._glance and blocked is None:
-                return Worker(name, Stay.COMES, span, self._step(since))
-            return Worker(name, Stay.WORKS, span, blocked=blocked)
+                return FactoryWorker(name, WorkerState.COMES, span, self._step(since))
+            return FactoryWorker(name, WorkerState.WORKS, span, blocked=blocked)
         span = self._just_ran(thread)
         if span is not None:
-            return Worker(name, Stay.LEAVES, span, self._step(self._now - span.end_at(self._now)))
-        return Worker(name, Stay.IDLE if ever_ran(self._timeline, thread, self._now) else Stay.NEVER)
+            return FactoryWorker(
+                name, WorkerState.LEAVES, span, self._step(self._now - span.end_at(self._now))
+            )
+        return FactoryWorker(
+            name, WorkerState.IDLE if ever_ran(self._timeline, thread, self._now) else WorkerState.NEVER
+        )
 
     def _step(self, since: Nanoseconds) -> int:
         return min(STEPS - 1, STEPS * since // self._glance)
@@ -190,7 +196,7 @@ class _Staging:
                 return max(ended, key=lambda span: span.end_at(self._now))
         return None
 
-    def _area(self, group: Group, members: list[Entity], workers: list[Worker]) -> Area:
+    def _area(self, group: Group, members: list[Entity], workers: list[FactoryWorker]) -> Area:
         ids = {member.id for member in members}
         visitors = tuple(worker for worker in workers if worker.span and worker.span.entity in ids)
         seated = {worker.span.entity for worker in visitors if worker.inside and worker.span}
@@ -205,17 +211,17 @@ class _Staging:
         tick = self._tick(entity) if entity.kind is EntityKind.TIMER else None
         return Belt(entity, self._moment.queues.get(entity.id, _NO_QUEUE), wait, tick)
 
-    def _tick(self, timer: Entity) -> Tick:
+    def _tick(self, timer: Entity) -> TimerTick:
         """Work out a timer's next due time from its last call, as rcl does: what was missed is left out."""
         period = timer.period
         spans = self._timeline.spans_of(timer.id, Window(self._now - 2 * period, self._now + 1))
         if not spans or period <= 0:
-            return Tick(None, 0)
+            return TimerTick(None, 0)
         last = spans[-1]
         due = last.start - last.age + period
         if due < last.start:
             due += (1 + (last.start - due) // period) * period
-        return Tick(due if due > self._now else None, last.age)
+        return TimerTick(due if due > self._now else None, last.age)
 
 
 _NO_QUEUE = Queue(0, 0)

@@ -4,11 +4,11 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 from cbtui.looks.theme import Ink, Role
+from cbtui.text.callback_names import short_name
 from cbtui.widgets.factory.canvas import FAINT, PLAIN, STRONG, WARN, Canvas
-from cbtui.widgets.factory.plan import Columns, Place
-from cbtui.widgets.factory.scene import STEPS, Scene, Stay, Worker
-from cbtui.widgets.factory.words import first_fitting, just_done, kept_by, stuck
-from cbtui.widgets.lanes.status import short
+from cbtui.widgets.factory.plan import AreaPlacement, FactoryColumns
+from cbtui.widgets.factory.scene import STEPS, FactoryScene, FactoryWorker, WorkerState
+from cbtui.widgets.factory.texts import blocked_texts, finished_texts, first_fitting, suspended_texts
 from sim.durations import duration
 from sim.trace.model import Entity
 
@@ -16,13 +16,15 @@ _FREE_SEATS = 4
 """How many free seats an open area shows: there is always room for more."""
 
 
-class Seats:
+class SeatPainter:
     """Draws the seats of one area, from the column ``start`` on, one row each, or two where there is room."""
 
     tall = 1
     """Rows that a seat takes at least."""
 
-    def __init__(self, canvas: Canvas, scene: Scene, place: Place, columns: Columns, start: int) -> None:
+    def __init__(
+        self, canvas: Canvas, scene: FactoryScene, place: AreaPlacement, columns: FactoryColumns, start: int
+    ) -> None:
         self._canvas = canvas
         self._scene = scene
         self._place = place
@@ -76,11 +78,11 @@ class Seats:
 
     # one seat
 
-    def _worker(self, worker: Worker, line: int, rows: int) -> None:
+    def _worker(self, worker: FactoryWorker, line: int, rows: int) -> None:
         """Draw a worker in its seat, or a taken seat and the worker on its way."""
-        trouble = stuck(worker, self._scene.now)
+        trouble = blocked_texts(worker, self._scene.now)
         took = self._took(worker)
-        if worker.stay is Stay.COMES:
+        if worker.stay is WorkerState.COMES:
             self._walker(worker, line)
         if rows > 1:
             tails: Sequence[str] = (took,)
@@ -95,25 +97,25 @@ class Seats:
         if rows > 1:
             self._name(worker, trouble, self._start + 3, line + 1)
 
-    def _chip(self, worker: Worker, line: int, tail: str) -> int:
+    def _chip(self, worker: FactoryWorker, line: int, tail: str) -> int:
         """Draw the seat with its worker and callback, if the tail fits beside; return the column after it."""
         left, right = self._marks
-        face = " " if worker.stay is Stay.COMES else self._canvas.glyphs.busy
+        face = " " if worker.stay is WorkerState.COMES else self._canvas.glyphs.busy
         room = self._end - self._start - 4 - len(tail) - 1
         callback = self._callback(worker)
-        name = first_fitting((callback, short(callback)), room) or short(callback)[: max(0, room)]
+        name = first_fitting((callback, short_name(callback)), room) or short_name(callback)[: max(0, room)]
         self._canvas.put(self._start, line, left, self._bar_ink)
         inside = f"{face} {name}" if name else face
         at = self._canvas.write(self._start + 1, line, inside, self._chip_ink, len(inside))
         self._canvas.put(at, line, right, self._bar_ink)
         return at + 1
 
-    def _left(self, worker: Worker, line: int, rows: int) -> None:
+    def _left(self, worker: FactoryWorker, line: int, rows: int) -> None:
         """Draw a free seat, and who has just left it with what done."""
         self._seat(self._start, line)
         self._walker(worker, line)
         room = self._end - self._start - 5
-        texts = just_done(worker, self._callback(worker))
+        texts = finished_texts(worker, self._callback(worker))
         self._canvas.write(self._start + 4, line, first_fitting(texts, room) or texts[-1], FAINT, room)
 
     def _free(self, line: int, rows: int) -> None:
@@ -125,7 +127,7 @@ class Seats:
         self._seat(self._start, line)
         self._canvas.put(self._start + 1, line, self._canvas.glyphs.away, self._line_ink)
         room = self._end - self._start - 5
-        texts = kept_by(entity)
+        texts = suspended_texts(entity)
         self._canvas.write(self._start + 4, line, first_fitting(texts, room) or texts[-1], PLAIN, room)
 
     def _free_seats(self, line: int) -> None:
@@ -139,36 +141,36 @@ class Seats:
 
     # what it consists of
 
-    def _walker(self, worker: Worker, line: int) -> None:
+    def _walker(self, worker: FactoryWorker, line: int) -> None:
         """Draw a worker between the area and the yard."""
         glyphs = self._canvas.glyphs
-        comes = worker.stay is Stay.COMES
+        comes = worker.stay is WorkerState.COMES
         sign = glyphs.comes + glyphs.busy if comes else glyphs.idle + glyphs.leaves
         at = self._aisle_place(worker, len(sign))
         for place, glyph in enumerate(sign):
             self._canvas.put(at + place, line, glyph, STRONG)
 
-    def _aisle_place(self, worker: Worker, width: int) -> int:
+    def _aisle_place(self, worker: FactoryWorker, width: int) -> int:
         """Return the column at which a worker of some width walks now."""
         way = max(0, self._columns.aisle - width)
-        step = STEPS - 1 - worker.step if worker.stay is Stay.COMES else worker.step
+        step = STEPS - 1 - worker.step if worker.stay is WorkerState.COMES else worker.step
         return self._columns.aisle_at + way * step // (STEPS - 1)
 
-    def _name(self, worker: Worker, trouble: Sequence[str], at: int, line: int) -> None:
+    def _name(self, worker: FactoryWorker, trouble: Sequence[str], at: int, line: int) -> None:
         room = self._end - at
         texts = [way for text in trouble for way in (f"{worker.name}, {text}", text)] or [worker.name]
         text = first_fitting(texts, room) or texts[-1]
         self._canvas.write(at, line, text, WARN if trouble else FAINT, room)
 
-    def _took(self, worker: Worker) -> str:
-        if worker.stay is Stay.COMES or worker.span is None:
+    def _took(self, worker: FactoryWorker) -> str:
+        if worker.stay is WorkerState.COMES or worker.span is None:
             return "starts"
         return duration(max(0, self._scene.now - worker.span.start))
 
-    def _callback(self, worker: Worker) -> str:
+    def _callback(self, worker: FactoryWorker) -> str:
         entity = self._scene.timeline.entities.get(worker.span.entity) if worker.span else None
         return "" if entity is None else entity.spoken_name
 
 
-def _ended_at(worker: Worker) -> int:
+def _ended_at(worker: FactoryWorker) -> int:
     return 0 if worker.span is None or worker.span.end is None else worker.span.end

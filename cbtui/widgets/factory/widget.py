@@ -5,14 +5,14 @@ from collections.abc import Sequence
 from textual.geometry import Size
 from textual.reactive import reactive
 
-from cbtui.looks.theme import Charset, Run
+from cbtui.looks.theme import Charset, TextRun
 from cbtui.widgets.factory.painter import GLANCE, FactoryPainter
-from cbtui.widgets.painted import Painted
+from cbtui.widgets.painted_widget import PaintedWidget
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 
 
-class FactoryView(Painted):
+class FactoryView(PaintedWidget):
     """Threads as workers, callback groups as areas with seats, queues as belts, at the cursor's time.
 
     Set ``timeline`` again (it may be the same one) when it has grown. ``glance`` is how many nanoseconds of
@@ -26,7 +26,7 @@ class FactoryView(Painted):
     glance: reactive[Nanoseconds] = reactive(GLANCE, repaint=False)
     charset: reactive[Charset] = reactive(Charset.BRAILLE, repaint=False)
 
-    def rows(self, size: Size) -> Sequence[Sequence[Run]]:
+    def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the factory."""
         painter = FactoryPainter(self.charset)
         return painter.paint(self.timeline, self.now, size.width, size.height, self.glance)

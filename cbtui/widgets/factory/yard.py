@@ -5,17 +5,17 @@ from collections.abc import Sequence
 from cbtui.looks.theme import Ink
 from cbtui.widgets.factory.canvas import FAINT, PLAIN, STRONG, Canvas
 from cbtui.widgets.factory.large_seats import draw_figure
-from cbtui.widgets.factory.scene import Scene, Stay, Worker
-from cbtui.widgets.factory.words import doing
+from cbtui.widgets.factory.scene import FactoryScene, FactoryWorker, WorkerState
+from cbtui.widgets.factory.texts import activity_texts
 
 
-def draw_yard(canvas: Canvas, scene: Scene, column: int, first: int, after: int) -> None:
+def draw_yard(canvas: Canvas, scene: FactoryScene, column: int, first: int, after: int) -> None:
     """Draw the workers below each other from ``column`` on, in the rows ``first`` to before ``after``."""
     room = max(0, after - first)
     shown = scene.workers if len(scene.workers) <= room else scene.workers[: max(0, room - 1)]
     width = canvas.width - column
     for line, worker in enumerate(shown, start=first):
-        texts = doing(worker, scene.timeline)
+        texts = activity_texts(worker, scene.timeline)
         text = next((each for each in texts if len(each) + len(worker.name) + 3 <= width), texts[-1])
         at = _person(canvas, worker, column, line, width - 2)
         canvas.write(at + 1, line, text, _ink(worker), column + width - at - 1)
@@ -24,11 +24,11 @@ def draw_yard(canvas: Canvas, scene: Scene, column: int, first: int, after: int)
         canvas.write(column, after - 1, f"+{len(hidden)}: {_counted(hidden)}", FAINT, width)
 
 
-def draw_bench(canvas: Canvas, scene: Scene, line: int) -> None:
+def draw_bench(canvas: Canvas, scene: FactoryScene, line: int) -> None:
     """Draw the workers beside each other in one row, with as many words as there is room for."""
     if not scene.workers:
         return
-    words = [(*doing(worker, scene.timeline), "") for worker in scene.workers]
+    words = [(*activity_texts(worker, scene.timeline), "") for worker in scene.workers]
     for brevity in range(4):
         slots = [
             len(worker.name) + 2 + (1 + len(texts[brevity]) if texts[brevity] else 0) + 2
@@ -46,7 +46,7 @@ def draw_bench(canvas: Canvas, scene: Scene, line: int) -> None:
         column += slot
 
 
-def _crowd(canvas: Canvas, scene: Scene, line: int) -> None:
+def _crowd(canvas: Canvas, scene: FactoryScene, line: int) -> None:
     """Draw more workers than have room for their names: figures, and how many do what."""
     glyphs = canvas.glyphs
     figures = "".join(glyphs.idle if _at_home(worker) else glyphs.away for worker in scene.workers)
@@ -55,29 +55,29 @@ def _crowd(canvas: Canvas, scene: Scene, line: int) -> None:
     canvas.write(at + 1, line, text, FAINT, canvas.width - at - 1)
 
 
-def _counted(workers: Sequence[Worker]) -> str:
+def _counted(workers: Sequence[FactoryWorker]) -> str:
     busy = sum(worker.inside for worker in workers)
-    never = sum(worker.stay is Stay.NEVER for worker in workers)
+    never = sum(worker.stay is WorkerState.NEVER for worker in workers)
     parts = ((busy, "busy"), (len(workers) - busy - never, "idle"), (never, "unused"))
     return ", ".join(f"{number} {what}" for number, what in parts if number)
 
 
-def _at_home(worker: Worker) -> bool:
-    return worker.stay in (Stay.IDLE, Stay.NEVER)
+def _at_home(worker: FactoryWorker) -> bool:
+    return worker.stay in (WorkerState.IDLE, WorkerState.NEVER)
 
 
-def _ink(worker: Worker) -> Ink:
-    return PLAIN if worker.stay is Stay.IDLE else FAINT
+def _ink(worker: FactoryWorker) -> Ink:
+    return PLAIN if worker.stay is WorkerState.IDLE else FAINT
 
 
-def _person(canvas: Canvas, worker: Worker, column: int, line: int, room: int) -> int:
+def _person(canvas: Canvas, worker: FactoryWorker, column: int, line: int, room: int) -> int:
     """Draw a worker's place with its name; return the column after it."""
     home = _at_home(worker)
     canvas.put(column, line, canvas.glyphs.idle if home else canvas.glyphs.away, STRONG if home else FAINT)
     return canvas.write(column + 2, line, worker.name, PLAIN if home else FAINT, room)
 
 
-def draw_large_yard(canvas: Canvas, scene: Scene, column: int, first: int) -> None:
+def draw_large_yard(canvas: Canvas, scene: FactoryScene, column: int, first: int) -> None:
     """Draw every worker as a figure of three rows and a blank one below; all of them have room."""
     width = canvas.width - column
     for place, worker in enumerate(scene.workers):
@@ -88,4 +88,4 @@ def draw_large_yard(canvas: Canvas, scene: Scene, column: int, first: int) -> No
         else:
             canvas.put(column + 1, line + 1, canvas.glyphs.away, FAINT)
         canvas.write(column + 5, line + 1, worker.name, PLAIN if home else FAINT, width - 5)
-        canvas.write(column + 5, line + 2, doing(worker, scene.timeline)[0], _ink(worker), width - 5)
+        canvas.write(column + 5, line + 2, activity_texts(worker, scene.timeline)[0], _ink(worker), width - 5)

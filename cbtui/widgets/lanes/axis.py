@@ -3,8 +3,8 @@
 from collections.abc import Iterable
 
 from cbtui.looks.theme import GLYPHS, Ink, Role
-from cbtui.text.cells import Row
-from cbtui.widgets.lanes.scale import Scale, labels
+from cbtui.text.cells import CellRow
+from cbtui.widgets.lanes.scale import TimeScale, labels
 from sim.trace.model import Mark
 
 _FAINT = Ink(Role.FAINT)
@@ -12,7 +12,7 @@ _NOW = Ink(Role.NOW)
 _MARK = Ink(Role.MARK)
 
 
-def draw_axis(row: Row, scale: Scale, cursor: int, commands: Iterable[Mark]) -> None:
+def draw_axis(row: CellRow, scale: TimeScale, cursor: int, commands: Iterable[Mark]) -> None:
     """Draw an axis; ``cursor`` is the cursor's column, in the picture or beside it."""
     _draw_cursor(row, cursor)
     _draw_commands(row, scale, commands)
@@ -21,7 +21,7 @@ def draw_axis(row: Row, scale: Scale, cursor: int, commands: Iterable[Mark]) -> 
             row.write(column, text, _FAINT)
 
 
-def _draw_cursor(row: Row, column: int) -> None:
+def _draw_cursor(row: CellRow, column: int) -> None:
     """Mark now, or on which side of the picture it lies."""
     glyphs = GLYPHS[row.charset]
     last = len(row.cells) - 1
@@ -35,7 +35,7 @@ def _draw_cursor(row: Row, column: int) -> None:
         row.write(column, f"{glyphs.now}now ", _NOW)
 
 
-def _draw_commands(row: Row, scale: Scale, commands: Iterable[Mark]) -> None:
+def _draw_commands(row: CellRow, scale: TimeScale, commands: Iterable[Mark]) -> None:
     """Mark what the person did, in words where there is room for them."""
     up = GLYPHS[row.charset].up
     marks = {scale.column_of(mark.at): mark for mark in commands}

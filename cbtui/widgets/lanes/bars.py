@@ -4,12 +4,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from cbtui.looks.theme import Glyphs, Ink, Role, texture_of
-from cbtui.text.cells import Row
-from cbtui.widgets.lanes.columns import Column, Interval, Stretch, stretches
+from cbtui.text.callback_names import short_name
+from cbtui.text.cells import CellRow
+from cbtui.widgets.lanes.columns import Interval, LaneColumn, MergedColumns, stretches
 from cbtui.widgets.lanes.names import short_thread
-from cbtui.widgets.lanes.scale import Scale
+from cbtui.widgets.lanes.scale import TimeScale
 from cbtui.widgets.lanes.selection import Bar, end_of, start_of
-from cbtui.widgets.lanes.status import is_late, short
+from cbtui.widgets.lanes.status import is_late
 from sim.durations import duration
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
@@ -24,7 +25,7 @@ _WARN = Ink(Role.WARN)
 
 
 @dataclass(frozen=True, slots=True)
-class Bars:
+class BarPainter:
     """Draws calls and waits into rows. ``now`` is the cursor's time; ``numbers`` the place of each group."""
 
     timeline: Timeline
@@ -32,7 +33,7 @@ class Bars:
     now: Nanoseconds
     numbers: dict[int, int]
 
-    def thread(self, row: Row, columns: Sequence[Column[Span] | None]) -> None:
+    def thread(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None]) -> None:
         """Draw a thread's calls: bars with group letter and callback name, ticks for short ones."""
         for stretch in stretches(columns):
             number = self._number(stretch.top.entity)
@@ -43,7 +44,7 @@ class Bars:
                 self._label(row, stretch, Ink(Role.LABEL, number))
             self._failure(row, stretch)
 
-    def blocked(self, row: Row, columns: Sequence[Column[Blocked] | None]) -> None:
+    def blocked(self, row: CellRow, columns: Sequence[LaneColumn[Blocked] | None]) -> None:
         """Draw where a thread stands still in a call of a service, beside the name that its bar bears."""
         for stretch in stretches(columns):
             if stretch.is_short:
@@ -55,13 +56,13 @@ class Bars:
             where = f"in call {stretch.top.service}"
             self._words(row, *_longest_part(free), (f"blocked {where}", where, "blocked"))
 
-    def lost(self, row: Row, places: Sequence[int]) -> None:
+    def lost(self, row: CellRow, places: Sequence[int]) -> None:
         """Mark the columns in which a queue lost messages, but for words that stand there."""
         for place in places:
             if row.inks[place] not in (_WORDS, _WARN):
                 row.put(place, self.glyphs.lost, _WARN)
 
-    def select(self, row: Row, bar: Bar, scale: Scale) -> None:
+    def select(self, row: CellRow, bar: Bar, scale: TimeScale) -> None:
         """Make the selected bar stand out."""
         end = end_of(bar)
         first = max(0, scale.column_of(start_of(bar)))
@@ -70,7 +71,7 @@ class Bars:
             ink._replace(selected=True) for ink in row.inks[first : max(first, last + 1)]
         ]
 
-    def group(self, row: Row, columns: Sequence[Column[Span] | None], group: Group) -> None:
+    def group(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None], group: Group) -> None:
         """Draw who holds a group: a line for as long as it is held, a point for an instant."""
         ink = Ink(Role.LINE, self.numbers[group.id])
         if group.kind is GroupKind.REENTRANT:
@@ -84,10 +85,10 @@ class Bars:
             callback = self.timeline.entities[stretch.top.entity].spoken_name
             thread = self.timeline.threads[stretch.top.thread].name
             held = f"held by {callback}"
-            texts = (f"{held} on {short_thread(thread)}", held, f"by {short(callback)}")
+            texts = (f"{held} on {short_thread(thread)}", held, f"by {short_name(callback)}")
             self._words(row, stretch.first, stretch.after, texts)
 
-    def _together(self, row: Row, columns: Sequence[Column[Span] | None], ink: Ink) -> None:
+    def _together(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None], ink: Ink) -> None:
         """Draw a group that lets everyone in: a line where one runs, a double one where several do."""
         for stretch in stretches(columns):
             if stretch.is_short and stretch.columns[0].at_once < 2:
@@ -96,10 +97,10 @@ class Bars:
             self._line(row, stretch, ink)
             callback = self.timeline.entities[stretch.top.entity].spoken_name
             most = max(column.at_once for column in stretch.columns)
-            texts = (f"{most} at once",) if most > 1 else (f"runs {callback}", f"runs {short(callback)}")
+            texts = (f"{most} at once",) if most > 1 else (f"runs {callback}", f"runs {short_name(callback)}")
             self._words(row, stretch.first, stretch.after, texts)
 
-    def calls(self, row: Row, columns: Sequence[Column[Span] | None], entity: Entity) -> None:
+    def calls(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None], entity: Entity) -> None:
         """Draw when a callback runs: a mark for a short call, a line with its thread for a long one."""
         number = self._number(entity.id)
         late = []
@@ -120,7 +121,10 @@ class Bars:
             self._late(row, stretch)
 
     def waits(
-        self, row: Row, columns: Sequence[Column[Wait] | None], calls: Sequence[Column[Span] | None]
+        self,
+        row: CellRow,
+        columns: Sequence[LaneColumn[Wait] | None],
+        calls: Sequence[LaneColumn[Span] | None],
     ) -> None:
         """Draw when a callback waits: hatching, and the reason in words."""
         for stretch in stretches(columns):
@@ -156,14 +160,14 @@ class Bars:
             return ("its last call still runs", "still runs")
         full = why_waiting(wait, self.timeline)
         brief = full.removeprefix("group ")
-        return (full, brief, short(brief))
+        return (full, brief, short_name(brief))
 
-    def _columns(self, row: Row, stretch: Stretch[Span], ink: Ink) -> None:
+    def _columns(self, row: CellRow, stretch: MergedColumns[Span], ink: Ink) -> None:
         """Draw a stretch as a bar; nothing is drawn there yet."""
         left, right = self.glyphs.left, self.glyphs.right
         self._cells(row, stretch, [(right if c.runs_on else left)[c.eighths] for c in stretch.columns], ink)
 
-    def _texture(self, row: Row, stretch: Stretch[Span], number: int) -> None:
+    def _texture(self, row: CellRow, stretch: MergedColumns[Span], number: int) -> None:
         """Fill the whole columns of a bar, all between its ends, with the texture of its group."""
         glyph, ink = texture_of(number, self.glyphs)
         if glyph == self.glyphs.left[8] or stretch.is_short:
@@ -172,16 +176,16 @@ class Bars:
         after = stretch.after - (stretch.columns[-1].eighths < 8)
         row.fill(first, max(first, after), glyph, ink)
 
-    def _line(self, row: Row, stretch: Stretch[Span], ink: Ink) -> None:
+    def _line(self, row: CellRow, stretch: MergedColumns[Span], ink: Ink) -> None:
         """Draw a stretch as a line, double where there are several; nothing is drawn there yet."""
         one, several = self.glyphs.line, self.glyphs.double_line
         self._cells(row, stretch, [several if c.at_once > 1 else one for c in stretch.columns], ink)
 
-    def _cells(self, row: Row, stretch: Stretch[Span], cells: list[str], ink: Ink) -> None:
+    def _cells(self, row: CellRow, stretch: MergedColumns[Span], cells: list[str], ink: Ink) -> None:
         row.cells[stretch.first : stretch.after] = cells
         row.inks[stretch.first : stretch.after] = [ink] * len(cells)
 
-    def _seam(self, row: Row, stretch: Stretch[Span]) -> None:
+    def _seam(self, row: CellRow, stretch: MergedColumns[Span]) -> None:
         """Part a bar from the one that it follows at once."""
         before = stretch.first - 1
         if before < 0:
@@ -193,30 +197,30 @@ class Bars:
         elif row.cells[before] == self.glyphs.left[8]:
             row.cells[before] = self.glyphs.left[7]
 
-    def _label(self, row: Row, stretch: Stretch[Span], ink: Ink) -> None:
+    def _label(self, row: CellRow, stretch: MergedColumns[Span], ink: Ink) -> None:
         whole = [place for place, column in stretch.places() if column.eighths == 8]
         if len(whole) < 2:
             return
         entity = self.timeline.entities[stretch.top.entity]
         letter = self.timeline.groups[entity.group].letter
         name = entity.spoken_name
-        for text in (f"{letter} {name}", f"{letter} {short(name)}", letter):
+        for text in (f"{letter} {name}", f"{letter} {short_name(name)}", letter):
             if len(text) + 3 <= len(whole) or text == letter:
                 row.write(whole[0], f"{text} ", ink)
                 return
 
-    def _failure(self, row: Row, stretch: Stretch[Span]) -> None:
+    def _failure(self, row: CellRow, stretch: MergedColumns[Span]) -> None:
         if stretch.top.error:
             row.put(stretch.after - 1, self.glyphs.cross, _WARN)
 
-    def _late(self, row: Row, stretch: Stretch[Span]) -> None:
+    def _late(self, row: CellRow, stretch: MergedColumns[Span]) -> None:
         after = stretch.after
         for text in (f"late {duration(stretch.top.age)}", "late", "!"):
             if row.blank(after, after + len(text)):
                 row.write(after, text, _WARN)
                 return
 
-    def _words(self, row: Row, first: int, after: int, texts: Sequence[str]) -> None:
+    def _words(self, row: CellRow, first: int, after: int, texts: Sequence[str]) -> None:
         """Write the first of the texts that fits between two columns and leaves some of what it names."""
         for text in texts:
             if len(text) + 5 <= after - first:
@@ -227,7 +231,7 @@ class Bars:
         return self.numbers[self.timeline.entities[entity].group]
 
 
-def _wins(wait: Column[Wait], call: Column[Span] | None) -> bool:
+def _wins(wait: LaneColumn[Wait], call: LaneColumn[Span] | None) -> bool:
     """Tell whether a column shows the wait: it took more than the calls, and enough to be seen."""
     if call is None:
         return True

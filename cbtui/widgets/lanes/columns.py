@@ -6,11 +6,11 @@ from math import inf
 from operator import attrgetter
 from typing import Generic, NamedTuple, Protocol, TypeAlias, TypeVar
 
-from cbtui.widgets.lanes.scale import Scale
+from cbtui.widgets.lanes.scale import TimeScale
 from sim.trace.events import EntityId
 from sim.trace.model import Nanoseconds, Window
 
-MOST_A_COLUMN = 8
+SAMPLES_PER_COLUMN = 8
 """How many of the intervals that begin in one column are looked at; of more, an even sample."""
 
 _START = attrgetter("start")
@@ -24,7 +24,7 @@ _LENGTHS_KEPT = 4
 
 _NEWEST = 2
 """Columns that are summed up however little of a ration is left: those in which a run goes on."""
-_A_PART = 12
+_SUMMED_AT_ONCE = 12
 """Columns that are summed up before the ration is looked at again."""
 
 
@@ -49,7 +49,7 @@ _Key: TypeAlias = tuple[Nanoseconds, EntityId]
 I = TypeVar("I", bound=Interval)  # noqa: E741 the one type variable here, for an interval
 
 
-class Column(NamedTuple, Generic[I]):
+class LaneColumn(NamedTuple, Generic[I]):
     """What happened in one column.
 
     ``eighths`` is how much of it was taken, at least 1; ``top`` is the interval that took most of it, and
@@ -63,11 +63,11 @@ class Column(NamedTuple, Generic[I]):
     at_once: int
 
 
-class Stretch(NamedTuple, Generic[I]):
+class MergedColumns(NamedTuple, Generic[I]):
     """Neighbouring columns with the same top."""
 
     first: int
-    columns: list[Column[I]]
+    columns: list[LaneColumn[I]]
     top: I
 
     @property
@@ -81,12 +81,12 @@ class Stretch(NamedTuple, Generic[I]):
         columns = self.columns
         return columns[0].eighths < 8 and (len(columns) == 1 or all(column.eighths < 8 for column in columns))
 
-    def places(self) -> Iterable[tuple[int, Column[I]]]:
+    def places(self) -> Iterable[tuple[int, LaneColumn[I]]]:
         """The columns with their places."""
         return enumerate(self.columns, self.first)
 
 
-class Ration:
+class LookBudget:
     """How many intervals may be looked at for one picture; what is not looked at for one is for the next."""
 
     def __init__(self, looks: float = inf) -> None:
@@ -107,18 +107,18 @@ class Ration:
         self._left -= looks
 
 
-class _Past(Generic[I]):
+class _SettledColumns(Generic[I]):
     """What was summed up in columns of one length."""
 
     def __init__(self) -> None:
         self.edge = 0
         self.settled = 0
-        self.kept: dict[int, Column[I] | None] = {}
+        self.kept: dict[int, LaneColumn[I] | None] = {}
         self.lasting: dict[_Key, int] = {}
         self.told: set[_Key] = set()
 
 
-class Columns(Generic[I]):
+class LaneColumns(Generic[I]):
     """The columns of one lane; those of the settled past are kept from picture to picture.
 
     The lengths of columns that were shown last are remembered, so that zooming out and in again is quick.
@@ -127,11 +127,13 @@ class Columns(Generic[I]):
     def __init__(self, query: Callable[[Window], Sequence[I]]) -> None:
         self._query = query
         self._per_column = 0
-        self._pasts: dict[Nanoseconds, _Past[I]] = {}
+        self._pasts: dict[Nanoseconds, _SettledColumns[I]] = {}
         self.unseen: tuple[int, ...] = ()
         """The places of the last answer that are still to be summed up."""
 
-    def over(self, scale: Scale, edge: Nanoseconds, ration: Ration | None = None) -> list[Column[I] | None]:
+    def over(
+        self, scale: TimeScale, edge: Nanoseconds, ration: LookBudget | None = None
+    ) -> list[LaneColumn[I] | None]:
         """Sum up a scale's columns; an interval that still lasts reaches to ``edge``.
 
         The newest come first. What the ration does not suffice for is None, and ``unseen``.
@@ -142,7 +144,7 @@ class Columns(Generic[I]):
         first = max(scale.first, 0)
         after = min(scale.first + scale.columns, edge // scale.per_column + 1)
         missing = [number for number in range(first, after) if number not in kept]
-        fresh, left = self._newest_of(missing, edge, ration or Ration())
+        fresh, left = self._newest_of(missing, edge, ration or LookBudget())
         self.unseen = tuple(number - scale.first for number in missing[:left])
         past.settled = max(0, (edge - _SETTLED_AFTER) // scale.per_column)
         for number, column in fresh.items():
@@ -157,19 +159,19 @@ class Columns(Generic[I]):
             columns[number - scale.first] = column
         return columns
 
-    def _past_of(self, scale: Scale, edge: Nanoseconds) -> _Past[I]:
+    def _past_of(self, scale: TimeScale, edge: Nanoseconds) -> _SettledColumns[I]:
         """What is kept of columns of this length, and is of use."""
         self._per_column = scale.per_column
         past = self._pasts.pop(scale.per_column, None)
         if past is None or len(past.kept) > 4 * scale.columns or edge < past.edge:
-            past = _Past()
+            past = _SettledColumns()
         self._pasts[scale.per_column] = past
         past.edge = edge
         if len(self._pasts) > _LENGTHS_KEPT:
             del self._pasts[next(iter(self._pasts))]
         return past
 
-    def _forget_what_changed(self, past: _Past[I]) -> None:
+    def _forget_what_changed(self, past: _SettledColumns[I]) -> None:
         """Drop kept columns in which something began that was not told when they were summed up, or ended.
 
         A wait is often told late: once it is clear that the callback has to wait.
@@ -186,13 +188,13 @@ class Columns(Generic[I]):
             past.lasting = {key: number for key, number in past.lasting.items() if number < since}
 
     def _newest_of(
-        self, missing: Sequence[int], edge: Nanoseconds, ration: Ration
-    ) -> tuple[dict[int, Column[I] | None], int]:
+        self, missing: Sequence[int], edge: Nanoseconds, ration: LookBudget
+    ) -> tuple[dict[int, LaneColumn[I] | None], int]:
         """Sum up missing columns from the last backwards; also returns how many of them are left."""
-        fresh: dict[int, Column[I] | None] = {}
+        fresh: dict[int, LaneColumn[I] | None] = {}
         left = len(missing)
         while left and not (fresh and ration.is_used_up):
-            count = left if ration.is_endless else _NEWEST if not fresh else _A_PART
+            count = left if ration.is_endless else _NEWEST if not fresh else _SUMMED_AT_ONCE
             part = missing[max(0, left - count) : left]
             summed, looks = self._summed(part, edge)
             fresh.update(summed)
@@ -200,20 +202,22 @@ class Columns(Generic[I]):
             left -= len(part)
         return fresh, left
 
-    def _summed(self, numbers: Sequence[int], edge: Nanoseconds) -> tuple[dict[int, Column[I] | None], int]:
+    def _summed(
+        self, numbers: Sequence[int], edge: Nanoseconds
+    ) -> tuple[dict[int, LaneColumn[I] | None], int]:
         """Sum up all columns from the first of ascending numbers to the last, in how many looks."""
         length = self._per_column
         found = self._query(Window(numbers[0] * length, (numbers[-1] + 1) * length))
         if not found:
             return dict.fromkeys(numbers), 1
         looks = len(numbers)
-        summed: dict[int, Column[I] | None] = {}
+        summed: dict[int, LaneColumn[I] | None] = {}
         low = high = bisect_left(found, numbers[0] * length, key=_START)
         running = self._running(numbers[0] * length)
         for number in range(numbers[0], numbers[-1] + 1):
             window = Window(number * length, (number + 1) * length)
             low, high = high, _first_from(found, window.end, high, high - low)
-            step = max(1, -(-(high - low) // MOST_A_COLUMN))
+            step = max(1, -(-(high - low) // SAMPLES_PER_COLUMN))
             begun = [found[place] for place in range(low, high, step)]
             looks += len(running) + len(begun)
             summed[number] = _column(running, begun, step, window, edge) if running or begun else None
@@ -234,7 +238,7 @@ def _key(interval: Interval) -> "_Key":
     return interval.start, interval.entity
 
 
-class Instants:
+class InstantColumns:
     """In which columns of one lane something happened that takes no time; the settled past is kept."""
 
     def __init__(self, query: Callable[[Window], Sequence[Nanoseconds]]) -> None:
@@ -244,7 +248,7 @@ class Instants:
         self._known_from = 0
         self._marked: set[int] = set()
 
-    def over(self, scale: Scale, edge: Nanoseconds) -> list[int]:
+    def over(self, scale: TimeScale, edge: Nanoseconds) -> list[int]:
         """Return the places of the columns in which something happened up to ``edge``, in order."""
         first, after = scale.first, min(scale.first + scale.columns, edge // scale.per_column + 1)
         apart = first < self._known_from or first > self._known_to
@@ -272,7 +276,7 @@ def _first_from(found: Sequence[I], at: Nanoseconds, low: int, likely: int) -> i
 
 def _column(
     running: Sequence[I], begun: Sequence[I], step: int, window: Window, edge: Nanoseconds
-) -> Column[I] | None:
+) -> LaneColumn[I] | None:
     """Sum up one column: what runs as it begins, and every ``step``-th of what begins in it."""
     taken = 0
     longest = -1
@@ -291,7 +295,7 @@ def _column(
     if top is None:
         return None
     eighths = min(8, max(1, round(8 * taken / window.length)))
-    return Column(eighths, _runs_on(top, window), top, at_once)
+    return LaneColumn(eighths, _runs_on(top, window), top, at_once)
 
 
 def _runs_on(interval: Interval, window: Window) -> bool:
@@ -299,9 +303,9 @@ def _runs_on(interval: Interval, window: Window) -> bool:
     return interval.start > window.start and ends_later
 
 
-def stretches(columns: Sequence[Column[I] | None]) -> list[Stretch[I]]:
+def stretches(columns: Sequence[LaneColumn[I] | None]) -> list[MergedColumns[I]]:
     """Join neighbouring columns that the same interval took most of."""
-    found: list[Stretch[I]] = []
+    found: list[MergedColumns[I]] = []
     before: I | None = None
     for place, column in enumerate(columns):
         top = None if column is None else column.top
@@ -309,6 +313,6 @@ def stretches(columns: Sequence[Column[I] | None]) -> list[Stretch[I]]:
             if before is not None and (top is before or _key(top) == _key(before)):
                 found[-1].columns.append(column)
             else:
-                found.append(Stretch(place, [column], top))
+                found.append(MergedColumns(place, [column], top))
         before = top
     return found

@@ -18,27 +18,27 @@ _MOST_REASONS = 2
 
 
 @dataclass(frozen=True, slots=True)
-class Details:
+class BarDetails:
     """What a bar is, and what is known of it: the most telling facts first."""
 
     title: str
     facts: tuple[str, ...] = ()
 
 
-def details_of(timeline: Timeline, bar: Bar, now: Nanoseconds) -> Details:
+def details_of(timeline: Timeline, bar: Bar, now: Nanoseconds) -> BarDetails:
     """Return what is known of a bar at the moment ``now``; what lasts is measured up to then."""
     match bar:
         case Span():
-            return Details(_who_runs(timeline, bar), tuple(_of_span(timeline, bar, now)))
+            return BarDetails(_who_runs(timeline, bar), tuple(_of_span(timeline, bar, now)))
         case Wait():
-            return Details(_who_waits(timeline, bar, now), tuple(_of_wait(timeline, bar, now)))
+            return BarDetails(_who_waits(timeline, bar, now), tuple(_of_wait(timeline, bar, now)))
         case Call():
-            return Details(f"call of {bar.service}", tuple(_of_call(timeline, bar, now)))
+            return BarDetails(f"call of {bar.service}", tuple(_of_call(timeline, bar, now)))
 
 
 def details_of_selection(
     timeline: Timeline, selection: Selection, now: Nanoseconds, keys: LaneKeys = USUAL_KEYS
-) -> Details:
+) -> BarDetails:
     """Return what is known of a selection; of a lane without a bar, by which keys to find one."""
     if selection.bar is not None:
         return details_of(timeline, selection.bar, now)
@@ -52,7 +52,7 @@ def details_of_selection(
         case ServiceLane(service):
             name = service
     how = f"{keys.before} and {keys.after} go to what came before and after"
-    return Details(name, ("nothing up to here on screen", how))
+    return BarDetails(name, ("nothing up to here on screen", how))
 
 
 # a call of a callback

@@ -2,9 +2,9 @@
 
 from collections.abc import Sequence
 
-from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, Run
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
 from cbtui.text.cells import fit, visible
-from cbtui.widgets.lanes.details import Details
+from cbtui.widgets.lanes.details import BarDetails
 
 ROWS = 2
 """How many there are; always as many, so that the screen does not jump from one bar to the next."""
@@ -13,17 +13,17 @@ _TITLE = Ink(Role.STRONG)
 _FACT = Ink(Role.TEXT)
 
 
-def details_rows(details: Details, width: int, charset: Charset) -> list[list[Run]]:
+def details_rows(details: BarDetails, width: int, charset: Charset) -> list[list[TextRun]]:
     """Return the rows, each in exactly ``width`` columns; what there is no room for is cut off at the end."""
     glyphs = GLYPHS[charset]
     title = f"{glyphs.forth} {visible(details.title, charset)}"
     between = f" {glyphs.between} "
     lines = _broken([title, *(visible(fact, charset) for fact in details.facts)], between, width)
-    rows = [[Run(fit(line, width, charset), _FACT)] for line in lines[:ROWS]]
-    rows += [[Run(" " * width, _FACT)]] * (ROWS - len(rows))
+    rows = [[TextRun(fit(line, width, charset), _FACT)] for line in lines[:ROWS]]
+    rows += [[TextRun(" " * width, _FACT)]] * (ROWS - len(rows))
     shown = len(title) if len(title) < width else width
     first = rows[0][0].text
-    rows[0] = [Run(first[:shown], _TITLE), Run(first[shown:], _FACT)]
+    rows[0] = [TextRun(first[:shown], _TITLE), TextRun(first[shown:], _FACT)]
     return rows
 
 

@@ -1,6 +1,6 @@
 """What lanes are called, in as many columns as there are."""
 
-from cbtui.widgets.lanes.status import short
+from cbtui.text.callback_names import short_name
 from sim.trace.model import Entity, Group, Thread
 
 _LEAST_PROGRAM = 3
@@ -45,16 +45,16 @@ def group_name(group: Group, room: int) -> str:
 
 def entity_name(entity: Entity, room: int) -> str:
     """Return the name of a callback of a group of several."""
-    return entity.label if len(entity.label) <= room else short(entity.label)
+    return entity.label if len(entity.label) <= room else short_name(entity.label)
 
 
 def sole_name(entity: Entity, group: Group, room: int) -> str:
     """Return the name of a group's only callback, after the kind of the group where there is room for it."""
-    names = (entity.label, short(entity.label))
+    names = (entity.label, short_name(entity.label))
     for text in (f"{kind} {name}" for kind in _kinds(group) for name in names):
         if len(text) <= room:
             return text
-    return short(entity.label)
+    return short_name(entity.label)
 
 
 def more_lanes(hidden: int, key: str, room: int) -> str:

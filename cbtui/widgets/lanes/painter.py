@@ -5,15 +5,14 @@ from dataclasses import dataclass
 from functools import partial
 from math import inf
 
-from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, Run, texture_of
-from cbtui.text.cells import Row, fit
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun, texture_of
+from cbtui.text.cells import CellRow, fit
 from cbtui.widgets.lanes.axis import draw_axis
-from cbtui.widgets.lanes.bars import Bars
-from cbtui.widgets.lanes.calls import Calls, draw_calls
-from cbtui.widgets.lanes.columns import Column, Columns, I, Instants, Ration
+from cbtui.widgets.lanes.bars import BarPainter
+from cbtui.widgets.lanes.columns import I, InstantColumns, LaneColumn, LaneColumns, LookBudget
 from cbtui.widgets.lanes.keys import USUAL_KEYS
 from cbtui.widgets.lanes.names import entity_name, group_name, more_lanes, sole_name, thread_name
-from cbtui.widgets.lanes.picture import LEAST_WIDTH, Layout, Picture, layout_for
+from cbtui.widgets.lanes.picture import LEAST_WIDTH, LaneLayout, LanePicture, layout_for
 from cbtui.widgets.lanes.rows import (
     GroupLane,
     Lane,
@@ -22,12 +21,13 @@ from cbtui.widgets.lanes.rows import (
     SoleLane,
     ThreadLane,
     all_lanes,
-    choose,
+    choose_lanes,
     lanes_beyond,
 )
-from cbtui.widgets.lanes.scale import Scale, scale_for
+from cbtui.widgets.lanes.scale import TimeScale, scale_for
 from cbtui.widgets.lanes.selection import Selection
-from cbtui.widgets.lanes.status import Status
+from cbtui.widgets.lanes.service_calls import LatestCalls, draw_calls
+from cbtui.widgets.lanes.status import LaneStatus
 from sim.durations import duration
 from sim.trace.events import EntityId, EntityKind, ThreadId
 from sim.trace.model import Blocked, Entity, Group, Mark, Moment, Nanoseconds, Span, Wait, Window
@@ -39,7 +39,7 @@ NOW = Ink(Role.NOW)
 MARK = Ink(Role.MARK)
 
 
-LOOKS_A_FRAME = 500
+LOOKS_PER_FRAME = 500
 """Intervals that are looked at for one frame: a lesson's lanes fill in two or three frames, zoomed out on an
 hour in some twenty, and no key waits for all of it."""
 
@@ -54,7 +54,7 @@ def wanted_rows(timeline: Timeline, service: str = "") -> int:
     return len(all_lanes(timeline, service)) + 1
 
 
-class Painter:
+class LanePainter:
     """Paints a timeline as lanes; keeps what it summed up of the past, so that one painter serves one widget.
 
     ``service`` is a service of others that is to have a lane before it is first called. ``looks`` is how many
@@ -77,11 +77,11 @@ class Painter:
         self.service = service
         self.looks = looks
         self._timeline: Timeline | None = None
-        self._spans: dict[tuple[str, int], Columns[Span]] = {}
-        self._waits: dict[EntityId, Columns[Wait]] = {}
-        self._blocks: dict[ThreadId, Columns[Blocked]] = {}
-        self._losses: dict[EntityId, Instants] = {}
-        self.painted: dict[Lane, tuple[_Sums, list[Run]]] = {}
+        self._spans: dict[tuple[str, int], LaneColumns[Span]] = {}
+        self._waits: dict[EntityId, LaneColumns[Wait]] = {}
+        self._blocks: dict[ThreadId, LaneColumns[Blocked]] = {}
+        self._losses: dict[EntityId, InstantColumns] = {}
+        self.painted: dict[Lane, tuple[_LaneSummary, list[TextRun]]] = {}
 
     def text(self, timeline: Timeline, window: Window, now: Nanoseconds, width: int, height: int) -> str:
         """Return the picture of ``paint`` as plain text."""
@@ -95,7 +95,7 @@ class Painter:
         width: int,
         height: int,
         selection: Selection | None = None,
-    ) -> Picture:
+    ) -> LanePicture:
         """Paint the lanes of a window, with the cursor at ``now``, in ``width`` x ``height`` cells."""
         if timeline is not self._timeline:
             self._timeline = timeline
@@ -108,19 +108,19 @@ class Painter:
         scale = scale_for(window, layout.columns)
         every = all_lanes(timeline, self.service)
         if width < LEAST_WIDTH:
-            return Picture(((Run(" " * width, PLAIN),),) * height, (), layout, scale)
-        lanes = choose(
+            return LanePicture(((TextRun(" " * width, PLAIN),),) * height, (), layout, scale)
+        lanes = choose_lanes(
             every, height - 1, timeline, scale.window, None if selection is None else selection.lane
         )
-        frame = _Frame(self, timeline, scale, layout, now, timeline.moment(now), selection)
+        frame = _LaneFrame(self, timeline, scale, layout, now, timeline.moment(now), selection)
         rows = [frame.lane(lane) for lane in lanes] if height > 0 else []
         if height > 0:
             hidden = len(every) - len(lanes) + lanes_beyond(every, timeline)
             rows.append(frame.axis(hidden))
         complete = not frame.unseen
-        return Picture(tuple(tuple(row) for row in rows), tuple(lanes), layout, scale, complete)
+        return LanePicture(tuple(tuple(row) for row in rows), tuple(lanes), layout, scale, complete)
 
-    def spans(self, lane: Lane, timeline: Timeline) -> Columns[Span]:
+    def spans(self, lane: Lane, timeline: Timeline) -> LaneColumns[Span]:
         """Return the summed-up calls of a lane."""
         match lane:
             case ThreadLane(thread):
@@ -130,59 +130,59 @@ class Painter:
             case MemberLane(entity) | SoleLane(entity):
                 return self._kept(timeline.spans_of, entity.id)
             case ServiceLane():
-                return Columns(lambda _: ())
+                return LaneColumns(lambda _: ())
 
-    def _kept(self, query: Callable[[int, Window], Sequence[Span]], subject: int) -> Columns[Span]:
+    def _kept(self, query: Callable[[int, Window], Sequence[Span]], subject: int) -> LaneColumns[Span]:
         key = (query.__name__, subject)
         if key not in self._spans:
-            self._spans[key] = Columns(partial(query, subject))
+            self._spans[key] = LaneColumns(partial(query, subject))
         return self._spans[key]
 
-    def waits(self, entity: Entity, timeline: Timeline) -> Columns[Wait]:
+    def waits(self, entity: Entity, timeline: Timeline) -> LaneColumns[Wait]:
         """Return the summed-up waits of a callback."""
         if entity.id not in self._waits:
-            self._waits[entity.id] = Columns(partial(timeline.waits_of, entity.id))
+            self._waits[entity.id] = LaneColumns(partial(timeline.waits_of, entity.id))
         return self._waits[entity.id]
 
-    def blocks(self, thread: ThreadId, timeline: Timeline) -> Columns[Blocked]:
+    def blocks(self, thread: ThreadId, timeline: Timeline) -> LaneColumns[Blocked]:
         """Return the summed-up stretches in which a thread stood still."""
         if thread not in self._blocks:
-            self._blocks[thread] = Columns(partial(timeline.blocks_on, thread))
+            self._blocks[thread] = LaneColumns(partial(timeline.blocks_on, thread))
         return self._blocks[thread]
 
-    def losses(self, entity: Entity, timeline: Timeline) -> Instants:
+    def losses(self, entity: Entity, timeline: Timeline) -> InstantColumns:
         """Return when the queue of a callback lost messages."""
         if entity.id not in self._losses:
-            self._losses[entity.id] = Instants(partial(timeline.losses_of, entity.id))
+            self._losses[entity.id] = InstantColumns(partial(timeline.losses_of, entity.id))
         return self._losses[entity.id]
 
 
 @dataclass(frozen=True, slots=True)
-class _Sums:
+class _LaneSummary:
     """What a lane shows, column by column.
 
     ``lasting`` is how long what still lasts has lasted, in words; ``unseen`` are the columns that are still
     to be summed up.
     """
 
-    scale: Scale
-    calls: list[Column[Span] | None]
-    waits: list[Column[Wait] | None]
-    blocks: list[Column[Blocked] | None]
+    scale: TimeScale
+    calls: list[LaneColumn[Span] | None]
+    waits: list[LaneColumn[Wait] | None]
+    blocks: list[LaneColumn[Blocked] | None]
     losses: list[int]
     lasting: tuple[str, ...]
     unseen: tuple[int, ...]
 
 
-class _Frame:
+class _LaneFrame:
     """One picture while it is painted."""
 
     def __init__(
         self,
-        painter: Painter,
+        painter: LanePainter,
         timeline: Timeline,
-        scale: Scale,
-        layout: Layout,
+        scale: TimeScale,
+        layout: LaneLayout,
         now: Nanoseconds,
         moment: Moment,
         selection: Selection | None,
@@ -193,17 +193,17 @@ class _Frame:
         self._scale = scale
         self._layout = layout
         self._now = now
-        self._ration = Ration(painter.looks)
+        self._ration = LookBudget(painter.looks)
         self.unseen = False
         self._charset = painter.charset
         self._glyphs = GLYPHS[painter.charset]
         self._edge = max(now, timeline.end) if timeline.ended is None else timeline.end
-        self._calls = Calls(timeline)
+        self._calls = LatestCalls(timeline)
         self._numbers = {group: place for place, group in enumerate(timeline.groups)}
-        self._bars = Bars(timeline, self._glyphs, now, self._numbers)
-        self._status = Status(timeline, scale.window, moment, self._calls, self._charset, layout.statuses)
+        self._bars = BarPainter(timeline, self._glyphs, now, self._numbers)
+        self._status = LaneStatus(timeline, scale.window, moment, self._calls, self._charset, layout.statuses)
 
-    def lane(self, lane: Lane) -> list[Run]:
+    def lane(self, lane: Lane) -> list[TextRun]:
         """Paint a lane with its name and status."""
         sums = self._sums(lane)
         chosen = self._selection is not None and self._selection.lane == lane
@@ -221,7 +221,7 @@ class _Frame:
                 return entity.kind is not EntityKind.SERVICE
         return True
 
-    def _kept(self, lane: Lane, sums: _Sums) -> list[Run]:
+    def _kept(self, lane: Lane, sums: _LaneSummary) -> list[TextRun]:
         """Return a lane as it was painted last, painted anew if it has changed."""
         before = self._painter.painted.get(lane)
         if before is not None and before[0] == sums:
@@ -230,8 +230,8 @@ class _Frame:
         self._painter.painted[lane] = (sums, runs)
         return runs
 
-    def _painted(self, lane: Lane, sums: _Sums) -> list[Run]:
-        row = Row(self._layout.columns, self._charset)
+    def _painted(self, lane: Lane, sums: _LaneSummary) -> list[TextRun]:
+        row = CellRow(self._layout.columns, self._charset)
         self._draw(row, lane, sums)
         for place in sums.unseen:
             row.put(place, self._glyphs.point, FAINT)
@@ -241,26 +241,26 @@ class _Frame:
         self._show_cursor(row)
         return row.runs()
 
-    def axis(self, hidden: int) -> list[Run]:
+    def axis(self, hidden: int) -> list[TextRun]:
         """Paint the time axis; ``hidden`` lanes that had no room are told of at its left."""
-        row = Row(self._layout.columns, self._charset)
+        row = CellRow(self._layout.columns, self._charset)
         draw_axis(row, self._scale, self._now_column, self._commands())
         name = more_lanes(hidden, self._painter.more_key, self._layout.names) if hidden else "seconds"
         unit = f"{duration(self._scale.per_column)}/col" if self._layout.statuses >= 15 else ""
         self._show_cursor(row)
-        return self._framed([Run(name, FAINT)], row.runs(), Run(unit, FAINT), chosen=False)
+        return self._framed([TextRun(name, FAINT)], row.runs(), TextRun(unit, FAINT), chosen=False)
 
     @property
     def _now_column(self) -> int:
         """The cursor's column; the last one when the picture ends exactly there."""
         return self._scale.column_of(self._now - (self._now == self._scale.window.end))
 
-    def _sums(self, lane: Lane) -> _Sums:
+    def _sums(self, lane: Lane) -> _LaneSummary:
         painter, timeline = self._painter, self._timeline
         unseen: set[int] = set()
         calls = self._summed(painter.spans(lane, timeline), unseen)
-        waits: list[Column[Wait] | None] = []
-        blocks: list[Column[Blocked] | None] = []
+        waits: list[LaneColumn[Wait] | None] = []
+        blocks: list[LaneColumn[Blocked] | None] = []
         losses: list[int] = []
         match lane:
             case ThreadLane(thread):
@@ -276,15 +276,15 @@ class _Frame:
             if column is not None and column.top.end is None
         )
         lengths = tuple(duration(self._now - start) for start in lasting)
-        return _Sums(self._scale, calls, waits, blocks, losses, lengths, tuple(sorted(unseen)))
+        return _LaneSummary(self._scale, calls, waits, blocks, losses, lengths, tuple(sorted(unseen)))
 
-    def _summed(self, columns: Columns[I], unseen: set[int]) -> list[Column[I] | None]:
+    def _summed(self, columns: LaneColumns[I], unseen: set[int]) -> list[LaneColumn[I] | None]:
         """Sum up as much as the picture's ration allows, and add what it does not to ``unseen``."""
         summed = columns.over(self._scale, self._edge, self._ration)
         unseen.update(columns.unseen)
         return summed
 
-    def _draw(self, row: Row, lane: Lane, sums: _Sums) -> None:
+    def _draw(self, row: CellRow, lane: Lane, sums: _LaneSummary) -> None:
         match lane:
             case ThreadLane():
                 self._bars.thread(row, sums.calls)
@@ -302,7 +302,7 @@ class _Frame:
             case ServiceLane(service):
                 draw_calls(row, self._calls.of(service), self._scale, self._edge, self._painter.call_key)
 
-    def _latest(self, columns: list[Column[Span] | None]) -> Span | None:
+    def _latest(self, columns: list[LaneColumn[Span] | None]) -> Span | None:
         shown = columns[: max(0, self._now_column + 1)]
         return next((column.top for column in reversed(shown) if column is not None), None)
 
@@ -312,21 +312,23 @@ class _Frame:
         marks = self._timeline.marks(self._scale.window)
         return [m for m in marks if m.kind == "command" and self._scale.column_of(m.at) not in shown]
 
-    def _framed(self, name: list[Run], runs: list[Run], status: Run, chosen: bool) -> list[Run]:
+    def _framed(
+        self, name: list[TextRun], runs: list[TextRun], status: TextRun, chosen: bool
+    ) -> list[TextRun]:
         *before, last = name
         room = self._room_after(before)
-        frame = Run(self._glyphs.frame, FAINT)
+        frame = TextRun(self._glyphs.frame, FAINT)
         text = f" {status.text}" if self._layout.statuses else ""
         return [
             *before,
-            Run(fit(last.text, room, self._charset), last.ink),
-            Run(self._glyphs.forth, MARK) if chosen else frame,
+            TextRun(fit(last.text, room, self._charset), last.ink),
+            TextRun(self._glyphs.forth, MARK) if chosen else frame,
             *runs,
             frame,
-            Run(fit(text, self._layout.statuses, self._charset), status.ink),
+            TextRun(fit(text, self._layout.statuses, self._charset), status.ink),
         ]
 
-    def _show_cursor(self, row: Row) -> None:
+    def _show_cursor(self, row: CellRow) -> None:
         """Show where the cursor stands and what lies after it, when it is not at the edge."""
         column = self._now_column
         at_edge = self._now + self._scale.per_column >= self._edge
@@ -336,31 +338,31 @@ class _Frame:
             row.put(column, self._glyphs.cursor, NOW)
         row.inks[column + 1 :] = [ink._replace(later=True) for ink in row.inks[column + 1 :]]
 
-    def _name(self, lane: Lane) -> list[Run]:
+    def _name(self, lane: Lane) -> list[TextRun]:
         match lane:
             case ThreadLane(thread):
                 name = thread_name(thread, self._layout.names - 1, self._glyphs.ellipsis)
-                return [Run(name, PLAIN)]
+                return [TextRun(name, PLAIN)]
             case GroupLane(group):
                 letter = self._letter(group)
-                return [*letter, Run(group_name(group, self._room_after(letter)), PLAIN)]
+                return [*letter, TextRun(group_name(group, self._room_after(letter)), PLAIN)]
             case MemberLane(entity):
-                return [Run(f"  {entity_name(entity, self._layout.names - 3)}", PLAIN)]
+                return [TextRun(f"  {entity_name(entity, self._layout.names - 3)}", PLAIN)]
             case SoleLane(entity, group):
                 letter = self._letter(group)
-                return [*letter, Run(sole_name(entity, group, self._room_after(letter)), PLAIN)]
+                return [*letter, TextRun(sole_name(entity, group, self._room_after(letter)), PLAIN)]
             case ServiceLane(service):
-                return [Run(service, PLAIN)]
+                return [TextRun(service, PLAIN)]
 
-    def _room_after(self, runs: list[Run]) -> int:
+    def _room_after(self, runs: list[TextRun]) -> int:
         """How many columns of a name are left."""
         return self._layout.names - sum(len(run.text) for run in runs)
 
-    def _letter(self, group: Group) -> list[Run]:
+    def _letter(self, group: Group) -> list[TextRun]:
         """A group's letter, and its texture where there is room."""
         number = self._numbers[group.id]
-        letter = Run(f"{group.letter} ", Ink(Role.LETTER, number))
+        letter = TextRun(f"{group.letter} ", Ink(Role.LETTER, number))
         if self._layout.names < _TEXTURED_FROM:
             return [letter]
         texture = texture_of(number, self._glyphs)
-        return [letter, texture._replace(text=texture.text * _SWATCH), Run(" ", PLAIN)]
+        return [letter, texture._replace(text=texture.text * _SWATCH), TextRun(" ", PLAIN)]

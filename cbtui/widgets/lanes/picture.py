@@ -2,9 +2,9 @@
 
 from dataclasses import dataclass
 
-from cbtui.looks.theme import Run
+from cbtui.looks.theme import TextRun
 from cbtui.widgets.lanes.rows import Lane
-from cbtui.widgets.lanes.scale import Scale
+from cbtui.widgets.lanes.scale import TimeScale
 from sim.durations import duration
 
 LEAST_WIDTH = 20
@@ -12,7 +12,7 @@ LEAST_WIDTH = 20
 
 
 @dataclass(frozen=True, slots=True)
-class Layout:
+class LaneLayout:
     """How a width is shared out: names at the left, lanes, statuses at the right; a frame between."""
 
     names: int
@@ -20,25 +20,25 @@ class Layout:
     statuses: int
 
 
-def layout_for(width: int) -> Layout:
+def layout_for(width: int) -> LaneLayout:
     """Share out a width of ``LEAST_WIDTH`` or more: the narrower, the shorter names and statuses."""
     for least, names, statuses in ((120, 23, 25), (72, 12, 16), (48, 10, 10), (LEAST_WIDTH, 6, 0)):
         if width >= least:
-            return Layout(names, width - names - statuses - 2, statuses)
+            return LaneLayout(names, width - names - statuses - 2, statuses)
     raise ValueError(f"lanes need {LEAST_WIDTH} columns, got {width}")
 
 
 @dataclass(frozen=True, slots=True)
-class Picture:
+class LanePicture:
     """Painted lanes, the axis last. ``lanes`` are those that ``rows`` begins with, one a row.
 
     One that is not ``complete`` has faint points where there was more to look at than a picture may take.
     """
 
-    rows: tuple[tuple[Run, ...], ...]
+    rows: tuple[tuple[TextRun, ...], ...]
     lanes: tuple[Lane, ...]
-    layout: Layout
-    scale: Scale
+    layout: LaneLayout
+    scale: TimeScale
     complete: bool = True
 
     @property

@@ -94,7 +94,7 @@ def ever_ran(timeline: Timeline, thread: ThreadId, at: Nanoseconds) -> bool:
     return bool(timeline.spans_on(thread, Window(0, at + 1)))
 
 
-def choose(
+def choose_lanes(
     lanes: list[Lane], room: int, timeline: Timeline, window: Window, selected: Lane | None = None
 ) -> list[Lane]:
     """Return the lanes that matter most in ``window``, as many as there is room for, in their order.
@@ -105,7 +105,7 @@ def choose(
     """
     if len(lanes) <= room:
         return lanes
-    worth = _Worth(timeline, window)
+    worth = _LanePriority(timeline, window)
     middle = lanes.index(selected) if selected in lanes else -_FAR
     places = sorted(
         range(len(lanes)),
@@ -122,7 +122,7 @@ _LATEST = 200
 
 
 @dataclass(frozen=True, slots=True)
-class _Worth:
+class _LanePriority:
     """How much a lane tells in a window."""
 
     timeline: Timeline

@@ -10,7 +10,7 @@ _LABEL_STEPS = (1, 2, 5)
 _LABEL_ROOM = 8
 
 
-class Scale(NamedTuple):
+class TimeScale(NamedTuple):
     """Columns of equal length on a grid that begins at 0 ns; ``first`` is the grid's number of column 0.
 
     The grid stands still while the window moves over it, so that a picture shifts by whole columns and
@@ -35,11 +35,11 @@ class Scale(NamedTuple):
         return (self.first + column) * self.per_column
 
 
-def scale_for(window: Window, columns: int) -> Scale:
+def scale_for(window: Window, columns: int) -> TimeScale:
     """Return the scale that shows at least ``window`` in so many columns, with its end at the right."""
     per_column = nice_column(-(-max(window.length, 1) // columns))
     last = -(-window.end // per_column)
-    return Scale(last - columns, per_column, columns)
+    return TimeScale(last - columns, per_column, columns)
 
 
 def nice_column(least: Nanoseconds) -> Nanoseconds:
@@ -52,7 +52,7 @@ def nice_column(least: Nanoseconds) -> Nanoseconds:
         power *= 10
 
 
-def labels(scale: Scale) -> list[tuple[int, str]]:
+def labels(scale: TimeScale) -> list[tuple[int, str]]:
     """Return the axis' labels: the column that each stands at, and the second it names."""
     step = _label_step(scale.per_column * _LABEL_ROOM)
     at = max(0, -(-scale.window.start // step) * step)

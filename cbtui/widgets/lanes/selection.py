@@ -78,7 +78,7 @@ def bar_up_to(timeline: Timeline, lane: Lane, column: Window, shown: Window) -> 
     return bar_at(timeline, lane, column) or (before[-1] if before else None)
 
 
-def beside(timeline: Timeline, lane: Lane, at: Nanoseconds, step: int) -> Bar | None:
+def neighbouring_bar(timeline: Timeline, lane: Lane, at: Nanoseconds, step: int) -> Bar | None:
     """Return the lane's next bar that begins after ``at`` (``step`` > 0), or the last that does before."""
     reach = _FIRST_REACH
     while True:

@@ -2,9 +2,10 @@
 
 from dataclasses import dataclass
 
-from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, Run
-from cbtui.widgets.lanes.calls import Calls
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
+from cbtui.text.callback_names import short_name
 from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, SoleLane, ThreadLane, ever_ran
+from cbtui.widgets.lanes.service_calls import LatestCalls
 from sim.durations import duration
 from sim.trace.events import EntityKind, GroupKind
 from sim.trace.model import Entity, Group, Moment, Span, Thread, Window
@@ -19,17 +20,17 @@ _WIDE = 22
 
 
 @dataclass(frozen=True, slots=True)
-class Status:
+class LaneStatus:
     """Writes the status of lanes at one moment, in ``width`` columns."""
 
     timeline: Timeline
     shown: Window
     moment: Moment
-    calls: Calls
+    calls: LatestCalls
     charset: Charset
     width: int
 
-    def of(self, lane: Lane, latest: Span | None) -> Run:
+    def of(self, lane: Lane, latest: Span | None) -> TextRun:
         """Return the status of a lane; ``latest`` is the last call that it shows before the cursor."""
         match lane:
             case ThreadLane(thread):
@@ -39,26 +40,26 @@ class Status:
             case MemberLane(entity) | SoleLane(entity):
                 return self._entity(entity, latest)
             case ServiceLane(service):
-                return Run(self.calls.summary(service, self.moment.at), PLAIN)
+                return TextRun(self.calls.summary(service, self.moment.at), PLAIN)
 
-    def _thread(self, thread: Thread) -> Run:
+    def _thread(self, thread: Thread) -> TextRun:
         past = Window(self.shown.start, min(self.shown.end, self.moment.at))
         share = self.timeline.busy(thread.id, past) if past.length > 0 else 0.0
         running = self.moment.running.get(thread.id)
         if running is not None:
             now = f"  {self._caller(running)} {duration(self.moment.at - running.start)}"
-            return Run(f"{share:4.0%}{now if self.width >= _WIDE else ' busy'}", PLAIN)
+            return TextRun(f"{share:4.0%}{now if self.width >= _WIDE else ' busy'}", PLAIN)
         if share == 0 and not ever_ran(self.timeline, thread.id, self.moment.at):
             if thread.executor == 0:
-                return Run("no callbacks" if self.width >= _WIDE else "own thread", FAINT)
-            return Run("  0%  never needed" if self.width >= _WIDE else "  0% unused", FAINT)
-        return Run(f"{share:4.0%} busy", PLAIN if share else FAINT)
+                return TextRun("no callbacks" if self.width >= _WIDE else "own thread", FAINT)
+            return TextRun("  0%  never needed" if self.width >= _WIDE else "  0% unused", FAINT)
+        return TextRun(f"{share:4.0%} busy", PLAIN if share else FAINT)
 
     def _caller(self, span: Span) -> str:
         entity = self.timeline.entities[span.entity]
-        return f"{self.timeline.groups[entity.group].letter} {short(entity.spoken_name)}"
+        return f"{self.timeline.groups[entity.group].letter} {short_name(entity.spoken_name)}"
 
-    def _group(self, group: Group) -> Run:
+    def _group(self, group: Group) -> TextRun:
         entities = self.timeline.entities
         waiting = sum([entities[entity].group == group.id for entity in self.moment.waiting])
         holders = len(self.moment.holders.get(group.id, ()))
@@ -67,41 +68,41 @@ class Status:
         else:
             state = "held" if holders else "free"
         if waiting:
-            return Run(f"{state}, {waiting} wait", WARN)
-        return Run(state, PLAIN if holders else FAINT)
+            return TextRun(f"{state}, {waiting} wait", WARN)
+        return TextRun(state, PLAIN if holders else FAINT)
 
-    def _entity(self, entity: Entity, latest: Span | None) -> Run:
+    def _entity(self, entity: Entity, latest: Span | None) -> TextRun:
         match entity.kind:
             case EntityKind.TIMER:
                 return self._timer(entity, latest)
             case EntityKind.SUBSCRIPTION:
                 return self._queue(entity, latest)
             case EntityKind.SERVICE:
-                return Run(self.calls.summary(entity.name, self.moment.at), PLAIN)
+                return TextRun(self.calls.summary(entity.name, self.moment.at), PLAIN)
             case EntityKind.CLIENT:
                 return self._client(entity)
             case _:
-                return Run("", PLAIN)
+                return TextRun("", PLAIN)
 
-    def _timer(self, timer: Entity, latest: Span | None) -> Run:
+    def _timer(self, timer: Entity, latest: Span | None) -> TextRun:
         wait = self.moment.waiting.get(timer.id)
         if wait is not None:
-            return Run(f"late {duration(self.moment.at - wait.since)}", WARN)
+            return TextRun(f"late {duration(self.moment.at - wait.since)}", WARN)
         if latest is None:
-            return Run("", PLAIN)
+            return TextRun("", PLAIN)
         if is_late(latest, timer):
-            return Run(f"was late {duration(latest.age)}", WARN)
-        return Run("on time", FAINT)
+            return TextRun(f"was late {duration(latest.age)}", WARN)
+        return TextRun("on time", FAINT)
 
-    def _client(self, client: Entity) -> Run:
+    def _client(self, client: Entity) -> TextRun:
         """Tell a client from the service of the same name; what waits for it are replies."""
         replies = self.timeline.queue(client.id, self.moment.at).depth
         if replies == 0:
-            return Run("client", FAINT)
+            return TextRun("client", FAINT)
         told = f"client, {replies} {'reply' if replies == 1 else 'replies'}"
-        return Run(told if len(told) < self.width else "client", PLAIN)
+        return TextRun(told if len(told) < self.width else "client", PLAIN)
 
-    def _queue(self, entity: Entity, latest: Span | None) -> Run:
+    def _queue(self, entity: Entity, latest: Span | None) -> TextRun:
         queue = self.timeline.queue(entity.id, self.moment.at)
         full = entity.depth and queue.depth >= entity.depth
         level = f"{queue.depth}/{entity.depth}{'!' if full else ''}"
@@ -109,17 +110,12 @@ class Status:
         age = "" if latest is None else f" {GLYPHS[self.charset].between} age {duration(latest.age)}"
         texts = (f"queue {level}{lost}{age}", f"queue {level}{lost}", f"{level}{lost}", level)
         fitting = (text for text in texts if len(text) < self.width)
-        return Run(next(fitting, level), WARN if full else PLAIN)
+        return TextRun(next(fitting, level), WARN if full else PLAIN)
 
 
 def is_late(span: Span, timer: Entity) -> bool:
     """Tell whether a timer's call came late: by a tenth of its period or more, and by 1 ms at least."""
     return span.age >= max(timer.period // 10, _LATE_AT_LEAST)
-
-
-def short(name: str) -> str:
-    """Return a callback's name without the ending that most of them share."""
-    return name.removesuffix("_callback") or name
 
 
 def _count(number: int) -> str:

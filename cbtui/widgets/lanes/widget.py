@@ -8,15 +8,15 @@ from textual.geometry import Size
 from textual.message import Message
 from textual.reactive import reactive
 
-from cbtui.looks.theme import GLYPHS, Charset, Run
+from cbtui.looks.theme import GLYPHS, Charset, TextRun
 from cbtui.widgets.lanes.details import details_of_selection
 from cbtui.widgets.lanes.details_rows import ROWS, details_rows
 from cbtui.widgets.lanes.keys import USUAL_KEYS, LaneKeys
-from cbtui.widgets.lanes.painter import LOOKS_A_FRAME, Painter, wanted_rows
-from cbtui.widgets.lanes.picture import Picture
+from cbtui.widgets.lanes.painter import LOOKS_PER_FRAME, LanePainter, wanted_rows
+from cbtui.widgets.lanes.picture import LanePicture
 from cbtui.widgets.lanes.rows import Lane, all_lanes
-from cbtui.widgets.lanes.selection import Selection, bar_at, bar_up_to, beside, start_of
-from cbtui.widgets.painted import Painted
+from cbtui.widgets.lanes.selection import Selection, bar_at, bar_up_to, neighbouring_bar, start_of
+from cbtui.widgets.painted_widget import PaintedWidget
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -27,7 +27,7 @@ _A_FRAME = 1 / 30
 """Seconds until the lanes go on to fill."""
 
 
-class Lanes(Painted, can_focus=True):
+class Lanes(PaintedWidget, can_focus=True):
     """Threads as lanes, callbacks as bars, waits as hatching; the time axis runs along the bottom.
 
     Set ``timeline`` again (it may be the same one) when it has grown. ``now`` is the cursor that every pane
@@ -49,13 +49,13 @@ class Lanes(Painted, can_focus=True):
     changes: reactive[str] = reactive("", repaint=False)
     keys: reactive[LaneKeys] = reactive(USUAL_KEYS, repaint=False)
 
-    _painter = Painter(looks=LOOKS_A_FRAME)
-    _picture: Picture | None = None
+    _painter = LanePainter(looks=LOOKS_PER_FRAME)
+    _picture: LanePicture | None = None
     _laid_out_for = 0
     _titled = ""
     _goes_on = False
 
-    class Picked(Message):
+    class BarPicked(Message):
         """The person pointed at a moment ``at``, and at something on a lane if ``selection`` says so."""
 
         def __init__(self, lanes: "Lanes", at: Nanoseconds, selection: Selection | None) -> None:
@@ -69,7 +69,7 @@ class Lanes(Painted, can_focus=True):
             """The lanes that were pointed at."""
             return self.lanes
 
-    class Turned(Message):
+    class WheelTurned(Message):
         """The person turned the wheel: ``steps`` > 0 asks for a longer stretch of time, < 0 for a shorter."""
 
         def __init__(self, steps: int) -> None:
@@ -77,7 +77,7 @@ class Lanes(Painted, can_focus=True):
             self.steps = steps
 
     @property
-    def picture(self) -> Picture | None:
+    def picture(self) -> LanePicture | None:
         """What was painted last: its lanes, scale and layout tell what lies under a cell."""
         return self._picture
 
@@ -101,7 +101,7 @@ class Lanes(Painted, can_focus=True):
     def bar_beside(self, step: int) -> Selection | None:
         """Return the selected lane's next bar after the cursor (``step`` > 0) or the last before it."""
         lane = self._lane_to_go_along()
-        bar = None if lane is None else beside(self.timeline, lane, self.now, step)
+        bar = None if lane is None else neighbouring_bar(self.timeline, lane, self.now, step)
         return None if lane is None or bar is None else Selection(lane, bar)
 
     def _lane_to_go_along(self) -> Lane | None:
@@ -134,26 +134,26 @@ class Lanes(Painted, can_focus=True):
         lane = picture.lanes[offset.y] if offset.y < len(picture.lanes) else None
         if not 0 <= place < scale.columns:
             if lane is not None:
-                self.post_message(self.Picked(self, self.now, self._last_on(lane)))
+                self.post_message(self.BarPicked(self, self.now, self._last_on(lane)))
             return
         column = Window(max(0, scale.time_at(place)), max(0, scale.time_at(place + 1)))
         bar = None if lane is None else bar_at(self.timeline, lane, column)
         at = column.start if bar is None else max(column.start, start_of(bar))
-        self.post_message(self.Picked(self, at, None if lane is None else Selection(lane, bar)))
+        self.post_message(self.BarPicked(self, at, None if lane is None else Selection(lane, bar)))
 
     def on_mouse_scroll_up(self, event: MouseScrollUp) -> None:
         """Ask for a shorter stretch of time."""
         event.stop()
-        self.post_message(self.Turned(-1))
+        self.post_message(self.WheelTurned(-1))
 
     def on_mouse_scroll_down(self, event: MouseScrollDown) -> None:
         """Ask for a longer stretch of time."""
         event.stop()
-        self.post_message(self.Turned(1))
+        self.post_message(self.WheelTurned(1))
 
     # drawing
 
-    def rows(self, size: Size) -> Sequence[Sequence[Run]]:
+    def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the lanes, and the details of the selected bar."""
         selection = None if self.selection is None else self.selection.renewed(self.timeline)
         told = self._rows_told(size) if selection is not None else 0
@@ -237,5 +237,5 @@ class Lanes(Painted, can_focus=True):
     def _begin_anew(self) -> None:
         """Have another painter, which remembers nothing."""
         call, more = self.keys.call, self.keys.more
-        self._painter = Painter(self.charset, self.service, LOOKS_A_FRAME, call, more)
+        self._painter = LanePainter(self.charset, self.service, LOOKS_PER_FRAME, call, more)
         self.changed()

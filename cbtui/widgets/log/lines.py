@@ -14,12 +14,13 @@ from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role
 from cbtui.text.cells import fit
-from cbtui.widgets.following import Following
+from cbtui.widgets.following_view import FollowingView
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.log.filter import Filter, LogEvent
 from cbtui.widgets.log.line import line_of, width_of
-from cbtui.widgets.log.search import Search
+from cbtui.widgets.log.search import LogSearch
 from sim.durations import timestamp
+from sim.plural import plural
 from sim.trace.events import Printed, Severity
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
@@ -27,7 +28,7 @@ from sim.trace.timeline import Timeline
 COLUMNS_FROM = 64
 """The narrowest log that shows thread and group of each line."""
 
-_AT_ONCE = 2000
+_SEARCH_BATCH = 2000
 """Lines that are looked at before the screen and the keys have their turn again: some milliseconds."""
 
 _THREAD = 12
@@ -44,7 +45,7 @@ _STYLES = {
 _CURSOR, _MOMENT = "log--cursor", "log--moment"
 
 
-class LogLines(Following):
+class LogLines(FollowingView):
     """The lines that a filter lets through, up to a moment; below them it says how many came later.
 
     One of them may be picked with the arrow keys or the pointer: enter, or a click, tells its time.
@@ -62,16 +63,9 @@ class LogLines(Following):
     class FilterWanted(Message):
         """The person wants to choose which lines are shown."""
 
-    class MomentPicked(Message):
-        """The person picked a line that was written ``at`` nanoseconds into the run."""
-
-        def __init__(self, at: Nanoseconds) -> None:
-            super().__init__()
-            self.at = at
-
     def __init__(self) -> None:
         super().__init__()
-        self._search = Search(Timeline(), Filter())
+        self._search = LogSearch(Timeline(), Filter())
         self._now = 0
         self._searching = False
         self._kept: int | None = None
@@ -91,14 +85,14 @@ class LogLines(Following):
         self._kept = None if self.follows else self._place_of(self.scroll_offset.y)
         if picked is not None and not wanted.passes(timeline.logs[picked], timeline):
             self.picked = None
-        self._search = Search(timeline, wanted)
+        self._search = LogSearch(timeline, wanted)
         self._widest = 0
         self._look_on()
 
     def show(self, timeline: Timeline, now: Nanoseconds) -> None:
         """Show the log of a timeline up to a moment."""
         if timeline is not self._search.timeline:
-            self._search = Search(timeline, self._search.wanted)
+            self._search = LogSearch(timeline, self._search.wanted)
             self.picked = self._kept = None
             self._widest = 0
         self._now = now
@@ -108,7 +102,7 @@ class LogLines(Following):
 
     def _look_on(self) -> None:
         """Look at some new lines, show what was found, and go on when others have had their turn."""
-        more = self._search.go_on(_AT_ONCE)
+        more = self._search.go_on(_SEARCH_BATCH)
         self._grow_to_what_was_found()
         if not more:
             self._kept = None
@@ -309,5 +303,5 @@ class LogLines(Following):
 def later_lines(now: Nanoseconds, later: int, width: int) -> str:
     """Return the line at which the cursor stands in the log, and how many lines are yet to come."""
     rule = GLYPHS[Charset.BRAILLE].line
-    words = f"{rule} {timestamp(now)}, {later:,} later line{'' if later == 1 else 's'} "
+    words = f"{rule} {timestamp(now)}, {later:,} later {plural(later, 'line')} "
     return fit(words + rule * (width - len(words)), width, Charset.BRAILLE)

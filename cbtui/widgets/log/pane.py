@@ -13,6 +13,7 @@ from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.widgets.log.filter import Filter, FilterError, filter_of
 from cbtui.widgets.log.lines import LogLines
+from sim.plural import plural
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 
@@ -104,7 +105,7 @@ class LogView(Vertical):
     def _note(self) -> None:
         lines = self.query_one(LogLines)
         shown, every = lines.counts
-        many = f"{every:,} line{'' if every == 1 else 's'}"
+        many = f"{every:,} {plural(every, 'line')}"
         part = many if lines.wanted.lets_all_through else f"{shown:,} of {many}"
         self.note = f"{part} · {'follows' if lines.follows else 'stays'}"
 

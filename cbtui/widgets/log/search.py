@@ -8,11 +8,11 @@ from collections.abc import Sequence
 from cbtui.widgets.log.filter import Filter, LogEvent
 from sim.trace.timeline import Timeline
 
-_REMEMBERED = 64
+_RECHECKED = 64
 """Lines at the end of what was looked at that are known again: a line may come late, by few."""
 
 
-class Search:
+class LogSearch:
     """The places in ``timeline.logs`` of the lines that a filter lets through.
 
     Lines are looked at as ``go_on`` says, in order and once; one that comes late, behind a line that was
@@ -24,7 +24,7 @@ class Search:
         self.wanted = wanted
         self._found = array("q")
         self._looked_at = 0
-        self._last: deque[LogEvent] = deque(maxlen=_REMEMBERED)
+        self._last: deque[LogEvent] = deque(maxlen=_RECHECKED)
 
     @property
     def places(self) -> Sequence[int]:
@@ -43,7 +43,7 @@ class Search:
         self._go_back_to_late_ones()
         start = self._looked_at
         new = logs[start : start + most]
-        self._last.extend(new[-_REMEMBERED:])
+        self._last.extend(new[-_RECHECKED:])
         self._looked_at += len(new)
         self._found.extend(
             place for place, event in enumerate(new, start) if self.wanted.passes(event, self.timeline)
@@ -59,5 +59,5 @@ class Search:
         if same is None:
             return
         self._looked_at = first + same if same else 0
-        self._last = deque(list(self._last)[:same], _REMEMBERED)
+        self._last = deque(list(self._last)[:same], _RECHECKED)
         del self._found[bisect_left(self._found, self._looked_at) :]

@@ -1,6 +1,6 @@
 """The robot pane."""
 
-from cbtui.widgets.robot.places import Look
+from cbtui.widgets.robot.pane_regions import RobotViewMode
 from cbtui.widgets.robot.view import RobotView
 
-__all__ = ["Look", "RobotView"]
+__all__ = ["RobotViewMode", "RobotView"]

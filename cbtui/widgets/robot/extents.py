@@ -22,7 +22,7 @@ class Extent(NamedTuple):
     top: float
 
 
-def whole(plan: ArenaShown) -> Extent:
+def whole_arena(plan: ArenaShown) -> Extent:
     """Return the extent of all walls and the sphere."""
     x, y, radius = plan.sphere
     across = [at for wall in plan.walls for at in (wall[0], wall[2])] + [x - radius, x + radius]
@@ -30,7 +30,7 @@ def whole(plan: ArenaShown) -> Extent:
     return Extent(min(across), min(along), max(across), max(along))
 
 
-def near(plan: ArenaShown, robot: RobotMoved) -> Extent:
+def robot_surroundings(plan: ArenaShown, robot: RobotMoved) -> Extent:
     """Return the surroundings of the robot, with the sphere while it is close.
 
     The borders lie on a coarse grid, so that the map stands still while the robot moves.
@@ -52,7 +52,7 @@ def _down(at: float) -> float:
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class MapView:
     """A map of ``columns`` x ``lines`` cells; a cell is taken to be twice as high as wide."""
 
     left: float
@@ -65,7 +65,7 @@ class View:
     down: int
 
     @classmethod
-    def of(cls, extent: Extent, columns: int, lines: int, charset: Charset) -> "View":
+    def of(cls, extent: Extent, columns: int, lines: int, charset: Charset) -> "MapView":
         """Fit an extent into cells, in the middle, as large as it goes."""
         width, height = extent.right - extent.left, extent.top - extent.bottom
         cell = max(width / (columns - 1), height / (2 * lines - 1), 1e-6)

@@ -4,7 +4,7 @@ import math
 from collections.abc import Sequence
 
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role
-from cbtui.text.cells import Row
+from cbtui.text.cells import CellRow
 from sim.trace.events import RobotMoved, VelocityCommanded
 
 PLAIN = Ink(Role.TEXT)
@@ -15,14 +15,16 @@ _GAP = 3
 _Figure = tuple[str, Ink]
 
 
-def figures(robot: RobotMoved, command: VelocityCommanded | None, width: int, charset: Charset) -> list[Row]:
+def figures(
+    robot: RobotMoved, command: VelocityCommanded | None, width: int, charset: Charset
+) -> list[CellRow]:
     """Return lines with the figures, as many as a width always needs, so that nothing below them jumps."""
     entries = _entries(robot, command, charset)
-    rows: list[Row] = []
+    rows: list[CellRow] = []
     at = width
     for text, ink in entries:
         if not rows or at + len(text) > width:
-            rows.append(Row(width, charset))
+            rows.append(CellRow(width, charset))
             at = 0
         name, _, value = text.partition(" ")
         rows[-1].write(at, name, FAINT)

@@ -6,12 +6,12 @@ from typing import NamedTuple
 
 from textual.geometry import Region
 
-from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, Run
-from cbtui.text.cells import Row
-from cbtui.widgets.robot.extents import View, near, whole
+from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
+from cbtui.text.cells import CellRow
+from cbtui.widgets.robot.extents import MapView, robot_surroundings, whole_arena
 from cbtui.widgets.robot.figures import figures
-from cbtui.widgets.robot.places import Look, Places, arrange
-from cbtui.widgets.robot.scene import Scene
+from cbtui.widgets.robot.pane_regions import PaneRegions, RobotViewMode, arrange
+from cbtui.widgets.robot.scene import RobotScene
 from sim.durations import duration
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
@@ -27,10 +27,10 @@ PLAIN = Ink(Role.TEXT)
 WARN = Ink(Role.WARN)
 
 
-class Painting(NamedTuple):
+class RobotPainting(NamedTuple):
     """Painted rows, and where in them the camera's picture goes, if anywhere."""
 
-    rows: Sequence[Sequence[Run]]
+    rows: Sequence[Sequence[TextRun]]
     camera: Region | None = None
 
 
@@ -51,7 +51,7 @@ class RobotPainter:
         now: Nanoseconds,
         width: int,
         height: int,
-        look: Look = Look.MAP,
+        look: RobotViewMode = RobotViewMode.MAP,
         note: str = "",
     ) -> str:
         """Return the rows of ``paint`` as plain text."""
@@ -64,19 +64,19 @@ class RobotPainter:
         now: Nanoseconds,
         width: int,
         height: int,
-        look: Look = Look.MAP,
+        look: RobotViewMode = RobotViewMode.MAP,
         note: str = "",
-    ) -> Painting:
+    ) -> RobotPainting:
         """Paint ``height`` rows of ``width`` columns; ``note`` stands where no picture is yet."""
         robot, plan = timeline.robot(now), timeline.arena
         if robot is None or plan is None:
             return self._nothing(width, height)
         below = figures(robot, timeline.command(now), width, self.charset)
         places = arrange(Region(0, 1, width, max(0, height - len(below) - 1)), look)
-        if places == Places():
-            return Painting([row.runs() for row in below[:height]])
-        scene = Scene(plan, timeline, now, robot)
-        canvas = [Row(width, self.charset) for _ in range(height - len(below))]
+        if places == PaneRegions():
+            return RobotPainting([row.runs() for row in below[:height]])
+        scene = RobotScene(plan, timeline, now, robot)
+        canvas = [CellRow(width, self.charset) for _ in range(height - len(below))]
         views = self._draw_maps(canvas, places, scene)
         self._draw_lines(canvas, places.lines)
         self._legend(canvas[0], scene, views)
@@ -86,46 +86,49 @@ class RobotPainter:
             self._write_note(canvas, picture, note)
             if scene.hit_age is not None:
                 self._draw_edges(canvas, picture)
-        return Painting([row.runs() for row in (*canvas, *below)], picture)
+        return RobotPainting([row.runs() for row in (*canvas, *below)], picture)
 
-    def _nothing(self, width: int, height: int) -> Painting:
-        rows = [Row(width, self.charset) for _ in range(height)]
+    def _nothing(self, width: int, height: int) -> RobotPainting:
+        rows = [CellRow(width, self.charset) for _ in range(height)]
         if rows:
             rows[height // 2].write(1, "no robot in this run", FAINT)
-        return Painting([row.runs() for row in rows])
+        return RobotPainting([row.runs() for row in rows])
 
-    def _draw_maps(self, canvas: Sequence[Row], places: Places, scene: Scene) -> list[View]:
+    def _draw_maps(self, canvas: Sequence[CellRow], places: PaneRegions, scene: RobotScene) -> list[MapView]:
         """Draw the maps that there is place for, and return their views."""
-        extents = ((places.near, near(scene.plan, scene.robot)), (places.room, whole(scene.plan)))
+        extents = (
+            (places.near, robot_surroundings(scene.plan, scene.robot)),
+            (places.room, whole_arena(scene.plan)),
+        )
         views = []
         for place, extent in extents:
             if place is None:
                 continue
-            view = View.of(extent, place.width, place.height, self.charset)
+            view = MapView.of(extent, place.width, place.height, self.charset)
             views.append(view)
             for row, line in zip(canvas[place.y :], scene.picture(view, self.charset), strict=False):
                 row.cells[place.x : place.right] = line.cells
                 row.inks[place.x : place.right] = line.inks
         return views
 
-    def _draw_lines(self, canvas: Sequence[Row], lines: Sequence[Region]) -> None:
+    def _draw_lines(self, canvas: Sequence[CellRow], lines: Sequence[Region]) -> None:
         glyphs = GLYPHS[self.charset]
         for line in lines:
             glyph = glyphs.frame if line.width == 1 else glyphs.line
             for row in canvas[line.y : line.bottom]:
                 row.fill(line.x, line.right, glyph, FAINT)
 
-    def _write_note(self, canvas: Sequence[Row], place: Region, note: str) -> None:
+    def _write_note(self, canvas: Sequence[CellRow], place: Region, note: str) -> None:
         words = wrap(note, max(1, place.width - 2))[: place.height]
         for row, text in zip(canvas[place.y + (place.height - len(words)) // 2 :], words, strict=False):
             row.write(place.x + 1, text, FAINT)
 
-    def _draw_edges(self, canvas: Sequence[Row], picture: Region) -> None:
+    def _draw_edges(self, canvas: Sequence[CellRow], picture: Region) -> None:
         for row in canvas[picture.y : picture.bottom]:
             for column in (picture.x - 1, picture.right):
                 row.put(column, _EDGE[self.charset], WARN)
 
-    def _legend(self, row: Row, scene: Scene, views: Sequence[View]) -> None:
+    def _legend(self, row: CellRow, scene: RobotScene, views: Sequence[MapView]) -> None:
         width = len(row.cells)
         pieces = [*self._meaning_of_dots(views[0], width)] if views else [("from behind  ", FAINT)]
         age = scene.seen_age
@@ -139,7 +142,7 @@ class RobotPainter:
             row.write(at, text, ink)
             at += len(text)
 
-    def _meaning_of_dots(self, view: View, width: int) -> Sequence[tuple[str, Ink]]:
+    def _meaning_of_dots(self, view: MapView, width: int) -> Sequence[tuple[str, Ink]]:
         true, seen = _SAMPLES[self.charset]
         return (
             (f"{view.metres_per_dot * 100:.0f} cm/dot  ", FAINT),

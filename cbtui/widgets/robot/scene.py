@@ -6,9 +6,9 @@ from itertools import pairwise
 import numpy as np
 
 from cbtui.looks.theme import TRAIL_STEPS, Charset, Ink, Role
-from cbtui.text.cells import Row
-from cbtui.widgets.dots import Dots, Floats
-from cbtui.widgets.robot.extents import View
+from cbtui.text.cells import CellRow
+from cbtui.widgets.dots import DotGrid, Floats
+from cbtui.widgets.robot.extents import MapView
 from sim.trace.events import ArenaShown, RobotMoved, Scanned
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
@@ -37,7 +37,7 @@ _FLASH_TURNS: Nanoseconds = 150_000_000
 _RAYS = 8
 
 
-class Scene:
+class RobotScene:
     """All that a timeline knows of the robot's world at one moment."""
 
     def __init__(self, plan: ArenaShown, timeline: Timeline, now: Nanoseconds, robot: RobotMoved) -> None:
@@ -51,9 +51,9 @@ class Scene:
         step = max(1, len(trail) // _TRAIL_POINTS)
         self._trail = [trail[place] for place in range(0, len(trail), step)]
 
-    def picture(self, view: View, charset: Charset) -> list[Row]:
+    def picture(self, view: MapView, charset: Charset) -> list[CellRow]:
         """Draw everything as one view shows it."""
-        dots = Dots(view.columns, view.lines, charset)
+        dots = DotGrid(view.columns, view.lines, charset)
         for x0, y0, x1, y1 in self.plan.walls:
             dots.line(view.dot(x0, y0), view.dot(x1, y1), _WALL)
         self._draw_trail(dots, view)
@@ -72,12 +72,12 @@ class Scene:
             rows[line].put(column, _arrow(self.robot.yaw, charset), _INKS[layer])
         return rows
 
-    def _draw_trail(self, dots: Dots, view: View) -> None:
+    def _draw_trail(self, dots: DotGrid, view: MapView) -> None:
         places = np.array([(moved.x, moved.y) for moved in self._trail]).reshape(-1, 2)
         for age, part in enumerate(np.array_split(places, TRAIL_STEPS)):
             dots.plot(*view.dots(part[:, 0], part[:, 1]), _TRAIL + age)
 
-    def _draw_robot(self, dots: Dots, view: View, layer: int) -> None:
+    def _draw_robot(self, dots: DotGrid, view: MapView, layer: int) -> None:
         robot, radius = self.robot, self.plan.robot_radius
         if view.shows_size(radius):
             dots.plot(*view.dots(*_circle(robot.x, robot.y, radius, view.metres_per_dot / 2)), layer)
@@ -85,7 +85,7 @@ class Scene:
         tip = (robot.x + ahead * math.cos(robot.yaw), robot.y + ahead * math.sin(robot.yaw))
         dots.line(view.dot(robot.x, robot.y), view.dot(*tip), layer)
 
-    def _draw_flash(self, dots: Dots, view: View) -> None:
+    def _draw_flash(self, dots: DotGrid, view: MapView) -> None:
         """Rays around the robot, which turn by half a gap every now and then."""
         if self.hit_age is None:
             return

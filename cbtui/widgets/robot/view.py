@@ -11,11 +11,11 @@ from textual.message import Message
 from textual.reactive import reactive
 from textual.strip import Strip
 
-from cbtui.looks.theme import Charset, Run
-from cbtui.widgets.painted import Painted
-from cbtui.widgets.robot.film import half_blocks, ramp
-from cbtui.widgets.robot.painter import Painting, RobotPainter
-from cbtui.widgets.robot.places import Look
+from cbtui.looks.theme import Charset, TextRun
+from cbtui.widgets.painted_widget import PaintedWidget
+from cbtui.widgets.robot.camera_picture import half_blocks, ramp
+from cbtui.widgets.robot.painter import RobotPainter, RobotPainting
+from cbtui.widgets.robot.pane_regions import RobotViewMode
 from sim.camera import Camera, Picture, Shot
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
@@ -24,7 +24,7 @@ PICTURES_A_SECOND = 5
 _STARTING = "The camera starts."
 
 
-class TakesPictures(Protocol):
+class CameraClient(Protocol):
     """What the pane needs of a camera; ``sim.camera.Camera`` is one."""
 
     def want(self, shot: Shot) -> None:
@@ -34,10 +34,10 @@ class TakesPictures(Protocol):
         """End it."""
 
 
-OpenCamera = Callable[[Callable[[Picture], None], Callable[[str], None]], TakesPictures]
+OpenCamera = Callable[[Callable[[Picture], None], Callable[[str], None]], CameraClient]
 
 
-class RobotView(Painted):
+class RobotView(PaintedWidget):
     """Robot, trail, true scan and the scan the node last saw, from above; a camera's picture when asked for.
 
     Set ``timeline`` again (it may be the same one) when it has grown. The camera is opened when its picture
@@ -47,16 +47,16 @@ class RobotView(Painted):
     timeline: reactive[Timeline] = reactive(Timeline, always_update=True, repaint=False)
     now: reactive[Nanoseconds] = reactive(0, repaint=False)
     charset: reactive[Charset] = reactive(Charset.BRAILLE, repaint=False)
-    look: reactive[Look] = reactive(Look.MAP, repaint=False)
+    look: reactive[RobotViewMode] = reactive(RobotViewMode.MAP, repaint=False)
 
-    class Taken(Message):
+    class PictureTaken(Message):
         """The camera took a picture."""
 
         def __init__(self, picture: Picture) -> None:
             super().__init__()
             self.picture = picture
 
-    class Lost(Message):
+    class CameraLost(Message):
         """The camera takes no more pictures."""
 
         def __init__(self, why: str) -> None:
@@ -66,13 +66,13 @@ class RobotView(Painted):
     def __init__(self, *, id: str | None = None, open_camera: OpenCamera = Camera) -> None:  # noqa: A002
         super().__init__(id=id)
         self._open_camera = open_camera
-        self._camera: TakesPictures | None = None
+        self._camera: CameraClient | None = None
         self._why_none = ""
         self._asked: Shot | None = None
         self._resting = False
         self._picture: Picture | None = None
         self._film: Sequence[Strip] = ()
-        self._painting = Painting(())
+        self._painting = RobotPainting(())
 
     def cycle_camera(self) -> None:
         """Show the map, the camera's picture, both, and so on; a camera that was lost is tried again."""
@@ -81,7 +81,7 @@ class RobotView(Painted):
 
     # drawing
 
-    def rows(self, size: Size) -> Sequence[Sequence[Run]]:
+    def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint all but the picture."""
         note = "" if self._fits() else self._why_none or _STARTING
         painter = RobotPainter(self.charset)
@@ -100,7 +100,7 @@ class RobotView(Painted):
     def changed(self) -> None:
         """Paint anew, and ask for another picture, as soon as the message at hand is dealt with."""
         super().changed()
-        if self.is_running and self.look is not Look.MAP:
+        if self.is_running and self.look is not RobotViewMode.MAP:
             self.call_next(self._ask)
 
     def notify_style_update(self) -> None:
@@ -157,13 +157,13 @@ class RobotView(Painted):
 
     def _take(self, picture: Picture) -> None:
         """Bring a picture from the camera's thread to the screen's."""
-        self.post_message(self.Taken(picture))
+        self.post_message(self.PictureTaken(picture))
 
     def _lose(self, why: str) -> None:
-        self.post_message(self.Lost(why))
+        self.post_message(self.CameraLost(why))
 
-    @on(Taken)
-    def _show_picture(self, message: Taken) -> None:
+    @on(PictureTaken)
+    def _show_picture(self, message: PictureTaken) -> None:
         message.stop()
         before, fitted = self._film, self._fits()
         self._picture = message.picture
@@ -175,8 +175,8 @@ class RobotView(Painted):
         if lines:
             self.refresh(*(Region(place.x, place.y + y, place.width, 1) for y in lines))
 
-    @on(Lost)
-    async def _show_why(self, message: Lost) -> None:
+    @on(CameraLost)
+    async def _show_why(self, message: CameraLost) -> None:
         message.stop()
         self._why_none = message.why
         self._picture = None

@@ -9,7 +9,7 @@ from lessons.checks import (
     data_never_older,
     keeps_coming,
     turns,
-    whole,
+    whole_run,
 )
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.timeline import Timeline
@@ -43,5 +43,5 @@ def calls_with_more_threads(run: Timeline) -> int:
     every = [call for topic in SENSORS for call in calls_of(run, topic)]
     waited = any(call.age > SECOND // 20 for call in every)
     entities = {call.entity for call in every}
-    lost = any(run.drops_of(each, whole(run)) for each in entities)
+    lost = any(run.drops_of(each, whole_run(run)) for each in entities)
     return 0 if waited or lost else 1

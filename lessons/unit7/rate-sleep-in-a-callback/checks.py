@@ -12,12 +12,12 @@ from lessons.checks import (
     never_raises,
     requests_of,
     seconds,
-    whole,
+    whole_run,
 )
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 
-NODE_RUNS = Stretch("the node runs", lambda run: [whole(run)])
+NODE_RUNS = Stretch("the node runs", lambda run: [whole_run(run)])
 EXPECTED = "from STEP 1 to STEP 4 in 1.4 to 2.6 s"
 
 

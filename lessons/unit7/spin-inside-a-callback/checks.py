@@ -10,12 +10,12 @@ from lessons.checks import (
     never_raises,
     never_stuck,
     runs_long,
-    whole,
+    whole_run,
 )
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 
-NODE_RUNS = Stretch("the node runs", lambda run: [whole(run)])
+NODE_RUNS = Stretch("the node runs", lambda run: [whole_run(run)])
 
 CHECKS = (
     keeps_coming("blink_callback", NODE_RUNS, at_least=1.5),

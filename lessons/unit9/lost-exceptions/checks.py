@@ -7,7 +7,7 @@ from lessons.checks import (
     entities_named,
     is_called_often,
     never_raises,
-    whole,
+    whole_run,
 )
 from sim.trace.events import Logged, Severity
 from sim.trace.model import Span
@@ -41,7 +41,7 @@ def _failed(run: Timeline) -> Span:
     return next(
         span
         for entity in entities_named(run, "weigh_callback")
-        for span in run.spans_of(entity, whole(run))
+        for span in run.spans_of(entity, whole_run(run))
         if span.error
     )
 

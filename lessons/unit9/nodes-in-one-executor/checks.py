@@ -8,7 +8,7 @@ from lessons.checks import (
     keeps_coming,
     runs_long,
     ticks_on_time,
-    whole,
+    whole_run,
 )
 from sim.trace.timeline import Timeline
 
@@ -34,6 +34,8 @@ def belt_during_inspection(run: Timeline) -> int:
 def threads_for_two_nodes(run: Timeline) -> int:
     """Whether the nodes' callbacks ran on one thread or on two."""
     used = [
-        thread for thread in run.threads if run.spans_on(thread, whole(run))
+        thread
+        for thread in run.threads
+        if run.spans_on(thread, whole_run(run))
     ]
     return 0 if len(used) == 1 else 1

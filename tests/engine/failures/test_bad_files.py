@@ -8,7 +8,7 @@ from typing import NamedTuple
 import pytest
 
 from cbtui import cli
-from cbtui.engines.session import Session
+from cbtui.engines.session import ProcessSession
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
 from sim.trace.events import AnyEvent, CallbackStarted, Notice, Printed, ProcessAppeared, ProcessEnded
 from tests.support.builder import ns
@@ -369,7 +369,7 @@ def test_a_file_that_only_does_too_little_has_not_failed(
 def test_a_loop_without_end_is_named_with_its_line_and_the_run_can_be_stopped(tmp_path: Path) -> None:
     path = write(Bad("x = 0\nwhile True:\n    x += 1", ""), tmp_path / "loop").program.path
     news: Queue[list[AnyEvent] | str | None] = Queue()
-    session = Session(program_setup(Path(path), 2.0), news.put, news.put)
+    session = ProcessSession(program_setup(Path(path), 2.0), news.put, news.put)
     session.start()
     try:
         notices: list[Notice] = []

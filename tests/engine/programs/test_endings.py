@@ -11,7 +11,7 @@ from time import monotonic
 import msgspec
 import pytest
 
-from cbtui.engines.session import Session
+from cbtui.engines.session import ProcessSession
 from cbtui.runs.setup.lesson_setup import RunRequest
 from sim.engine.commands import Stop
 from sim.engine.programs.ending import GRACE
@@ -108,7 +108,7 @@ def test_a_run_that_is_stopped_shows_its_programs_ending_to_the_last_line(tmp_pa
     path.write_text(LEAVES + LAST)
     news: Queue[list[AnyEvent] | str | None] = Queue()
     setup = msgspec.structs.replace(program_setup(path, 1000.0, clock), speed=1.0)
-    session, run = Session(setup, news.put, news.put), Run()
+    session, run = ProcessSession(setup, news.put, news.put), Run()
     session.start()
     while "ready" not in printed(run):
         run.events += news.get(timeout=60)  # type: ignore[arg-type]
@@ -178,7 +178,7 @@ def test_a_callback_that_computes_without_end_hears_of_the_runs_end(tmp_path: Pa
     path = tmp_path / "node.py"
     path.write_text(source)
     news: Queue[list[AnyEvent] | str | None] = Queue()
-    session, run = Session(program_setup(path, 1000.0), news.put, news.put), Run()
+    session, run = ProcessSession(program_setup(path, 1000.0), news.put, news.put), Run()
     session.start()
     while "ready" not in printed(run):
         run.events += news.get(timeout=60)  # type: ignore[arg-type]

@@ -5,7 +5,7 @@ from threading import Event
 
 import pytest
 
-from cbtui.engines.session import Session
+from cbtui.engines.session import ProcessSession
 from sim.engine.commands import CallService
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
 from sim.trace.events import AnyEvent, CommandGiven, EventsLost, Logged, Notice, Printed
@@ -36,7 +36,7 @@ def test_the_answer_to_a_command_is_not_far_behind_lines_that_are_taken_slowly(
         if any(isinstance(event, CommandGiven | Notice) for event in told[FAR:]):
             answered.set()
 
-    session = Session(setup, deliver, lambda _: None)
+    session = ProcessSession(setup, deliver, lambda _: None)
     session.start()
     try:
         assert floods.wait(PATIENCE)

@@ -6,7 +6,7 @@ from queue import Queue
 import msgspec
 import pytest
 
-from cbtui.engines.session import Session
+from cbtui.engines.session import ProcessSession
 from sim.engine.commands import Type
 from sim.engine.inputs import inputs_of
 from sim.engine.setup import Keyboard, RunSetup, TimedText
@@ -196,7 +196,7 @@ def test_curses_says_what_does_its_work_here(tmp_path: Path) -> None:
 def live(setup: RunSetup, *keys: Type) -> Run:
     """Run a program and type the first of some texts when it waits for the keyboard, then one by one."""
     news: Queue[list[AnyEvent] | str | None] = Queue()
-    session = Session(msgspec.structs.replace(setup, keyboard=Keyboard.LIVE), news.put, news.put)
+    session = ProcessSession(msgspec.structs.replace(setup, keyboard=Keyboard.LIVE), news.put, news.put)
     run = Run()
     left = list(keys)
     session.start()

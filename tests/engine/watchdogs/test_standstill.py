@@ -7,7 +7,7 @@ from queue import Queue
 import msgspec
 import pytest
 
-from cbtui.engines.session import Session
+from cbtui.engines.session import ProcessSession
 from sim.clock.recesses import RECESS
 from sim.engine.commands import CallService, InputCommand, Stop
 from sim.engine.inputs import inputs_of
@@ -49,7 +49,9 @@ def live(folder: Path, *given: InputCommand) -> list[AnyEvent]:
     path = folder / "node.py"
     path.write_text(DAWDLES)
     news: Queue[list[AnyEvent] | str | None] = Queue()
-    session = Session(msgspec.structs.replace(program_setup(path, 60.0), speed=1.0), news.put, news.put)
+    session = ProcessSession(
+        msgspec.structs.replace(program_setup(path, 60.0), speed=1.0), news.put, news.put
+    )
     events: list[AnyEvent] = []
     waiting = list(given)
     session.start()
@@ -102,7 +104,7 @@ def test_a_run_that_is_stuck_is_ended(tmp_path: Path, body: str, why: str) -> No
     path = tmp_path / "node.py"
     path.write_text(f"import time\nwhile True: {body}\n")
     news: Queue[list[AnyEvent] | str | None] = Queue()
-    session = Session(program_setup(path, 60.0), news.put, news.put)
+    session = ProcessSession(program_setup(path, 60.0), news.put, news.put)
     session.start()
     try:
         news.get(timeout=60)

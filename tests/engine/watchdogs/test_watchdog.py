@@ -31,7 +31,7 @@ def test_a_run_that_rests_is_left_alone(monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.setattr(watchdog, "_LOOK", 0.01)
     told: Queue[AnyEvent] = Queue()
     clock = VirtualClock()
-    clock._inbox.rests = True
+    clock.time._inbox.rests = True
     Watchdog(clock, told.put, lambda _: None, lambda _: None).start()
     threading.Event().wait(0.2)
     assert told.empty()

@@ -140,7 +140,7 @@ async def test_a_click_on_the_axis_moves_the_cursor_alone() -> None:
 async def test_the_wheel_zooms() -> None:
     async with console() as (app, pilot):
         lanes = lanes_of(app)
-        lanes.post_message(Lanes.Turned(-1))
+        lanes.post_message(Lanes.WheelTurned(-1))
         await settle(pilot)
         assert lanes.window.length == ns(5)
 

@@ -7,7 +7,7 @@ from textual.widget import Widget
 
 from cbtui.keys.action import Scope
 from cbtui.keys.actions import ACTIONS
-from cbtui.runs.live.live_run import State
+from cbtui.runs.live.live_run import RunState
 from cbtui.screens.help import HelpScreen
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
@@ -146,7 +146,7 @@ async def test_what_an_engine_sends_after_its_run_was_replaced_does_not_count() 
         old.play(ns(100))
         old.end("the engine was killed by signal 9")
         await settle(pilot)
-        assert app.lesson_screen.live_run.state is State.LIVE
+        assert app.lesson_screen.live_run.state is RunState.LIVE
         assert app.lesson_screen.live_run.timeline.end == ns(13.15)
         assert not new.stopped
 

@@ -17,7 +17,7 @@ from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
 from cbtui.keys.keymap import Keymap
-from cbtui.runs.live.live_export import LiveExport, Material
+from cbtui.runs.live.live_export import ExportableRun, LiveExport
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.screens.export import CHOICES, ExportScreen
 from cbtui.screens.parts import exporting
@@ -165,7 +165,7 @@ async def test_no_file_is_ever_replaced(folder: Path, monkeypatch: pytest.Monkey
 def test_a_file_that_comes_in_between_is_left_alone(folder: Path) -> None:
     store = EventStore()
     store.take(EVENTS)
-    export = LiveExport(Material("run", store, EVENTS[-1].t), "csv", None)
+    export = LiveExport(ExportableRun("run", store, EVENTS[-1].t), "csv", None)
     taken = export._path
     taken.write_text("precious")
     assert export.write() == f"Nothing was exported: cannot write {taken}: File exists"
@@ -175,7 +175,7 @@ def test_a_file_that_comes_in_between_is_left_alone(folder: Path) -> None:
 def test_a_folder_that_takes_no_file_is_told_of(folder: Path) -> None:
     store = EventStore()
     store.take(EVENTS)
-    export = LiveExport(Material("run", store, EVENTS[-1].t), "svg", None)
+    export = LiveExport(ExportableRun("run", store, EVENTS[-1].t), "svg", None)
     folder.rmdir()
     assert export.write() == f"Nothing was exported: cannot write {export._path}: No such file or directory"
 
@@ -199,7 +199,7 @@ async def test_a_full_disk_is_told_of_and_leaves_no_file(
 def test_what_a_tape_does_not_hold_is_said_with_the_file() -> None:
     store = EventStore()
     store.take(EVENTS)
-    export = LiveExport(Material("run", store, EVENTS[-1].t, "what came later is missing"), "csv", None)
+    export = LiveExport(ExportableRun("run", store, EVENTS[-1].t, "what came later is missing"), "csv", None)
     assert export.write() == f"Exported to {export._path}; what came later is missing"
 
 
@@ -230,7 +230,7 @@ class SlowDisk:
 async def test_the_keys_go_on_and_the_top_line_tells_how_far_it_is(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(exporting, "_SOON", 0.0)
+    monkeypatch.setattr(exporting, "_PROGRESS_AFTER", 0.0)
     disk = SlowDisk(monkeypatch)
     async with console() as (app, pilot):
         await press(pilot, "x", "t")
@@ -270,7 +270,7 @@ async def test_an_export_that_is_soon_over_is_finished_when_the_lesson_is_left(
 async def test_one_that_is_not_is_given_up_and_leaves_no_file(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(exporting, "_GRACE", 0.0)
+    monkeypatch.setattr(exporting, "_EXIT_TIMEOUT", 0.0)
     disk = SlowDisk(monkeypatch)
     give_up = LiveExport.give_up
 

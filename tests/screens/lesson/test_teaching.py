@@ -11,12 +11,12 @@ from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
 from cbtui.learning.outcome import Observe
-from cbtui.runs.judged.checking import Observed, observe
+from cbtui.runs.judged.checking import ObservedRun, observe
 from cbtui.runs.setup.lesson_setup import setup_to_judge
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
 from cbtui.screens.prediction import PredictionScreen
-from cbtui.screens.solution import AskingScreen, SolutionScreen
+from cbtui.screens.solution import ConfirmSolutionScreen, SolutionScreen
 from cbtui.widgets.guide import Guide
 from lessons.catalogue import find
 from lessons.progress import LessonProgress, Progress
@@ -273,8 +273,8 @@ async def test_a_run_that_shows_something_else_outdoes_the_lesson() -> None:
 
 @pytest.mark.slow
 async def test_a_run_that_cannot_be_held_against_is_told_of_in_a_sentence() -> None:
-    def broken(_setup: RunSetup, name: str, _given_up: Event) -> Observed:
-        return Observed(Timeline(), f"{name} ended its whole process at 0.000 s", broken_off=True)
+    def broken(_setup: RunSetup, name: str, _given_up: Event) -> ObservedRun:
+        return ObservedRun(Timeline(), f"{name} ended its whole process at 0.000 s", broken_off=True)
 
     async with console(observe=broken) as (app, pilot):
         await press(pilot, "1", "enter", "2", "enter", "a")
@@ -286,11 +286,11 @@ async def test_a_run_that_cannot_be_held_against_is_told_of_in_a_sentence() -> N
 async def test_a_screen_that_is_left_breaks_off_the_run_beside_it() -> None:
     begun, over = Event(), Event()
 
-    def endless(_setup: RunSetup, _name: str, given_up: Event) -> Observed:
+    def endless(_setup: RunSetup, _name: str, given_up: Event) -> ObservedRun:
         begun.set()
         assert given_up.wait(_PATIENCE)
         over.set()
-        return Observed(Timeline(), "broken off", broken_off=True)
+        return ObservedRun(Timeline(), "broken off", broken_off=True)
 
     async with console(observe=endless) as (app, pilot):
         await press(pilot, "1", "enter", "2", "enter", "a")
@@ -357,7 +357,7 @@ async def test_the_solution_is_shown_when_it_is_wanted_and_asked_about_once() ->
     Progress().see(WITH_EXERCISE.id)
     async with console(lesson=WITH_EXERCISE.id) as (app, pilot):
         await press(pilot, "H")
-        assert top(app) is AskingScreen
+        assert top(app) is ConfirmSolutionScreen
         await press(pilot, "escape")
         assert not app.kept().solution
         await press(pilot, "H", "enter")

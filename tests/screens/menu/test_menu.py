@@ -11,8 +11,8 @@ from cbtui.app import CbtuiApp
 from cbtui.screens.help import HelpScreen
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
-from cbtui.widgets.choices import Choices
 from cbtui.widgets.key_bar import KeyBar
+from cbtui.widgets.menu_list import MenuList
 from lessons.catalogue import lessons
 from lessons.lesson import Lesson
 from lessons.progress import Progress
@@ -113,8 +113,8 @@ async def test_a_click_opens_a_lesson() -> None:
     app = menu()
     async with app.run_test(size=NARROW) as pilot:
         row = next(row for row, line in enumerate(lines_of(app)) if lessons()[2].title in line)
-        top = app.screen.query_one(Choices).region.y
-        await pilot.click(Choices, offset=(10, row - top))
+        top = app.screen.query_one(MenuList).region.y
+        await pilot.click(MenuList, offset=(10, row - top))
         assert opened(app) == lessons()[2].id
 
 

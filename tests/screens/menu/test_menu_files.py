@@ -7,12 +7,12 @@ import pytest
 from textual.screen import Screen
 
 from cbtui.app import CbtuiApp
-from cbtui.runs.setup.recent import Kind, Opened, Recents
+from cbtui.runs.setup.recent import RecentEntry, RecentKind, RecentList
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
-from cbtui.screens.opening import PathInput
+from cbtui.screens.open_file import PathInput
 from cbtui.screens.replay import ReplayScreen
-from cbtui.widgets.about import About
+from cbtui.widgets.description_pane import DescriptionPane
 from sim import recording
 from sim.engine.setup import ProgramSetup
 from tests.recording.files import write
@@ -24,7 +24,7 @@ from tests.support.runs import shared_group_run
 
 def told(app: CbtuiApp) -> str:
     """What is told of the highlighted file."""
-    description = app.screen.query_one(About).description
+    description = app.screen.query_one(DescriptionPane).description
     assert description is not None
     return description.text
 
@@ -45,7 +45,7 @@ def program(tmp_path: Path) -> Path:
 
 
 def remember(path: Path, **how: Any) -> None:
-    Recents().note(Opened(Kind.PROGRAM, str(path), 100, **how))
+    RecentList().note(RecentEntry(RecentKind.PROGRAM, str(path), 100, **how))
 
 
 async def test_a_program_that_was_opened_lately_can_be_opened_again_as_it_was(program: Path) -> None:
@@ -71,7 +71,7 @@ async def test_a_file_given_to_the_command_is_among_the_recent_ones(
         await pilot.press("q")
         await pilot.pause()
         assert "my_node.py" in text_of(app)
-    assert Recents().files[0].what == str(program)
+    assert RecentList().files[0].what == str(program)
 
 
 async def test_a_file_that_is_gone_is_said_to_be_and_can_be_taken_off_the_list(program: Path) -> None:
@@ -89,13 +89,13 @@ async def test_a_file_that_is_gone_is_said_to_be_and_can_be_taken_off_the_list(p
         await pilot.press("delete")
         await pilot.pause()
         assert "Recent" not in text_of(app)
-    assert Recents().files == []
+    assert RecentList().files == []
 
 
 async def test_a_recording_is_shown_and_nothing_in_it_is_run(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
     write(path, shared_group_run().events, recording.About(title="run.mcap", clock="virtual"))
-    Recents().note(Opened(Kind.RECORDING, str(path), 100))
+    RecentList().note(RecentEntry(RecentKind.RECORDING, str(path), 100))
     engines = FakeEngines([], 0)
     app = CbtuiApp(open_session=engines)
     async with app.run_test(size=NARROW) as pilot:
@@ -130,7 +130,7 @@ async def test_o_shows_a_recording(tmp_path: Path) -> None:
         app.screen.query_one(PathInput).value = str(path)
         await pilot.press("enter")
         assert isinstance(app.screen, ReplayScreen)
-    assert Recents().files[0].kind is Kind.RECORDING
+    assert RecentList().files[0].kind is RecentKind.RECORDING
 
 
 async def test_a_path_that_cannot_be_opened_is_said_and_can_be_mended(

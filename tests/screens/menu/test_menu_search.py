@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from cbtui.app import CbtuiApp
-from cbtui.runs.setup.recent import Kind, Opened, Recents
+from cbtui.runs.setup.recent import RecentEntry, RecentKind, RecentList
 from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.menu import MenuScreen
 from cbtui.widgets.menu_search import MenuSearch
@@ -22,7 +22,7 @@ def menu() -> CbtuiApp:
 def program(tmp_path: Path) -> Path:
     path = tmp_path / "my_node.py"
     path.write_text("pass\n")
-    Recents().note(Opened(Kind.PROGRAM, str(path), 100))
+    RecentList().note(RecentEntry(RecentKind.PROGRAM, str(path), 100))
     return path
 
 

@@ -11,11 +11,11 @@ from textual.pilot import Pilot
 
 from cbtui.app import CbtuiApp
 from cbtui.engines.follow import GivenUpError
-from cbtui.engines.session import Deliver, Ended, Session
+from cbtui.engines.session import Deliver, Ended, ProcessSession
 from cbtui.learning.preview import CALLS, LENGTH, CannotPreviewError, PreviewRun
 from cbtui.looks.theme import Charset
-from cbtui.widgets.lanes import Painter
-from cbtui.widgets.miniature import Miniature, Subject, miniature, sentence_rows
+from cbtui.widgets.lanes import LanePainter
+from cbtui.widgets.miniature import Miniature, PreviewPicture, miniature, sentence_rows
 from lessons.catalogue import find, lessons
 from sim.engine.setup import RunSetup, TimedCall
 from sim.trace.timeline import Timeline
@@ -32,7 +32,7 @@ def rest(monkeypatch: pytest.MonkeyPatch) -> Callable[[float], None]:
     """Let the highlight have rested at once; the function sets another time."""
 
     def set_rest(seconds: float) -> None:
-        monkeypatch.setattr("cbtui.screens.menu._REST", seconds)
+        monkeypatch.setattr("cbtui.screens.menu._HOVER_DELAY", seconds)
 
     set_rest(0.001)
     return set_rest
@@ -51,7 +51,7 @@ async def until(pilot: Pilot[None], condition: Callable[[], object]) -> None:
             await pilot.pause(0.01)
 
 
-def subject_of(app: CbtuiApp) -> Subject | None:
+def subject_of(app: CbtuiApp) -> PreviewPicture | None:
     return app.screen.query_one(Miniature).subject
 
 
@@ -177,7 +177,9 @@ def shared_group() -> Timeline:
 @pytest.mark.parametrize("charset", Charset)
 @pytest.mark.parametrize("width", [*range(1, 130, 7), 38, 39, 61, 62, 120])
 def test_a_picture_is_as_wide_as_it_is_to_be(width: int, charset: Charset, shared_group: Timeline) -> None:
-    rows = miniature(Subject(shared_group, Painter(charset)), shared_group.end // 2, Size(width, 8))
+    rows = miniature(
+        PreviewPicture(shared_group, LanePainter(charset)), shared_group.end // 2, Size(width, 8)
+    )
     assert {sum(len(run.text) for run in row) for row in rows} == {width}
     assert len(rows) <= 8
 
@@ -192,14 +194,14 @@ def test_a_sentence_is_wrapped_and_cut_to_the_room() -> None:
 
 
 def test_the_first_seconds_of_a_lesson_are_really_run_and_leave_no_process() -> None:
-    timeline = PreviewRun(find("reentrant-2-threads"), Session).run()
+    timeline = PreviewRun(find("reentrant-2-threads"), ProcessSession).run()
     assert timeline.end == LENGTH
     assert len(timeline.services_called) == 1
     assert active_children() == []
 
 
 def test_a_run_that_is_given_up_ends_its_engine() -> None:
-    run = PreviewRun(find("shared-group"), Session)
+    run = PreviewRun(find("shared-group"), ProcessSession)
     ended: list[BaseException] = []
 
     def follow() -> None:

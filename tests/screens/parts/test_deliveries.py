@@ -41,7 +41,7 @@ async def test_after_each_part_a_session_rests_for_as_long_as_the_machine_let_it
         waits.append(all(part.taken.is_set() for part in handed_over))
         return 0.05
 
-    monkeypatch.setattr("cbtui.screens.parts.runs.waited", waited)
+    monkeypatch.setattr("cbtui.screens.parts.runs.cpu_wait", waited)
     handed_over: list[RunController.Delivered] = []
     app = RecordedConsole("shared-group", shared_group_run().events, 5.0)
     async with app.run_test(size=WIDE) as pilot:

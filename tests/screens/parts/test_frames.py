@@ -1,6 +1,6 @@
 """How often what is drawn, by counted frames and a clock that stands until it is moved."""
 
-from cbtui.screens.parts.frames import Extent, FrameSchedule
+from cbtui.screens.parts.frames import FrameContent, FrameSchedule
 
 
 class Clock:
@@ -10,26 +10,28 @@ class Clock:
         return self.now
 
 
-def drawing(schedule: FrameSchedule, frames: int, *, grows: bool) -> list[Extent]:
+def drawing(schedule: FrameSchedule, frames: int, *, grows: bool) -> list[FrameContent]:
     """What so many frames draw, of a run that has grown before each."""
     extents = []
     for _ in range(frames):
         if grows:
             schedule.grow()
         extents.append(schedule.next())
-        if extents[-1] in (Extent.ALL, Extent.ALL_BUT_TEXTS):
+        if extents[-1] in (FrameContent.ALL, FrameContent.ALL_BUT_TEXTS):
             schedule.drawn(extents[-1])
     return extents
 
 
 def test_the_first_frame_draws_everything_and_then_nothing_is_drawn_while_nothing_happens() -> None:
-    assert drawing(FrameSchedule(), 30, grows=False) == [Extent.ALL, *[Extent.NOTHING] * 29]
+    assert drawing(FrameSchedule(), 30, grows=False) == [FrameContent.ALL, *[FrameContent.NOTHING] * 29]
 
 
 def test_a_run_that_grows_is_drawn_on_the_lanes_in_each_frame_and_elsewhere_less_often() -> None:
     extents = drawing(FrameSchedule(), 25, grows=True)[1:]
-    assert Extent.NOTHING not in extents
-    assert [extents.count(extent) for extent in (Extent.LANES, Extent.ALL_BUT_TEXTS, Extent.ALL)] == [
+    assert FrameContent.NOTHING not in extents
+    assert [
+        extents.count(extent) for extent in (FrameContent.LANES, FrameContent.ALL_BUT_TEXTS, FrameContent.ALL)
+    ] == [
         20,
         2,
         2,
@@ -38,10 +40,10 @@ def test_a_run_that_grows_is_drawn_on_the_lanes_in_each_frame_and_elsewhere_less
 
 def test_texts_that_were_left_out_are_drawn_although_nothing_more_comes() -> None:
     schedule = FrameSchedule()
-    schedule.drawn(Extent.ALL_BUT_TEXTS)
+    schedule.drawn(FrameContent.ALL_BUT_TEXTS)
     extents = drawing(schedule, 24, grows=False)
-    assert extents.count(Extent.ALL) == 1
-    assert set(extents) == {Extent.ALL, Extent.NOTHING}
+    assert extents.count(FrameContent.ALL) == 1
+    assert set(extents) == {FrameContent.ALL, FrameContent.NOTHING}
 
 
 def test_what_the_person_did_is_drawn_at_once_but_no_faster_than_frames_come() -> None:
@@ -49,12 +51,12 @@ def test_what_the_person_did_is_drawn_at_once_but_no_faster_than_frames_come() -
     schedule = FrameSchedule(clock)
     schedule.invalidate()
     assert not schedule.is_due_before_next()  # the first time is a frame's
-    schedule.drawn(Extent.ALL)
+    schedule.drawn(FrameContent.ALL)
     schedule.invalidate()
     assert not schedule.is_due_before_next()
     clock.now += 0.04
     assert schedule.is_due_before_next()
-    schedule.drawn(Extent.ALL)
+    schedule.drawn(FrameContent.ALL)
     clock.now += 0.04
     assert not schedule.is_due_before_next()
 
@@ -64,9 +66,9 @@ def test_after_a_frame_that_waited_for_a_processor_nothing_is_drawn_unasked_for_
     schedule = FrameSchedule(clock)
     drawing(schedule, 1, grows=False)
     schedule.rest(0.1)
-    assert drawing(schedule, 20, grows=True) == [Extent.NOTHING] * 20
+    assert drawing(schedule, 20, grows=True) == [FrameContent.NOTHING] * 20
     schedule.invalidate()
-    assert schedule.next() is Extent.ALL
-    schedule.drawn(Extent.ALL)
+    assert schedule.next() is FrameContent.ALL
+    schedule.drawn(FrameContent.ALL)
     clock.now += 0.2
-    assert drawing(schedule, 1, grows=True) != [Extent.NOTHING]
+    assert drawing(schedule, 1, grows=True) != [FrameContent.NOTHING]

@@ -7,12 +7,12 @@ from textual.screen import Screen
 from cbtui.keys.action import Scope, method_of
 from cbtui.keys.actions import ACTIONS
 from cbtui.looks.theme import Charset
-from cbtui.runs.compared_runs import Side
-from cbtui.runs.setup.subject import of_file, of_lesson
+from cbtui.runs.compared_runs import ComparedSide
+from cbtui.runs.setup.shown_program import of_file, of_lesson
 from cbtui.screens.compare import CompareScreen
 from cbtui.screens.exercise import ExerciseScreen
 from cbtui.screens.lesson import LessonScreen
-from cbtui.screens.parts.part import Part, Parts
+from cbtui.screens.parts.part import ScreenPart, ScreenParts
 from cbtui.screens.replay import ReplayScreen
 from lessons.catalogue import find, lessons
 from sim.recording import About, read
@@ -35,7 +35,7 @@ WITH_A_PERSON = {
 TAUGHT = {"predict", "explain", "exercise"}
 
 
-class Lamp(Part):
+class Lamp(ScreenPart):
     """A part with a state and an action of its own."""
 
     lit = False
@@ -50,7 +50,7 @@ class Lamp(Part):
 def test_an_action_is_done_and_offered_by_the_part_that_has_it() -> None:
     screen: Screen[None] = Screen()
     lamp = Lamp()
-    parts = Parts(screen, Scope.LESSON, lamp)
+    parts = ScreenParts(screen, Scope.LESSON, lamp)
     assert parts.offer("pause", ())
     screen.action_pause()  # type: ignore[attr-defined]
     assert lamp.lit
@@ -58,7 +58,7 @@ def test_an_action_is_done_and_offered_by_the_part_that_has_it() -> None:
 
 
 def test_actions_of_the_scope_that_no_part_has_are_not_the_screens() -> None:
-    parts = Parts(Screen(), Scope.LESSON, Lamp())
+    parts = ScreenParts(Screen(), Scope.LESSON, Lamp())
     assert not parts.has("record")
     assert not parts.offer("record", ())
     assert parts.offer("command_palette", ())
@@ -110,5 +110,5 @@ def test_nothing_is_taught_about_a_file_of_ones_own(tmp_path: Path) -> None:
 
 
 def test_a_comparison_has_all_actions_of_its_scope() -> None:
-    sides = Side("one", Timeline()), Side("other", Timeline())
+    sides = ComparedSide("one", Timeline()), ComparedSide("other", Timeline())
     assert actions_of(CompareScreen(*sides, Charset.BRAILLE), Scope.COMPARE) == every(Scope.COMPARE)

@@ -11,9 +11,9 @@ from textual.pilot import Pilot
 from textual.widget import Widget
 
 from cbtui.app import CbtuiApp
-from cbtui.widgets.about import About
 from cbtui.widgets.checks import ChecksView
 from cbtui.widgets.code import CodeView
+from cbtui.widgets.description_pane import DescriptionPane
 from cbtui.widgets.diagnosis_line import DiagnosisLine
 from cbtui.widgets.factory import FactoryView
 from cbtui.widgets.guide import Guide
@@ -128,7 +128,7 @@ async def test_the_question_before_a_run(pytestconfig: pytest.Config) -> None:
 async def test_what_the_menu_tells_of_a_lesson(
     pytestconfig: pytest.Config, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("cbtui.screens.menu._REST", 0.001)
+    monkeypatch.setattr("cbtui.screens.menu._HOVER_DELAY", 0.001)
     engines = FakeEngines(EVENTS, ns(20))
     app = CbtuiApp(open_session=engines)
     app.animation_level = "none"
@@ -138,7 +138,7 @@ async def test_what_the_menu_tells_of_a_lesson(
         engines.latest.end()
         await until(pilot, lambda: app.screen.query_one(Miniature).subject is not None)
         await settle(pilot)
-        pictures = pictures_of(app, [("menu-about", About), ("menu-miniature", Miniature)])
+        pictures = pictures_of(app, [("menu-about", DescriptionPane), ("menu-miniature", Miniature)])
     hold(pictures, WIDGETS, pytestconfig)
 
 

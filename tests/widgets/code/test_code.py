@@ -4,9 +4,9 @@ import pytest
 from textual.app import App, ComposeResult
 
 from cbtui.widgets.code import CodeView
-from cbtui.widgets.code.files import SourceFiles
-from cbtui.widgets.code.highlight import Kind, highlight
-from cbtui.widgets.code.marks import Doing, Marked, marks_at
+from cbtui.widgets.code.highlight import TokenKind, highlight
+from cbtui.widgets.code.marks import CallbackActivity, CallbackMark, marks_at
+from cbtui.widgets.code.source_files import SourceFiles
 from lessons.catalogue import lessons
 from lessons.lesson import Lesson
 from sim.trace.timeline import Timeline
@@ -40,7 +40,7 @@ def sleeper(file: str = "node.py") -> tuple[Run, Timeline]:
     return run, timeline
 
 
-def marked(path: Path, timeline: Timeline, at: float) -> list[Marked]:
+def marked(path: Path, timeline: Timeline, at: float) -> list[CallbackMark]:
     files = SourceFiles(path)
     return marks_at(timeline, ns(at), files).get(files.main, [])
 
@@ -55,28 +55,28 @@ def test_highlighting_changes_no_character(lesson: Lesson) -> None:
 def test_words_get_their_kind() -> None:
     (line,) = highlight("def f(): return 'a'  # b")
     kinds = {word.text: word.kind for word in line}
-    assert kinds["def"] == kinds["return"] == Kind.KEYWORD
-    assert kinds["f"] == Kind.NAME
-    assert kinds["# b"] == Kind.COMMENT
-    assert kinds["'"] == kinds["a"] == Kind.STRING
+    assert kinds["def"] == kinds["return"] == TokenKind.KEYWORD
+    assert kinds["f"] == TokenKind.NAME
+    assert kinds["# b"] == TokenKind.COMMENT
+    assert kinds["'"] == kinds["a"] == TokenKind.STRING
 
 
 def test_a_running_callback_is_marked_with_its_thread(path: Path) -> None:
     _, timer = marked(path, sleeper()[1], 6.0)
-    assert (timer.doing, timer.first_line, timer.last_line) == (Doing.RUNS, 30, 33)
+    assert (timer.doing, timer.first_line, timer.last_line) == (CallbackActivity.RUNS, 30, 33)
     assert timer.texts[0] == "▶ MainThread 5.0 s"
     assert timer.letter == "A"
 
 
 def test_a_waiting_callback_is_marked_with_the_reason(path: Path) -> None:
     odom, _ = marked(path, sleeper()[1], 6.0)
-    assert odom.doing is Doing.WAITS
+    assert odom.doing is CallbackActivity.WAITS
     assert odom.texts[0] == "╱ waits 4.5 s: group A held by timer_callback"
 
 
 def test_a_short_callback_stays_marked_for_a_moment(path: Path) -> None:
     assert marked(path, sleeper()[1], 0.6)[0].texts == ("· MainThread",)
-    assert marked(path, sleeper()[1], 0.9)[0].doing is Doing.IDLE
+    assert marked(path, sleeper()[1], 0.9)[0].doing is CallbackActivity.IDLE
 
 
 def test_callbacks_of_other_files_are_not_marked(path: Path) -> None:

@@ -5,8 +5,8 @@ from textual.app import App, ComposeResult
 from textual.pilot import Pilot
 
 from cbtui.widgets.code import CodeView
-from cbtui.widgets.code.files import SourceFiles
 from cbtui.widgets.code.marks import marks_at
+from cbtui.widgets.code.source_files import SourceFiles
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
 from tests.support.pictures import lines_of

@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 import sim.engine
-from cbtui.widgets.code.files import SourceFiles
+from cbtui.widgets.code.source_files import SourceFiles
 
 
 @pytest.fixture

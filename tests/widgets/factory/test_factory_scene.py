@@ -7,7 +7,7 @@ from rich.cells import cell_len
 
 from cbtui.looks.theme import Charset, Role
 from cbtui.widgets.factory import FactoryPainter
-from cbtui.widgets.factory.scene import Area, Scene, Stay, scene_of
+from cbtui.widgets.factory.scene import Area, FactoryScene, WorkerState, scene_of
 from sim.trace.events import Reason
 from sim.trace.timeline import Timeline
 from tests.support.properties import examples
@@ -44,7 +44,7 @@ def one_call(start: float = 1.0, length: float = 1.0) -> Timeline:
     return told(run)
 
 
-def scene_at(timeline: Timeline, at: float, glance: float = 0.15) -> Scene:
+def scene_at(timeline: Timeline, at: float, glance: float = 0.15) -> FactoryScene:
     return scene_of(timeline, ns(at), ns(glance))
 
 
@@ -56,25 +56,25 @@ def only_area(timeline: Timeline, at: float) -> Area:
 @pytest.mark.parametrize(
     ("at", "stay"),
     [
-        (0.9, Stay.NEVER),
-        (1.0, Stay.COMES),
-        (1.149, Stay.COMES),
-        (1.15, Stay.WORKS),
-        (1.999, Stay.WORKS),
-        (2.0, Stay.LEAVES),
-        (2.149, Stay.LEAVES),
-        (2.151, Stay.IDLE),
+        (0.9, WorkerState.NEVER),
+        (1.0, WorkerState.COMES),
+        (1.149, WorkerState.COMES),
+        (1.15, WorkerState.WORKS),
+        (1.999, WorkerState.WORKS),
+        (2.0, WorkerState.LEAVES),
+        (2.149, WorkerState.LEAVES),
+        (2.151, WorkerState.IDLE),
     ],
 )
-def test_a_worker_comes_works_leaves_and_waits(at: float, stay: Stay) -> None:
+def test_a_worker_comes_works_leaves_and_waits(at: float, stay: WorkerState) -> None:
     (worker,) = scene_at(one_call(), at).workers
     assert worker.stay is stay
 
 
 def test_a_call_that_takes_no_time_is_seen_for_a_glance() -> None:
     timeline = one_call(length=0.0)
-    assert [worker.stay for worker in scene_at(timeline, 1.1).workers] == [Stay.LEAVES]
-    assert [worker.stay for worker in scene_at(timeline, 1.2).workers] == [Stay.IDLE]
+    assert [worker.stay for worker in scene_at(timeline, 1.1).workers] == [WorkerState.LEAVES]
+    assert [worker.stay for worker in scene_at(timeline, 1.2).workers] == [WorkerState.IDLE]
 
 
 @given(st.floats(0.0, 0.149), st.sampled_from([0.1, 1.0, 5.0, 20.0]))
@@ -84,7 +84,7 @@ def test_at_any_speed_a_worker_has_walked_as_far_after_the_same_moment_on_screen
     timeline = one_call(length=8.0)
     (worker,) = scene_at(timeline, 1.0 + shown * speed, 0.15 * speed).workers
     (slow,) = scene_at(timeline, 1.0 + shown, 0.15).workers
-    assert worker.stay is Stay.COMES
+    assert worker.stay is WorkerState.COMES
     assert abs(worker.step - slow.step) <= 1
 
 
@@ -101,7 +101,7 @@ def test_a_coming_worker_nears_the_area_and_a_leaving_one_the_yard() -> None:
 def test_threads_that_an_executor_has_not_started_yet_are_workers_too() -> None:
     workers = scene_at(four_workers_one_seat(), 9.0).workers
     assert [worker.name for worker in workers] == ["Pool-0_0", "worker 2", "worker 3", "worker 4"]
-    assert [worker.stay for worker in workers[1:]] == [Stay.NEVER] * 3
+    assert [worker.stay for worker in workers[1:]] == [WorkerState.NEVER] * 3
 
 
 def test_housekeeping_services_are_left_out() -> None:
@@ -135,7 +135,7 @@ def test_a_suspended_coroutine_keeps_its_seat_and_frees_its_worker() -> None:
     run.suspend(asking, worker, 2.0)
     timeline = told(run)
     scene = scene_at(timeline, 3.0)
-    assert [worker.stay for worker in scene.workers] == [Stay.IDLE]
+    assert [worker.stay for worker in scene.workers] == [WorkerState.IDLE]
     assert [entity.callback for entity in scene.areas[0].kept] == ["ask_callback"]
     assert "kept by ask_callback" in FactoryPainter().text(timeline, ns(3.0), 78, 9)
 

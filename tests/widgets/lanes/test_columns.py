@@ -5,8 +5,8 @@ from dataclasses import dataclass
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cbtui.widgets.lanes.columns import MOST_A_COLUMN, Columns, Instants, Ration, stretches
-from cbtui.widgets.lanes.scale import Scale
+from cbtui.widgets.lanes.columns import SAMPLES_PER_COLUMN, InstantColumns, LaneColumns, LookBudget, stretches
+from cbtui.widgets.lanes.scale import TimeScale
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, ns
@@ -48,8 +48,8 @@ intervals = st.lists(
 @given(intervals, st.integers(-5, 30))
 def test_a_column_is_lit_exactly_where_something_ran(stays: list[Stay], first: int) -> None:
     store = Store(*stays)
-    scale = Scale(first, S, 10)
-    for place, column in enumerate(Columns(store.query).over(scale, 40 * S)):
+    scale = TimeScale(first, S, 10)
+    for place, column in enumerate(LaneColumns(store.query).over(scale, 40 * S)):
         assert (column is not None) == bool(
             store.query(Window(scale.time_at(place), scale.time_at(place + 1)))
         )
@@ -57,7 +57,9 @@ def test_a_column_is_lit_exactly_where_something_ran(stays: list[Stay], first: i
 
 def test_more_of_a_column_taken_means_more_eighths() -> None:
     store = Store(Stay(0, S // 4), Stay(S, 2 * S), Stay(2 * S, 2 * S))
-    assert [column and column.eighths for column in Columns(store.query).over(Scale(0, S, 4), 9 * S)] == [
+    assert [
+        column and column.eighths for column in LaneColumns(store.query).over(TimeScale(0, S, 4), 9 * S)
+    ] == [
         2,
         8,
         1,
@@ -66,34 +68,42 @@ def test_more_of_a_column_taken_means_more_eighths() -> None:
 
 
 def test_a_long_call_is_found_among_very_many_short_ones() -> None:
-    short = [Stay(place * 1000, place * 1000 + 10) for place in range(20 * MOST_A_COLUMN)]
+    short = [Stay(place * 1000, place * 1000 + 10) for place in range(20 * SAMPLES_PER_COLUMN)]
     long = Stay(7003, 3 * S)
-    columns = Columns(Store(*short, long).query).over(Scale(0, S, 4), 9 * S)
+    columns = LaneColumns(Store(*short, long).query).over(TimeScale(0, S, 4), 9 * S)
     assert [column.top is long if column else None for column in columns] == [False, True, True, None]
 
 
 def test_many_short_calls_take_as_much_of_a_column_as_all_of_them_do() -> None:
     half = [Stay(place * S // 200, place * S // 200 + S // 400) for place in range(200)]
-    (column,) = Columns(Store(*half).query).over(Scale(0, S, 1), 9 * S)
+    (column,) = LaneColumns(Store(*half).query).over(TimeScale(0, S, 1), 9 * S)
     assert column is not None
     assert 3 <= column.eighths <= 5
 
 
 def test_what_still_lasts_reaches_to_the_edge() -> None:
-    columns = Columns(Store(Stay(S, None)).query)
-    assert [column and column.eighths for column in columns.over(Scale(0, S, 5), 3 * S + S // 2)] == [
+    columns = LaneColumns(Store(Stay(S, None)).query)
+    assert [column and column.eighths for column in columns.over(TimeScale(0, S, 5), 3 * S + S // 2)] == [
         None,
         8,
         8,
         4,
         None,
     ]
-    assert [column and column.eighths for column in columns.over(Scale(0, S, 5), 4 * S)] == [None, 8, 8, 8, 1]
+    assert [column and column.eighths for column in columns.over(TimeScale(0, S, 5), 4 * S)] == [
+        None,
+        8,
+        8,
+        8,
+        1,
+    ]
 
 
 def test_several_at_once_are_counted() -> None:
     store = Store(Stay(0, 3 * S), Stay(S, 2 * S, 2), Stay(2 * S, 2 * S, 3))
-    assert [column and column.at_once for column in Columns(store.query).over(Scale(0, S, 4), 9 * S)] == [
+    assert [
+        column and column.at_once for column in LaneColumns(store.query).over(TimeScale(0, S, 4), 9 * S)
+    ] == [
         1,
         2,
         2,
@@ -103,20 +113,20 @@ def test_several_at_once_are_counted() -> None:
 
 def test_a_wait_told_late_is_shown_from_its_beginning() -> None:
     store = Store()
-    columns = Columns(store.query)
-    assert not any(columns.over(Scale(0, S, 10), 8 * S))
+    columns = LaneColumns(store.query)
+    assert not any(columns.over(TimeScale(0, S, 10), 8 * S))
     store.stays.append(Stay(2 * S, None))
-    lit = [place for place, column in enumerate(columns.over(Scale(0, S, 10), 9 * S)) if column]
+    lit = [place for place, column in enumerate(columns.over(TimeScale(0, S, 10), 9 * S)) if column]
     assert lit == list(range(2, 10))
 
 
 @given(intervals, st.lists(st.integers(1, 25), min_size=1, max_size=8))
 def test_a_picture_is_the_same_whatever_was_painted_before(stays: list[Stay], edges: list[int]) -> None:
     store = Store(*stays)
-    kept = Columns(store.query)
+    kept = LaneColumns(store.query)
     for edge in sorted(edges):
-        scale = Scale(edge - 10, S, 12)
-        assert kept.over(scale, 30 * S) == Columns(store.query).over(scale, 30 * S)
+        scale = TimeScale(edge - 10, S, 12)
+        assert kept.over(scale, 30 * S) == LaneColumns(store.query).over(scale, 30 * S)
 
 
 @given(intervals, st.lists(st.tuples(st.integers(10, 30), st.sampled_from([S // 2, S, 2 * S])), max_size=8))
@@ -124,19 +134,19 @@ def test_a_picture_is_the_same_when_one_zooms_out_and_in_again(
     stays: list[Stay], looks: list[tuple[int, int]]
 ) -> None:
     store = Store(*stays)
-    kept = Columns(store.query)
+    kept = LaneColumns(store.query)
     for edge, length in sorted(looks):
-        scale = Scale(edge * S // length - 10, length, 12)
-        assert kept.over(scale, 30 * S) == Columns(store.query).over(scale, 30 * S)
+        scale = TimeScale(edge * S // length - 10, length, 12)
+        assert kept.over(scale, 30 * S) == LaneColumns(store.query).over(scale, 30 * S)
 
 
 @given(intervals, st.integers(1, 30))
 def test_what_a_ration_leaves_out_comes_with_the_next_pictures(stays: list[Stay], looks: int) -> None:
     store = Store(*stays)
-    columns, scale = Columns(store.query), Scale(0, S, 24)
-    whole = Columns(store.query).over(scale, 30 * S)
+    columns, scale = LaneColumns(store.query), TimeScale(0, S, 24)
+    whole = LaneColumns(store.query).over(scale, 30 * S)
     for _ in range(12):
-        summed = columns.over(scale, 30 * S, Ration(looks))
+        summed = columns.over(scale, 30 * S, LookBudget(looks))
         assert all(summed[place] is None for place in columns.unseen)
         seen = [place for place in range(24) if place not in columns.unseen]
         assert [summed[place] for place in seen] == [whole[place] for place in seen]
@@ -145,7 +155,7 @@ def test_what_a_ration_leaves_out_comes_with_the_next_pictures(stays: list[Stay]
 
 def test_neighbouring_columns_of_one_interval_are_one_stretch() -> None:
     store = Store(Stay(S, 4 * S), Stay(4 * S, 6 * S, 2), Stay(8 * S, 8 * S))
-    found = stretches(Columns(store.query).over(Scale(0, S, 10), 20 * S))
+    found = stretches(LaneColumns(store.query).over(TimeScale(0, S, 10), 20 * S))
     assert [(one.first, one.after) for one in found] == [(1, 4), (4, 6), (8, 9)]
 
 
@@ -157,9 +167,9 @@ def test_instants_are_found_in_their_columns_and_the_settled_past_is_asked_for_o
         asked.append(window)
         return [each for each in at if window.start <= each < window.end]
 
-    instants = Instants(query)
-    assert instants.over(Scale(0, ns(0.1), 50), ns(4.0)) == [0, 30]
-    assert instants.over(Scale(30, ns(0.1), 50), ns(8.0)) == [0, 42]
+    instants = InstantColumns(query)
+    assert instants.over(TimeScale(0, ns(0.1), 50), ns(4.0)) == [0, 30]
+    assert instants.over(TimeScale(30, ns(0.1), 50), ns(8.0)) == [0, 42]
     assert asked[-1].start == ns(3.9)
 
 
@@ -174,20 +184,20 @@ def test_instants_are_the_same_whatever_was_asked_before(
     def query(window: Window) -> list[int]:
         return [each for each in times if window.start <= each < window.end]
 
-    used, edge = Instants(query), ns(41)
+    used, edge = InstantColumns(query), ns(41)
     for first, tenths in scales:
-        scale = Scale(first, ns(tenths / 10), 40)
-        assert used.over(scale, edge) == Instants(query).over(scale, edge)
+        scale = TimeScale(first, ns(tenths / 10), 40)
+        assert used.over(scale, edge) == InstantColumns(query).over(scale, edge)
 
 
 def test_a_column_of_what_lasted_is_summed_up_anew_when_it_has_ended() -> None:
-    timeline, scale = Timeline(), Scale(0, ns(0.1), 50)
+    timeline, scale = Timeline(), TimeScale(0, ns(0.1), 50)
     run = Run()
     thread = run.thread("MainThread")
     timer = run.timer(run.exclusive(run.node("/n")), "tick_callback", 1.0)
     run.callback(timer, thread, 0.5, 2.5)
     timeline.extend(event for event in run.events if event.t < ns(3))
-    columns = Columns(lambda window: timeline.spans_on(thread, window))
+    columns = LaneColumns(lambda window: timeline.spans_on(thread, window))
     before = columns.over(scale, ns(2.9))[10]
     assert before is not None
     assert before.top.end is None

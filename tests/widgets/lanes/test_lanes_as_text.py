@@ -8,7 +8,7 @@ from collections.abc import Callable
 import pytest
 
 from cbtui.looks.theme import Charset
-from cbtui.widgets.lanes import Painter
+from cbtui.widgets.lanes import LanePainter
 from sim.trace.events import Reason
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
@@ -75,7 +75,7 @@ def picture(
     start: float = 0.0,
     end: float = 10.0,
 ) -> str:
-    text = Painter(charset).text(timeline, Window(ns(start), ns(end)), ns(end), width, 14)
+    text = LanePainter(charset).text(timeline, Window(ns(start), ns(end)), ns(end), width, 14)
     return "".join(f"{line.rstrip()}\n" for line in text.splitlines())
 
 

@@ -1,7 +1,7 @@
 """What a selected bar tells: its cause, its wait and who was in the way, in words."""
 
 from cbtui.looks.theme import Charset
-from cbtui.widgets.lanes.details import Details, details_of, details_of_selection
+from cbtui.widgets.lanes.details import BarDetails, details_of, details_of_selection
 from cbtui.widgets.lanes.details_rows import details_rows
 from cbtui.widgets.lanes.rows import ThreadLane
 from cbtui.widgets.lanes.selection import Selection
@@ -19,7 +19,7 @@ def span_of(timeline: Timeline, callback: str, place: int = 0) -> Span:
     return timeline.spans_of(entity.id, ALL)[place]
 
 
-def text_of(details: Details) -> str:
+def text_of(details: BarDetails) -> str:
     return " | ".join((details.title, *details.facts))
 
 
@@ -143,7 +143,7 @@ def test_a_lane_without_a_bar_says_how_to_find_one() -> None:
 
 
 def test_details_take_two_rows_and_break_between_facts() -> None:
-    details = Details("A tick on MainThread", ("took 1.0 s at 2.000 s", "late by 300 ms", "x" * 90))
+    details = BarDetails("A tick on MainThread", ("took 1.0 s at 2.000 s", "late by 300 ms", "x" * 90))
     rows = ["".join(run.text for run in row) for row in details_rows(details, 60, Charset.BRAILLE)]
     assert rows[0].rstrip() == "▸ A tick on MainThread · took 1.0 s at 2.000 s"
     assert rows[1].startswith("  late by 300 ms · xxx")
@@ -152,7 +152,7 @@ def test_details_take_two_rows_and_break_between_facts() -> None:
 
 
 def test_details_reach_the_terminal_as_text_only() -> None:
-    details = Details("evil\x1b[2J", ("fact\x07",))
+    details = BarDetails("evil\x1b[2J", ("fact\x07",))
     text = "".join(run.text for row in details_rows(details, 60, Charset.ASCII) for run in row)
     assert text.isprintable()
     assert text.isascii()

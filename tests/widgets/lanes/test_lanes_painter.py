@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from rich.cells import cell_len
 
 from cbtui.looks.theme import Charset, Role
-from cbtui.widgets.lanes import Painter, Selection, wanted_rows
+from cbtui.widgets.lanes import LanePainter, Selection, wanted_rows
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLane, ThreadLane, all_lanes
 from sim.trace.events import MessageDropped, Reason
 from sim.trace.model import Window
@@ -35,7 +35,7 @@ def small_run() -> tuple[Run, int, int, int]:
 
 def test_one_shared_group_shows_everybody_waiting_for_the_timer() -> None:
     timeline = told(shared_group_run(), until=12.9)
-    assert Painter().text(timeline, *last(10, 12.9), 80, 8) == drawn(
+    assert LanePainter().text(timeline, *last(10, 12.9), 80, 8) == drawn(
         """
         |MainThread  │▎▎▎▎▎A timer_callback ███████████████████████████▌│  90% busy      |
         |A exclusive │·····── held by timer_callback on MainThread ─────│ held, 3 wait   |
@@ -53,14 +53,14 @@ def test_what_has_no_callback_of_its_own_goes_by_its_name() -> None:
     action = run.client(group, "/turn/_action")
     run.subscription(group, "/a", "a_callback")
     run.callback(action, thread, 1.0, 9.0)
-    text = Painter().text(told(run, until=10.0), *last(10, 10.0), 100, 8)
+    text = LanePainter().text(told(run, until=10.0), *last(10, 10.0), 100, 8)
     assert "A reply of /turn/_action" in text
     assert "held by reply of /turn/_action on MainThread" in text
 
 
 def test_the_same_in_ascii_has_no_other_glyph() -> None:
     timeline = told(shared_group_run(), until=12.9)
-    assert Painter(Charset.ASCII).text(timeline, *last(10, 12.9), 80, 8) == drawn(
+    assert LanePainter(Charset.ASCII).text(timeline, *last(10, 12.9), 80, 8) == drawn(
         """
         |MainThread  ||||||A timer_callback ###########################||  90% busy      |
         |A exclusive |.....-- held by timer_callback on MainThread -----| held, 3 wait   |
@@ -74,7 +74,7 @@ def test_the_same_in_ascii_has_no_other_glyph() -> None:
 
 def test_split_groups_fit_nine_rows_of_a_small_terminal() -> None:
     timeline = told(split_groups_run(), until=9.412)
-    assert Painter(service="/motor_power").text(timeline, *last(10, 9.412), 80, 9) == drawn(
+    assert LanePainter(service="/motor_power").text(timeline, *last(10, 9.412), 80, 9) == drawn(
         """
         |Pool-0_0    │    ▎  ▎ ▎  ▎ ▎  ▎ ▎  A timer_callback ██████████▎│  55% busy      |
         |Pool-0_1    │  ▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎│   1% busy      |
@@ -91,7 +91,7 @@ def test_split_groups_fit_nine_rows_of_a_small_terminal() -> None:
 
 def test_a_reentrant_group_shows_how_many_run_at_once() -> None:
     timeline = told(dummy_server_run(), until=8.2)
-    assert Painter().text(timeline, *last(10, 8.2), 80, 8) == drawn(
+    assert LanePainter().text(timeline, *last(10, 8.2), 80, 8) == drawn(
         """
         |Pool-0_0    │              ▎    ▎ ▕A service_callback █████▊  ▎│  50% busy      |
         |Pool-0_1    │                        ▎    ▎    ▎    ▎    ▎     │   0% busy      |
@@ -105,13 +105,13 @@ def test_a_reentrant_group_shows_how_many_run_at_once() -> None:
 
 def test_a_timer_that_found_no_worker_is_marked_late() -> None:
     timeline = told(dummy_server_one_thread_run(), until=8.2)
-    assert Painter().text(timeline, *last(10, 8.2), 80, 8).splitlines()[3] == drawn(
+    assert LanePainter().text(timeline, *last(10, 8.2), 80, 8).splitlines()[3] == drawn(
         "|  timer     │              ▎    ▎    ╲╲ no free worker ╲╲╲╲▎! ▎│ on time        |"
     )
 
 
 def test_a_wide_picture_names_threads_as_rclpy_does_and_tells_more() -> None:
-    picture = Painter().text(told(split_groups_run(), until=9.412), *last(10, 9.412), 138, 9)
+    picture = LanePainter().text(told(split_groups_run(), until=9.412), *last(10, 9.412), 138, 9)
     assert "ThreadPoolExecutor-0_0 │" in picture
     assert "  0%  never needed" in picture
     assert "A timer 5.4 s" in picture
@@ -131,7 +131,7 @@ def test_a_wide_picture_names_threads_as_rclpy_does_and_tells_more() -> None:
 def test_every_picture_has_the_size_that_was_asked_for(
     timeline: Timeline, start: int, length: int, now: int, width: int, height: int, charset: Charset
 ) -> None:
-    picture = Painter(charset).paint(timeline, Window(start, start + length), now, width, height)
+    picture = LanePainter(charset).paint(timeline, Window(start, start + length), now, width, height)
     assert len(picture.rows) <= height
     assert all(cell_len("".join(run.text for run in row)) == width for row in picture.rows)
     assert charset is not Charset.ASCII or picture.text.isascii()
@@ -141,17 +141,17 @@ def test_every_picture_has_the_size_that_was_asked_for(
 @given(st.lists(st.integers(0, ns(30)), min_size=1, max_size=6), st.sampled_from([ns(0.5), ns(10), ns(60)]))
 def test_a_painter_paints_the_same_whatever_it_painted_before(moments: list[int], length: int) -> None:
     timeline = RUNS[0]
-    used = Painter()
+    used = LanePainter()
     for now in moments:
         window = Window(now - length, now)
-        assert used.paint(timeline, window, now, 100, 8) == Painter().paint(timeline, window, now, 100, 8)
+        assert used.paint(timeline, window, now, 100, 8) == LanePainter().paint(timeline, window, now, 100, 8)
 
 
 def test_lanes_that_fill_frame_by_frame_end_as_if_painted_at_once() -> None:
     timeline = told(shared_group_run())
     window, now = Window(0, ns(30)), ns(29)
-    at_once = Painter().paint(timeline, window, now, 100, 14)
-    painter = Painter(looks=300)
+    at_once = LanePainter().paint(timeline, window, now, 100, 14)
+    painter = LanePainter(looks=300)
     pictures = [painter.paint(timeline, window, now, 100, 14) for _ in range(60)]
     assert not pictures[0].complete
     assert "·" in pictures[0].text or pictures[0].text != at_once.text
@@ -160,13 +160,13 @@ def test_lanes_that_fill_frame_by_frame_end_as_if_painted_at_once() -> None:
 
 def test_lanes_that_grow_look_as_if_painted_at_once() -> None:
     events = shared_group_run().events
-    growing, painter = Timeline(), Painter()
+    growing, painter = Timeline(), LanePainter()
     done = 0
     for now in (2.0, 4.6, 5.0, 13.9, 14.3, 24.1, 26.0):
         upto = next((place for place, event in enumerate(events) if event.t > ns(now)), len(events))
         growing.extend(events[done:upto])
         done = upto
-        assert painter.text(growing, *last(10, now), 100, 8) == Painter().text(
+        assert painter.text(growing, *last(10, now), 100, 8) == LanePainter().text(
             growing, *last(10, now), 100, 8
         )
 
@@ -177,7 +177,7 @@ def test_a_callbacks_name_never_reaches_the_terminal_as_a_control() -> None:
     timer = run.timer(run.exclusive(run.node("/n")), "evil\x1b]0;title\x07" * 9, 1.0)
     run.callback(timer, thread, 1.0, 8.0)
     run.stop(10.0)
-    picture = Painter().text(told(run), *last(10, 10.0), 80, 6)
+    picture = LanePainter().text(told(run), *last(10, 10.0), 80, 6)
     assert "\x1b" not in picture
     assert "\x07" not in picture
     assert "Main␛[31mTh…" in picture
@@ -189,7 +189,7 @@ def test_a_failed_call_is_crossed() -> None:
     run.fail(a, thread, 3.0, "IndexError: 720")
     run.end(a, thread, 3.0)
     run.stop(10.0)
-    assert "✗" in Painter().text(told(run), *last(10, 10.0), 80, 6).splitlines()[0]
+    assert "✗" in LanePainter().text(told(run), *last(10, 10.0), 80, 6).splitlines()[0]
 
 
 @pytest.mark.parametrize(
@@ -204,19 +204,19 @@ def test_each_reason_has_its_texture_and_its_words(reason: Reason, words: str) -
     run, _, a, tick = small_run()
     run.wait(a, 1.0, 20.0, reason, tick if reason is Reason.GROUP_HELD else 0)
     run.stop(20.0)
-    assert words in Painter().text(told(run), Window(0, ns(6)), ns(6), 140, 6)
+    assert words in LanePainter().text(told(run), Window(0, ns(6)), ns(6), 140, 6)
 
 
 def test_a_wait_is_told_as_of_the_cursor() -> None:
     timeline = told(shared_group_run())
-    before = Painter().text(timeline, Window(0, ns(30)), ns(10), 140, 7)
-    after = Painter().text(timeline, Window(0, ns(30)), ns(26), 140, 7)
+    before = LanePainter().text(timeline, Window(0, ns(30)), ns(10), 140, 7)
+    after = LanePainter().text(timeline, Window(0, ns(30)), ns(26), 140, 7)
     assert "waits 6.0 s: group A held by timer_callback" in before
     assert "waited 20.0 s: group A held by timer_callback" in after
 
 
 def test_what_lies_after_the_cursor_is_drawn_later_in_ink() -> None:
-    picture = Painter().paint(told(shared_group_run()), Window(0, ns(30)), ns(10), 140, 7)
+    picture = LanePainter().paint(told(shared_group_run()), Window(0, ns(30)), ns(10), 140, 7)
     bars = [run for run in picture.rows[0] if run.ink.role is Role.BAR]
     assert [run.ink.later for run in bars] == sorted(run.ink.later for run in bars)
     assert {run.ink.later for run in bars} == {False, True}
@@ -230,30 +230,30 @@ def test_a_call_after_the_cursor_that_has_not_ended_lasts_to_the_end_of_what_is_
     run.timer(group, "other", 1.0)
     run.start(timer, run.thread("MainThread"), 4.0)
     run.printed("still at it", 9.0)
-    picture = Painter().text(told(run), Window(0, ns(10)), ns(2), 140, 7)
+    picture = LanePainter().text(told(run), Window(0, ns(10)), ns(2), 140, 7)
     assert "runs 5.0 s on MainThread" in picture
 
 
 def test_a_short_window_still_shows_the_last_call_that_reaches_into_it() -> None:
-    picture = Painter().text(told(shared_group_run()), Window(ns(9), ns(9.001)), ns(9.001), 80, 7)
+    picture = LanePainter().text(told(shared_group_run()), Window(ns(9), ns(9.001)), ns(9.001), 80, 7)
     assert "A timer_callback ███" in picture
     assert "waits 5.0 s" in picture
 
 
 def test_a_group_of_one_shares_its_lane_with_its_callback() -> None:
-    lanes = Painter().paint(RUNS[1], *last(10, 10), 80, 20).lanes
+    lanes = LanePainter().paint(RUNS[1], *last(10, 10), 80, 20).lanes
     assert [type(lane) for lane in lanes] == [ThreadLane] * 4 + [SoleLane] * 3 + [ServiceLane]
 
 
 def test_a_call_without_a_reply_says_since_when() -> None:
     timeline = told(dummy_server_run(), until=5.05)
-    assert "no reply 2.5 s" in Painter().text(timeline, *last(10, 5.05), 80, 8)
+    assert "no reply 2.5 s" in LanePainter().text(timeline, *last(10, 5.05), 80, 8)
 
 
 def test_the_services_that_every_node_brings_along_have_no_lanes() -> None:
     run, _, _, _ = small_run()
     run.service(run.exclusive(run.node("/m")), "/m/get_parameters", "")
-    assert "get_parameters" not in Painter().text(told(run), *last(10, 10), 80, 20)
+    assert "get_parameters" not in LanePainter().text(told(run), *last(10, 10), 80, 20)
 
 
 POOL = ("ThreadPoolExecutor-0_0", "ThreadPoolExecutor-0_1")
@@ -264,7 +264,7 @@ def test_a_main_thread_that_only_hands_out_work_has_no_lane() -> None:
     run.thread("MainThread")
     worker = run.thread("ThreadPoolExecutor-0_0")
     run.callback(run.timer(run.exclusive(run.node("/n")), "tick_callback", 1.0), worker, 1.0, 1.0)
-    assert "MainThread" not in Painter().text(told(run), *last(10, 10), 80, 20)
+    assert "MainThread" not in LanePainter().text(told(run), *last(10, 10), 80, 20)
 
 
 def test_a_thread_of_the_programs_own_is_not_said_to_be_unneeded() -> None:
@@ -273,7 +273,7 @@ def test_a_thread_of_the_programs_own_is_not_said_to_be_unneeded() -> None:
     timer = run.timer(run.exclusive(run.node("/n")), "tick_callback", 1.0)
     run.callback(timer, worker, 1.0, 1.0)
     run.log("beep", 2.0, own)
-    shown = Painter().text(told(run), *last(10, 10), 120, 20).splitlines()
+    shown = LanePainter().text(told(run), *last(10, 10), 120, 20).splitlines()
     (beeper,) = (line for line in shown if "beeper" in line)
     (unused,) = (line for line in shown if POOL[1] in line)
     assert "never needed" in unused
@@ -284,7 +284,7 @@ def test_a_thread_of_the_programs_own_is_not_said_to_be_unneeded() -> None:
 
 def test_where_room_is_short_those_who_wait_and_run_stay() -> None:
     timeline = told(shared_group_run(), until=12.9)
-    picture = Painter().paint(timeline, *last(10, 12.9), 80, 4)
+    picture = LanePainter().paint(timeline, *last(10, 12.9), 80, 4)
     assert [type(lane) for lane in picture.lanes] == [ThreadLane, GroupLane, MemberLane]
     assert picture.text.splitlines()[-1].startswith("+2 lanes")
 
@@ -292,7 +292,7 @@ def test_where_room_is_short_those_who_wait_and_run_stay() -> None:
 def test_the_rows_wanted_are_the_rows_painted() -> None:
     for timeline in RUNS:
         wanted = wanted_rows(timeline, "/motor_power")
-        assert len(Painter(service="/motor_power").paint(timeline, *last(10, 10), 80, 50).rows) == wanted
+        assert len(LanePainter(service="/motor_power").paint(timeline, *last(10, 10), 80, 50).rows) == wanted
 
 
 def blocked_run() -> Run:
@@ -306,7 +306,7 @@ def blocked_run() -> Run:
 
 
 def test_a_thread_that_stands_still_in_a_call_is_hatched_and_says_in_which() -> None:
-    assert Painter().text(told(blocked_run()), *last(10, 10.0), 80, 8).splitlines()[0] == drawn(
+    assert LanePainter().text(told(blocked_run()), *last(10, 10.0), 80, 8).splitlines()[0] == drawn(
         "|MainThread  │ A a_callback ░░ blocked in call /x ░░░░██████    │  90% busy      |"
     )
 
@@ -315,7 +315,7 @@ def test_a_bars_name_is_kept_where_its_thread_stands_still_at_once() -> None:
     run, thread, a, _ = small_run()
     run.callback(a, thread, 0.2)
     run.blocked(run.call("/x", 0.2, entity=a), "/x", thread, a, 0.2)
-    text = Painter(Charset.ASCII).text(told(run, 10.0), Window(0, ns(10)), ns(10), 80, 8)
+    text = LanePainter(Charset.ASCII).text(told(run, 10.0), Window(0, ns(10)), ns(10), 80, 8)
     assert "A a" in text.splitlines()[0]
     assert "%% blocked in call /x %%" in text.splitlines()[0]
 
@@ -325,7 +325,7 @@ def test_lost_messages_are_crosses_on_the_lane_of_their_queue() -> None:
     for at in (1.0, 1.5, 5.0, 5.1):
         run.add(MessageDropped(ns(at), a, 10, 1))
     run.stop(10.0)
-    assert Painter().text(told(run), *last(10, 10.0), 80, 8).splitlines()[2] == drawn(
+    assert LanePainter().text(told(run), *last(10, 10.0), 80, 8).splitlines()[2] == drawn(
         "|  a         │     × ×                 ×                        │ 10/10! lost 4  |"
     )
 
@@ -349,11 +349,11 @@ def neighbours() -> Timeline:
     ],
 )
 def test_what_a_bars_label_leaves_has_the_texture_of_its_group(charset: Charset, bars: str) -> None:
-    assert bars in Painter(charset).text(neighbours(), *last(10, 10.0), 80, 8).splitlines()[0]
+    assert bars in LanePainter(charset).text(neighbours(), *last(10, 10.0), 80, 8).splitlines()[0]
 
 
 def test_wide_lanes_show_each_groups_texture_beside_its_letter() -> None:
-    names = [line[:23] for line in Painter().text(neighbours(), *last(10, 10.0), 140, 8).splitlines()]
+    names = [line[:23] for line in LanePainter().text(neighbours(), *last(10, 10.0), 140, 8).splitlines()]
     assert names[1:3] == ["A ██ exclusive one     ", "B ·· exclusive other   "]
 
 
@@ -362,7 +362,7 @@ def test_keys_of_the_person_are_marked_on_the_axis_in_words_where_there_is_room(
     run.command("reset the world", 3.0)
     run.command("speed x2", 3.2)
     run.stop(10.0)
-    axis = Painter().text(told(run), *last(10, 10.0), 80, 8).splitlines()[-1]
+    axis = LanePainter().text(told(run), *last(10, 10.0), 80, 8).splitlines()[-1]
     assert "▲▲speed x2" in axis
 
 
@@ -370,7 +370,7 @@ def test_keys_of_the_person_are_marked_on_the_axis_in_words_where_there_is_room(
 def test_an_axis_tells_on_which_side_the_cursor_is(start: float, sign: str) -> None:
     timeline = told(shared_group_run())
     window = Window(ns(start), ns(start + 2))
-    axis = Painter().text(timeline, window, ns(4.5), 80, 7).splitlines()[-1]
+    axis = LanePainter().text(timeline, window, ns(4.5), 80, 7).splitlines()[-1]
     assert sign in axis
 
 
@@ -378,7 +378,7 @@ def test_the_selected_lane_is_pointed_at_and_its_bar_stands_out() -> None:
     timeline = told(shared_group_run(), until=12.9)
     lane = ThreadLane(timeline.threads[1])
     bar = timeline.spans_on(1, Window(ns(5), ns(6)))[0]
-    picture = Painter().paint(timeline, *last(10, 12.9), 80, 8, Selection(lane, bar))
+    picture = LanePainter().paint(timeline, *last(10, 12.9), 80, 8, Selection(lane, bar))
     assert picture.text.splitlines()[0].startswith("MainThread  ▸▎▎▎▎▎A timer_callback")
     selected = "".join(run.text for run in picture.rows[0] if run.ink.selected)
     assert selected.startswith("A timer_callback ███")
@@ -389,14 +389,16 @@ def test_the_selected_lane_and_its_neighbours_are_shown_however_few_there_is_roo
     timeline = told(shared_group_run(), until=12.9)
     every = all_lanes(timeline, "/motor_power")
     for place, lane in enumerate(every):
-        shown = Painter(service="/motor_power").paint(timeline, *last(10, 12.9), 80, 5, Selection(lane)).lanes
+        shown = (
+            LanePainter(service="/motor_power").paint(timeline, *last(10, 12.9), 80, 5, Selection(lane)).lanes
+        )
         assert set(every[max(0, place - 1) : place + 2]) <= set(shown)
         assert list(shown) == [each for each in every if each in shown]
 
 
 def test_a_millisecond_and_ten_minutes_fill_a_screen() -> None:
     timeline = told(shared_group_run())
-    near = Painter().text(timeline, Window(ns(4.0025), ns(4.0035)), ns(4.0035), 80, 7)
+    near = LanePainter().text(timeline, Window(ns(4.0025), ns(4.0035)), ns(4.0035), 80, 7)
     assert near == drawn(
         """
         |MainThread  │A timer_callback █████████████████████████████████│ 100% busy      |
@@ -407,5 +409,5 @@ def test_a_millisecond_and_ten_minutes_fill_a_screen() -> None:
         |seconds     │     4.0026    4.0028    4.0030    4.0032     now▲│ 20 µs/col      |
         """
     )
-    far = Painter().text(timeline, Window(0, ns(600)), ns(30), 80, 7)
+    far = LanePainter().text(timeline, Window(0, ns(600)), ns(30), 80, 7)
     assert "12.0 s/col" in far

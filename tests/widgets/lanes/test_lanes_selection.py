@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, ThreadLane, all_lanes
-from cbtui.widgets.lanes.selection import Selection, bar_at, bar_up_to, beside, start_of
+from cbtui.widgets.lanes.selection import Selection, bar_at, bar_up_to, neighbouring_bar, start_of
 from sim.trace.model import Call, Span, Wait, Window
 from sim.trace.timeline import Timeline
 from tests.support.properties import examples
@@ -49,7 +49,7 @@ def test_where_nothing_is_the_last_bar_on_screen_is_meant() -> None:
 def test_a_service_of_others_has_its_calls() -> None:
     timeline = told(split_groups_run())
     lane = ServiceLane("/motor_power")
-    bar = beside(timeline, lane, 0, 1)
+    bar = neighbouring_bar(timeline, lane, 0, 1)
     assert isinstance(bar, Call)
     assert bar_at(timeline, lane, Window(bar.sent, bar.sent + 1)) is bar
 
@@ -59,13 +59,13 @@ def test_a_service_of_others_has_its_calls() -> None:
 def test_going_on_and_back_along_a_lane_meets_the_same_bars(timeline: Timeline, data: st.DataObject) -> None:
     lane = data.draw(st.sampled_from(all_lanes(timeline, "/motor_power")))
     at = data.draw(st.integers(0, timeline.end))
-    after = beside(timeline, lane, at, 1)
+    after = neighbouring_bar(timeline, lane, at, 1)
     if after is None:
         return
     assert start_of(after) > at
-    further = beside(timeline, lane, start_of(after), 1)
+    further = neighbouring_bar(timeline, lane, start_of(after), 1)
     if further is not None:
-        back = beside(timeline, lane, start_of(further), -1)
+        back = neighbouring_bar(timeline, lane, start_of(further), -1)
         assert back is not None
         assert start_of(back) == start_of(after)
 

@@ -24,7 +24,7 @@ class PaneOnly(App[None]):
     def pane(self) -> LogView:
         return self.query_one(LogView)
 
-    def on_log_lines_moment_picked(self, message: LogLines.MomentPicked) -> None:
+    def on_inked_view_moment_picked(self, message: LogLines.MomentPicked) -> None:
         self.moments.append(message.at)
 
 
@@ -103,7 +103,7 @@ async def test_a_filtered_log_ends_at_the_moment_on_screen() -> None:
 
 
 async def test_a_long_log_is_searched_to_its_end_by_and_by(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(lines_module, "_AT_ONCE", 10)
+    monkeypatch.setattr(lines_module, "_SEARCH_BATCH", 10)
     app = PaneOnly()
     async with app.run_test(size=(60, 10)) as pilot:
         await showing(pilot, log_of(500))

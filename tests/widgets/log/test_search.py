@@ -7,7 +7,7 @@ from rich.cells import cell_len
 
 from cbtui.widgets.log.filter import Filter, LogEvent, filter_of
 from cbtui.widgets.log.line import line_of, width_of
-from cbtui.widgets.log.search import Search
+from cbtui.widgets.log.search import LogSearch
 from sim.trace.events import Logged, Printed, Severity
 from sim.trace.timeline import Timeline
 
@@ -26,8 +26,8 @@ def every_third(count: int) -> list[LogEvent]:
     return [line(number, "third" if number % 3 == 0 else "other") for number in range(count)]
 
 
-def searched(timeline: Timeline, text: str) -> Search:
-    search = Search(timeline, filter_of(text))
+def searched(timeline: Timeline, text: str) -> LogSearch:
+    search = LogSearch(timeline, filter_of(text))
     while search.go_on(100):
         pass
     return search
@@ -38,7 +38,7 @@ def test_the_places_of_the_lines_that_are_let_through_are_found() -> None:
 
 
 def test_a_step_looks_at_so_many_lines_and_tells_whether_there_are_more() -> None:
-    search = Search(timeline_of(every_third(10)), filter_of("third"))
+    search = LogSearch(timeline_of(every_third(10)), filter_of("third"))
     assert search.go_on(4)
     assert list(search.places) == [0, 3]
     assert search.go_on(4)
@@ -55,7 +55,7 @@ def test_only_new_lines_are_looked_at() -> None:
             return False
 
     timeline = timeline_of(every_third(500))
-    search = Search(timeline, Counting(("x",)))
+    search = LogSearch(timeline, Counting(("x",)))
     while search.go_on(100):
         pass
     assert looked_at == list(range(500))
@@ -65,7 +65,7 @@ def test_only_new_lines_are_looked_at() -> None:
 
 
 def test_without_a_filter_every_line_is_there_before_it_was_looked_at() -> None:
-    search = Search(timeline_of(every_third(500)), Filter())
+    search = LogSearch(timeline_of(every_third(500)), Filter())
     assert search.places == range(500)
 
 
@@ -100,7 +100,7 @@ def test_a_late_line_is_noticed_among_lines_that_are_the_same() -> None:
 )
 def test_lines_that_come_late_are_found_where_they_are(late: list[int], step: int) -> None:
     timeline = timeline_of(line(10 * number, f"{number} third") for number in range(0, 40, 3))
-    search = Search(timeline, filter_of("third"))
+    search = LogSearch(timeline, filter_of("third"))
     for at in late:
         search.go_on(step)
         timeline.extend([line(at, "third, late" if at % 2 else "late")])

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from rich.style import Style
 from textual.strip import Strip
 
-from cbtui.widgets.robot.film import half_blocks, ramp
+from cbtui.widgets.robot.camera_picture import half_blocks, ramp
 from sim.camera import Picture
 
 

@@ -10,8 +10,8 @@ from rich.cells import cell_len
 from textual.geometry import Region
 
 from cbtui.looks.theme import Charset, Role
-from cbtui.widgets.robot import Look
-from cbtui.widgets.robot.extents import Extent, View, near, whole
+from cbtui.widgets.robot import RobotViewMode
+from cbtui.widgets.robot.extents import Extent, MapView, robot_surroundings, whole_arena
 from cbtui.widgets.robot.painter import RobotPainter
 from sim.trace.events import ArenaShown, RobotMoved, Scanned
 from sim.trace.timeline import Timeline
@@ -134,10 +134,10 @@ def test_a_run_without_a_robot_says_so() -> None:
     st.integers(1, 120),
     st.integers(0, 40),
     st.sampled_from(Charset),
-    st.sampled_from(Look),
+    st.sampled_from(RobotViewMode),
 )
 def test_the_pane_has_the_size_that_was_asked_for_wherever_the_robot_is(
-    x: float, y: float, yaw: float, width: int, height: int, charset: Charset, look: Look
+    x: float, y: float, yaw: float, width: int, height: int, charset: Charset, look: RobotViewMode
 ) -> None:
     timeline = Timeline()
     hit = msgspec.structs.replace(robot_at(x, y, yaw), touching=True)
@@ -152,7 +152,7 @@ def test_the_pane_has_the_size_that_was_asked_for_wherever_the_robot_is(
 
 @given(st.integers(4, 100), st.integers(3, 60), st.sampled_from(Charset))
 def test_the_whole_extent_is_on_the_map_and_not_distorted(columns: int, lines: int, charset: Charset) -> None:
-    view = View.of(whole(PLAN), columns, lines, charset)
+    view = MapView.of(whole_arena(PLAN), columns, lines, charset)
     for x, y in ((-6.5, -6.5), (6.5, 6.5)):
         column, line = view.cell(x, y)
         assert 0 <= column < columns
@@ -161,10 +161,12 @@ def test_the_whole_extent_is_on_the_map_and_not_distorted(columns: int, lines: i
 
 
 def test_the_surroundings_stand_still_while_the_robot_creeps() -> None:
-    assert near(PLAN, robot_at(0.05, 0.0, 0.0)) == near(PLAN, robot_at(0.15, 0.02, 1.0))
+    assert robot_surroundings(PLAN, robot_at(0.05, 0.0, 0.0)) == robot_surroundings(
+        PLAN, robot_at(0.15, 0.02, 1.0)
+    )
 
 
 def test_far_from_the_sphere_the_map_follows_the_robot() -> None:
-    around = near(PLAN, robot_at(-5.0, 4.0, 0.0))
+    around = robot_surroundings(PLAN, robot_at(-5.0, 4.0, 0.0))
     assert around.left < -5.0 < around.right < 0.0
     assert isinstance(around, Extent)

@@ -7,9 +7,9 @@ import pytest
 from textual.geometry import Region
 
 from cbtui.looks.theme import Charset, Role
-from cbtui.widgets.robot import Look
+from cbtui.widgets.robot import RobotViewMode
 from cbtui.widgets.robot.painter import RobotPainter
-from cbtui.widgets.robot.places import Places, arrange
+from cbtui.widgets.robot.pane_regions import PaneRegions, arrange
 from cbtui.widgets.robot.scene import since_hit
 from sim.trace.events import AnyEvent, RobotMoved
 from sim.trace.timeline import Timeline
@@ -84,7 +84,9 @@ HIT_BOTH = r"""
 """
 
 
-def text(timeline: Timeline, now: float, width: int, height: int, look: Look = Look.MAP) -> str:
+def text(
+    timeline: Timeline, now: float, width: int, height: int, look: RobotViewMode = RobotViewMode.MAP
+) -> str:
     return RobotPainter(Charset.ASCII).text(timeline, ns(now), width, height, look, "The camera starts.")
 
 
@@ -93,11 +95,11 @@ def test_surroundings_and_room_stand_side_by_side() -> None:
 
 
 def test_map_and_picture_stand_side_by_side() -> None:
-    assert text(SHARED, 9.25, 44, 14, Look.BOTH) == drawn(BOTH)
+    assert text(SHARED, 9.25, 44, 14, RobotViewMode.BOTH) == drawn(BOTH)
 
 
 def test_a_hit_shows_as_rays_a_changed_robot_and_edges_of_the_picture() -> None:
-    assert text(HIT, 4.2, 44, 14, Look.BOTH) == drawn(HIT_BOTH)
+    assert text(HIT, 4.2, 44, 14, RobotViewMode.BOTH) == drawn(HIT_BOTH)
 
 
 def test_only_the_hit_flashes_and_not_the_touching_that_follows() -> None:
@@ -122,14 +124,14 @@ def test_the_rays_turn_with_the_runs_time_and_stand_still_without_it() -> None:
 
 
 def test_where_nothing_fits_the_figures_stand_alone() -> None:
-    assert arrange(Region(0, 1, 80, 2), Look.BOTH) == Places()
+    assert arrange(Region(0, 1, 80, 2), RobotViewMode.BOTH) == PaneRegions()
     assert "motors" in text(SHARED, 9.25, 80, 4)
 
 
-@pytest.mark.parametrize("look", Look)
+@pytest.mark.parametrize("look", RobotViewMode)
 @pytest.mark.parametrize(("width", "height"), [(12, 3), (44, 10), (44, 40), (78, 6), (138, 27), (250, 60)])
 def test_what_is_shown_lies_in_the_pane_and_nothing_lies_on_another(
-    width: int, height: int, look: Look
+    width: int, height: int, look: RobotViewMode
 ) -> None:
     body = Region(0, 1, width, height)
     places = arrange(body, look)
@@ -140,15 +142,15 @@ def test_what_is_shown_lies_in_the_pane_and_nothing_lies_on_another(
 
 
 def test_a_narrow_pane_has_map_and_picture_above_each_other() -> None:
-    places = arrange(Region(0, 1, 44, 40), Look.BOTH)
+    places = arrange(Region(0, 1, 44, 40), RobotViewMode.BOTH)
     assert places.near is not None
     assert places.camera is not None
     assert places.near.width == places.camera.width == 44
 
 
 def test_the_looks_go_round() -> None:
-    assert [look.following for look in (Look.MAP, Look.CAMERA, Look.BOTH)] == [
-        Look.CAMERA,
-        Look.BOTH,
-        Look.MAP,
+    assert [look.following for look in (RobotViewMode.MAP, RobotViewMode.CAMERA, RobotViewMode.BOTH)] == [
+        RobotViewMode.CAMERA,
+        RobotViewMode.BOTH,
+        RobotViewMode.MAP,
     ]

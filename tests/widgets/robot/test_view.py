@@ -9,7 +9,7 @@ from textual.app import App, ComposeResult
 from textual.pilot import Pilot
 
 from cbtui.looks.theme import Charset
-from cbtui.widgets.robot import Look, RobotView
+from cbtui.widgets.robot import RobotView, RobotViewMode
 from cbtui.widgets.robot.painter import RobotPainter
 from cbtui.widgets.robot.view import PICTURES_A_SECOND
 from sim.camera import Picture, Shot
@@ -96,7 +96,7 @@ async def test_no_camera_is_opened_without_a_robot() -> None:
     app = OnePane()
     async with app.run_test(size=(80, 14)) as pilot:
         app.show(0.0, Timeline())
-        app.view.look = Look.CAMERA
+        app.view.look = RobotViewMode.CAMERA
         await pilot.pause()
         assert app.cameras == []
         assert "no robot in this run" in app.text()
@@ -111,7 +111,7 @@ async def test_the_key_goes_from_map_to_camera_to_both_and_back() -> None:
             app.view.cycle_camera()
             await pilot.pause()
             looks.append(app.view.look)
-        assert looks == [Look.CAMERA, Look.BOTH, Look.MAP]
+        assert looks == [RobotViewMode.CAMERA, RobotViewMode.BOTH, RobotViewMode.MAP]
         assert len(app.cameras) == 1
 
 
@@ -119,7 +119,7 @@ async def test_the_picture_wanted_is_that_of_the_moment_on_screen_and_fits_its_p
     app = OnePane()
     async with app.run_test(size=(80, 14)) as pilot:
         app.show(9.25)
-        app.view.look = Look.CAMERA
+        app.view.look = RobotViewMode.CAMERA
         await pilot.pause()
         robot, arena = SHARED.robot(ns(9.25)), SHARED.arena
         assert robot is not None
@@ -133,7 +133,7 @@ async def test_the_picture_wanted_is_that_of_the_moment_on_screen_and_fits_its_p
 async def test_pictures_are_wanted_a_few_times_a_second_and_the_last_moment_always() -> None:
     app = OnePane()
     async with app.run_test(size=(80, 14)) as pilot:
-        app.view.look = Look.CAMERA
+        app.view.look = RobotViewMode.CAMERA
         began = monotonic()
         for tick in range(50):
             app.show(4.0 + tick / 10)
@@ -148,7 +148,7 @@ async def test_pictures_are_wanted_a_few_times_a_second_and_the_last_moment_alwa
 async def test_while_the_robot_stands_still_no_further_picture_is_wanted() -> None:
     app = OnePane()
     async with app.run_test(size=(80, 14)) as pilot:
-        app.view.look = Look.CAMERA
+        app.view.look = RobotViewMode.CAMERA
         for now in (0.1, 0.2, 0.3):
             app.show(now)
             await pilot.pause(0.25)
@@ -160,7 +160,7 @@ async def test_a_picture_is_shown_in_its_place_and_the_figures_stay() -> None:
     app = OnePane()
     async with app.run_test(size=(80, 14)) as pilot:
         app.show(9.25)
-        app.view.look = Look.BOTH
+        app.view.look = RobotViewMode.BOTH
         await pilot.pause()
         assert "The camera starts." in app.text()
         app.cameras[0].answer()
@@ -176,7 +176,7 @@ async def test_a_picture_of_another_size_is_not_shown() -> None:
     app = OnePane()
     async with app.run_test(size=(80, 14)) as pilot:
         app.show(9.25)
-        app.view.look = Look.CAMERA
+        app.view.look = RobotViewMode.CAMERA
         await pilot.pause()
         camera = app.cameras[0]
         await pilot.resize_terminal(60, 20)
@@ -198,7 +198,7 @@ async def test_without_colours_a_picture_is_made_of_signs(
     async with app.run_test(size=(80, 14)) as pilot:
         app.view.charset = charset
         app.show(9.25)
-        app.view.look = Look.CAMERA
+        app.view.look = RobotViewMode.CAMERA
         await pilot.pause()
         app.cameras[0].answer()
         await settle(pilot, lambda: "The camera" not in app.text())
@@ -212,7 +212,7 @@ async def test_a_picture_changes_with_the_theme_where_signs_stand_for_brightness
         app.theme = "textual-dark"
         app.view.charset = Charset.ASCII
         app.show(9.25)
-        app.view.look = Look.CAMERA
+        app.view.look = RobotViewMode.CAMERA
         await pilot.pause()
         app.cameras[0].answer()
         await settle(pilot, lambda: "%%%" in app.text())
@@ -241,7 +241,7 @@ async def test_the_camera_ends_with_the_screen() -> None:
     app = OnePane()
     async with app.run_test(size=(80, 14)) as pilot:
         app.show(9.25)
-        app.view.look = Look.CAMERA
+        app.view.look = RobotViewMode.CAMERA
         await pilot.pause()
         assert not app.cameras[0].stopped
     assert app.cameras[0].stopped
@@ -256,7 +256,7 @@ async def test_the_real_camera_shows_the_yellow_sphere() -> None:
     async with app.run_test(size=(80, 14)) as pilot:
         view = app.query_one(RobotView)
         view.now, view.timeline = ns(3.0), SHARED
-        view.look = Look.CAMERA
+        view.look = RobotViewMode.CAMERA
 
         def yellow() -> bool:
             styles = [style for y in range(1, 12) for _, style, _ in view.render_line(y) if style is not None]

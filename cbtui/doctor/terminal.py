@@ -4,7 +4,7 @@ import os
 from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
-from cbtui.doctor.verdict import Verdict, fault, note, well
+from cbtui.doctor.examination import Examination, fault, note, well
 from cbtui.terminal.capabilities import is_dumb
 
 WIDTH, HEIGHT = 80, 24
@@ -12,7 +12,7 @@ WIDTH, HEIGHT = 80, 24
 _SAMPLE = "⣿⣷⣶⣤⣀ ▏▎▍▌▋▊▉█ ╱╲╳ ─│┊ ▲◂▸"
 
 
-class Screen(NamedTuple):
+class TerminalFacts(NamedTuple):
     """What there is to draw on, and with which signs (see ``cbtui.terminal.capabilities.charset_of``).
 
     ``size`` is None where a standard stream is no terminal.
@@ -23,7 +23,7 @@ class Screen(NamedTuple):
     size: os.terminal_size | None
 
 
-def screen(shown_on: Screen) -> Iterator[Verdict]:
+def screen(shown_on: TerminalFacts) -> Iterator[Examination]:
     """Look at the terminal."""
     yield _terminal(shown_on)
     if not is_dumb(shown_on.environment):
@@ -32,7 +32,7 @@ def screen(shown_on: Screen) -> Iterator[Verdict]:
     yield from _between(shown_on.environment)
 
 
-def _terminal(shown_on: Screen) -> Verdict:
+def _terminal(shown_on: TerminalFacts) -> Examination:
     name = shown_on.environment.get("TERM", "")
     if is_dumb(shown_on.environment):
         return fault(
@@ -55,7 +55,7 @@ def _terminal(shown_on: Screen) -> Verdict:
     return well("terminal", said)
 
 
-def _colours(environment: Mapping[str, str]) -> Verdict:
+def _colours(environment: Mapping[str, str]) -> Examination:
     if environment.get("NO_COLOR"):
         return well("colours", "greys alone, as NO_COLOR asks; letters and textures say the rest")
     if environment.get("COLORTERM", "").lower() in {"truecolor", "24bit"}:
@@ -66,7 +66,7 @@ def _colours(environment: Mapping[str, str]) -> Verdict:
     return note("colours", "16", "export COLORTERM=truecolor if the terminal has more, as most have")
 
 
-def _signs(shown_on: Screen) -> Verdict:
+def _signs(shown_on: TerminalFacts) -> Examination:
     if shown_on.charset == "ascii":
         return note(
             "signs",
@@ -76,7 +76,7 @@ def _signs(shown_on: Screen) -> Verdict:
     return well("signs", f"{_SAMPLE}  (a box or ? among them: another font, or --charset block or ascii)")
 
 
-def _between(environment: Mapping[str, str]) -> Iterator[Verdict]:
+def _between(environment: Mapping[str, str]) -> Iterator[Examination]:
     where = [
         *(["ssh"] if environment.get("SSH_CONNECTION") or environment.get("SSH_TTY") else []),
         *(["tmux"] if environment.get("TMUX") else []),

@@ -4,10 +4,10 @@ from textual.geometry import Size
 from textual.reactive import var
 
 from cbtui.terminal.textual_internals import resize_content
-from cbtui.widgets.inked import Inked
+from cbtui.widgets.inked_view import InkedView
 
 
-class Following(Inked):
+class FollowingView(InkedView):
     """Draws its lines itself, those in view only. ``grow`` tells it of more lines."""
 
     follows: var[bool] = var(True)

@@ -10,37 +10,37 @@ from textual.widgets.option_list import Option
 
 from cbtui.learning.stage import Stage
 from cbtui.looks.theme import Charset
-from cbtui.runs.setup.recent import Kind, Opened, ago
+from cbtui.runs.setup.recent import RecentEntry, RecentKind, time_ago
 from cbtui.text.cells import fit, visible
 from lessons.lesson import Lesson
 
-Choice: TypeAlias = Lesson | Opened
+MenuChoice: TypeAlias = Lesson | RecentEntry
 
-_KINDS = {Kind.PROGRAM: "program", Kind.RECORDING: "recording"}
+_KINDS = {RecentKind.PROGRAM: "program", RecentKind.RECORDING: "recording"}
 RECENT = "Recent"
 
 _TITLE, _EXECUTOR, _GROUPS = 24, 17, 24
 """Columns of a lesson's description; with mark and number they fill the wide list."""
 
 
-class Choices(OptionList, inherit_bindings=False):
+class MenuList(OptionList, inherit_bindings=False):
     """What there is to choose from; the screen's keys move its highlight."""
 
     def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
         super().__init__(id=id, markup=False)
-        self._choices: dict[str, Choice] = {}
+        self._choices: dict[str, MenuChoice] = {}
 
     @property
-    def chosen(self) -> Choice | None:
+    def chosen(self) -> MenuChoice | None:
         """What is highlighted."""
         option = self.highlighted_option
         return None if option is None or option.id is None else self._choices[option.id]
 
-    def choice(self, option_id: str) -> Choice:
+    def choice(self, option_id: str) -> MenuChoice:
         """Return what an option stands for."""
         return self._choices[option_id]
 
-    def show(self, lessons: Iterable[Lesson], files: Iterable[Opened], rows: "Rows") -> None:
+    def show(self, lessons: Iterable[Lesson], files: Iterable[RecentEntry], rows: "MenuRows") -> None:
         """Show these; the highlight stays on what it is on, if that is still there, or goes to the first."""
         before = self.highlighted_option
         options: list[Option] = []
@@ -66,12 +66,12 @@ class Choices(OptionList, inherit_bindings=False):
         first = next(iter(self._choices), None)
         self.highlighted = None if first is None else self.get_option_index(first)
 
-    def _option(self, option_id: str, choice: Choice, row: Content) -> Option:
+    def _option(self, option_id: str, choice: MenuChoice, row: Content) -> Option:
         self._choices[option_id] = choice
         return Option(row, id=option_id)
 
 
-class Rows:
+class MenuRows:
     """The lines of the list where it is narrow: what they are about; the rest is told beside the list."""
 
     def __init__(self, lessons: Sequence[Lesson], stages: Mapping[str, Stage], now: float) -> None:
@@ -92,12 +92,12 @@ class Rows:
             (fit(lesson.title, _TITLE, Charset.BRAILLE), "bold"),
         )
 
-    def file(self, entry: Opened) -> Content:
+    def file(self, entry: RecentEntry) -> Content:
         """Return a file's line: its name, and what it is."""
         return Content.assemble(f"  {_name(entry, 19)} ", (_KINDS[entry.kind], "$text-muted"))
 
 
-class WideRows(Rows):
+class WideMenuRows(MenuRows):
     """The lines where there is room to tell more."""
 
     def lesson(self, lesson: Lesson) -> Content:
@@ -108,9 +108,9 @@ class WideRows(Rows):
             (fit(lesson.groups, _GROUPS, Charset.BRAILLE), "$text-muted"),
         )
 
-    def file(self, entry: Opened) -> Content:
+    def file(self, entry: RecentEntry) -> Content:
         """Return a file's line with when it was opened."""
-        rest = f"{fit(_KINDS[entry.kind], _EXECUTOR, Charset.BRAILLE)} {ago(entry.at, self._now)}"
+        rest = f"{fit(_KINDS[entry.kind], _EXECUTOR, Charset.BRAILLE)} {time_ago(entry.at, self._now)}"
         return Content.assemble(f"      {_name(entry, _TITLE)} ", (rest, "$text-muted"))
 
 
@@ -123,18 +123,18 @@ def _heading(text: str) -> Option:
     return Option(Content.styled(text, "bold $text-primary"), disabled=True)
 
 
-def _name(entry: Opened, width: int) -> str:
+def _name(entry: RecentEntry, width: int) -> str:
     return fit(visible(entry.name, Charset.BRAILLE), width, Charset.BRAILLE)
 
 
-def with_words(text: str) -> Callable[[Choice], bool]:
+def with_words(text: str) -> Callable[[MenuChoice], bool]:
     """Return what tells whether a choice has all words of a text, in upper or lower case, whole or begun."""
     words = text.casefold().split()
     return lambda choice: all(word in _said(choice) for word in words)
 
 
-def _said(choice: Choice) -> str:
-    if isinstance(choice, Opened):
+def _said(choice: MenuChoice) -> str:
+    if isinstance(choice, RecentEntry):
         parts: Sequence[str] = (choice.what, _KINDS[choice.kind], RECENT)
     else:
         unit = f"Unit {choice.unit}"

@@ -3,7 +3,7 @@
 from textual.widgets import OptionList
 
 
-class Options(OptionList):
+class PageableOptionList(OptionList):
     """Textual's list, except that paging through it does nothing where none of it is shown.
 
     Textual looks for the lines of the highlighted choice then, and there are none.

@@ -11,7 +11,7 @@ _LEAST_WIDTH = 12
 _LEAST_HEIGHT = 3
 
 
-class Look(StrEnum):
+class RobotViewMode(StrEnum):
     """What a person wants to see of the robot."""
 
     MAP = "map"
@@ -19,13 +19,13 @@ class Look(StrEnum):
     BOTH = "both"
 
     @property
-    def following(self) -> "Look":
+    def following(self) -> "RobotViewMode":
         """The look after this one, round and round."""
-        looks = list(Look)
+        looks = list(RobotViewMode)
         return looks[(looks.index(self) + 1) % len(looks)]
 
 
-class Places(NamedTuple):
+class PaneRegions(NamedTuple):
     """Regions in cells: the robot's surroundings, the whole room, the picture; None for what is not shown.
 
     ``lines`` are one column wide or one row high.
@@ -37,23 +37,23 @@ class Places(NamedTuple):
     lines: tuple[Region, ...] = ()
 
 
-def arrange(body: Region, look: Look) -> Places:
+def arrange(body: Region, look: RobotViewMode) -> PaneRegions:
     """Share out the part of the pane between legend and figures; nothing fits into one too small."""
     if body.width < _LEAST_WIDTH or body.height < _LEAST_HEIGHT:
-        return Places()
+        return PaneRegions()
     match look:
-        case Look.CAMERA:
-            return Places(camera=body)
-        case Look.MAP if body.width < _TWO_MAPS_FROM:
-            return Places(near=body)
-        case Look.MAP:
+        case RobotViewMode.CAMERA:
+            return PaneRegions(camera=body)
+        case RobotViewMode.MAP if body.width < _TWO_MAPS_FROM:
+            return PaneRegions(near=body)
+        case RobotViewMode.MAP:
             near, line, room = _halves(body)
-            return Places(near, room, lines=(line,))
+            return PaneRegions(near, room, lines=(line,))
     maps, line, camera = _halves(body)
     if body.width < _MAPS_AND_CAMERA_FROM:
-        return Places(maps, camera=camera, lines=(line,))
+        return PaneRegions(maps, camera=camera, lines=(line,))
     near, between, room = _halves(maps)
-    return Places(near, room, camera, (between, line))
+    return PaneRegions(near, room, camera, (between, line))
 
 
 def _halves(region: Region) -> tuple[Region, Region, Region]:

@@ -2,9 +2,10 @@
 
 from collections.abc import Sequence
 
-from cbtui.widgets.factory.scene import Area, Belt, Scene, Stay, Worker
-from cbtui.widgets.lanes.status import short
+from cbtui.text.callback_names import short_name
+from cbtui.widgets.factory.scene import Area, Belt, FactoryScene, FactoryWorker, WorkerState
 from sim.durations import duration
+from sim.plural import counted
 from sim.trace.descriptions import name_of
 from sim.trace.events import EntityKind, GroupKind, Reason
 from sim.trace.model import Entity, Nanoseconds
@@ -18,39 +19,39 @@ def first_fitting(texts: Sequence[str], room: int) -> str:
     return next((text for text in texts if len(text) <= room), "")
 
 
-def cast(scene: Scene) -> str:
+def counts_text(scene: FactoryScene) -> str:
     """Say how many workers and areas there are: ``4 workers, 1 seat``."""
     if not scene.areas:
         return "no callback group yet"
-    return f"{_count(len(scene.workers), 'worker')}, {_places(scene)}"
+    return f"{counted(len(scene.workers), 'worker')}, {_places(scene)}"
 
 
-def headline(scene: Scene) -> tuple[str, ...]:
+def headline(scene: FactoryScene) -> tuple[str, ...]:
     """Return the scene in one sentence, from the fullest to the shortest; what is wrong follows a colon."""
-    start = cast(scene)
+    start = counts_text(scene)
     if not scene.areas:
         return (start,)
     trouble = _trouble(scene)
     if not trouble:
         return (f"{start}, no callback waits for another", start)
     what = f"{start}: {trouble}"
-    whole = (f"{what}, {_count(scene.idle, 'worker')} idle", what) if scene.idle else (what,)
+    whole = (f"{what}, {counted(scene.idle, 'worker')} idle", what) if scene.idle else (what,)
     return (*whole, what.replace(" callbacks wait", " wait").replace(" callback waits", " waits"), start)
 
 
-def _places(scene: Scene) -> str:
+def _places(scene: FactoryScene) -> str:
     areas = scene.areas
     if scene.more:
-        return _count(len(areas) + scene.more, "area")
+        return counted(len(areas) + scene.more, "area")
     is_open = sum(area.is_open for area in areas)
     if is_open == len(areas):
-        return _count(is_open, "open area")
+        return counted(is_open, "open area")
     if [area.group.kind for area in areas] == [GroupKind.EXCLUSIVE]:
         return "1 seat"
-    return _count(len(areas), "area")
+    return counted(len(areas), "area")
 
 
-def _trouble(scene: Scene) -> str:
+def _trouble(scene: FactoryScene) -> str:
     waits = list(scene.waits())
     held = sum(wait.reason is Reason.GROUP_HELD for wait in waits)
     short_of_workers = sum(wait.reason is Reason.NO_FREE_WORKER for wait in waits)
@@ -66,14 +67,10 @@ def _trouble(scene: Scene) -> str:
 
 
 def _waiting(number: int) -> str:
-    return f"{number} callback{'' if number == 1 else 's'} wait{'s' if number == 1 else ''}"
+    return f"{counted(number, 'callback')} wait{'s' if number == 1 else ''}"
 
 
-def _count(number: int, thing: str) -> str:
-    return f"{number} {thing}{'' if number == 1 else 's'}"
-
-
-def reasons(belt: Belt, timeline: Timeline, now: Nanoseconds) -> tuple[str, ...]:
+def wait_texts(belt: Belt, timeline: Timeline, now: Nanoseconds) -> tuple[str, ...]:
     """Say how long a callback has waited and why, from the fullest to the shortest; () if it does not wait.
 
     The last two do not say why.
@@ -95,7 +92,7 @@ def _why(belt: Belt, timeline: Timeline) -> tuple[str, ...]:
     if wait.holder == belt.entity.id:
         return ("its last call still runs", "last call runs", "own call")
     holder = name_of(wait.holder, timeline)
-    return (f"seat taken by {holder}", f"seat taken by {short(holder)}", "seat taken", "taken")
+    return (f"seat taken by {holder}", f"seat taken by {short_name(holder)}", "seat taken", "taken")
 
 
 _WITHOUT_HOLDER = {
@@ -107,10 +104,10 @@ _WITHOUT_HOLDER = {
 
 def belt_name(belt: Belt) -> str:
     """Return what a belt is called by."""
-    return short(belt.entity.label)
+    return short_name(belt.entity.label)
 
 
-def level(belt: Belt) -> str:
+def queue_level(belt: Belt) -> str:
     """Say how full a belt is: ``3/10``, ``10/10 !``; the bare number where there is no limit.
 
     A client's says so, or how many replies wait on it: it goes by the same name as its service's.
@@ -123,7 +120,7 @@ def level(belt: Belt) -> str:
     return f"{belt.queue.depth}/{belt.entity.depth}{' !' if belt.full else ''}"
 
 
-def details(belt: Belt, now: Nanoseconds) -> list[tuple[str, bool]]:
+def belt_details(belt: Belt, now: Nanoseconds) -> list[tuple[str, bool]]:
     """Return what else there is to say of a belt, and whether each is a warning."""
     found = []
     if belt.queue.dropped:
@@ -136,7 +133,7 @@ def details(belt: Belt, now: Nanoseconds) -> list[tuple[str, bool]]:
     return found
 
 
-def seats_of(area: Area) -> tuple[str, ...]:
+def admission_texts(area: Area) -> tuple[str, ...]:
     """Say how many an area admits, from the fullest to the shortest."""
     match area.group.kind:
         case GroupKind.EXCLUSIVE:
@@ -147,30 +144,30 @@ def seats_of(area: Area) -> tuple[str, ...]:
             return ("rules of its own", "custom")
 
 
-def doing(worker: Worker, timeline: Timeline) -> tuple[str, ...]:
+def activity_texts(worker: FactoryWorker, timeline: Timeline) -> tuple[str, ...]:
     """Say where a worker is: in full, briefly, and no more than whether it is idle."""
     match worker.stay:
-        case Stay.NEVER:
+        case WorkerState.NEVER:
             return ("never needed", "unused", "unused")
-        case Stay.IDLE:
+        case WorkerState.IDLE:
             return ("waits for work", "waits", "waits")
         case _:
             return (*(f"{word} {_letter(worker, timeline)}" for word in _WHERE[worker.stay]), "")
 
 
 _WHERE = {
-    Stay.COMES: ("goes to", "to"),
-    Stay.WORKS: ("works in", "in"),
-    Stay.LEAVES: ("back from", "from"),
+    WorkerState.COMES: ("goes to", "to"),
+    WorkerState.WORKS: ("works in", "in"),
+    WorkerState.LEAVES: ("back from", "from"),
 }
 
 
-def _letter(worker: Worker, timeline: Timeline) -> str:
+def _letter(worker: FactoryWorker, timeline: Timeline) -> str:
     entity = timeline.entities.get(worker.span.entity) if worker.span else None
     return "?" if entity is None else timeline.groups[entity.group].letter
 
 
-def stuck(worker: Worker, now: Nanoseconds) -> tuple[str, ...]:
+def blocked_texts(worker: FactoryWorker, now: Nanoseconds) -> tuple[str, ...]:
     """Say that a worker waits inside a service call, from the fullest to the shortest; () if it does not."""
     if worker.blocked is None:
         return ()
@@ -185,7 +182,7 @@ def stuck(worker: Worker, now: Nanoseconds) -> tuple[str, ...]:
     )
 
 
-def just_done(worker: Worker, callback: str) -> tuple[str, ...]:
+def finished_texts(worker: FactoryWorker, callback: str) -> tuple[str, ...]:
     """Say what a worker who has just left a seat did there, from the fullest to the shortest."""
     span = worker.span
     length = 0 if span is None or span.end is None else span.end - span.start
@@ -194,13 +191,13 @@ def just_done(worker: Worker, callback: str) -> tuple[str, ...]:
         f"{callback} took {took}  {worker.name}",
         f"{callback} took {took}",
         f"{callback} just ran",
-        f"{short(callback)} just ran",
-        f"{short(callback)} ran",
-        short(callback),
+        f"{short_name(callback)} just ran",
+        f"{short_name(callback)} ran",
+        short_name(callback),
     )
 
 
-def kept_by(entity: Entity) -> tuple[str, ...]:
+def suspended_texts(entity: Entity) -> tuple[str, ...]:
     """Say that a call which runs on no thread holds a seat, from the fullest to the shortest."""
     name = entity.spoken_name
-    return (f"kept by {name}, which awaits", f"kept by {name}", f"kept: {short(name)}")
+    return (f"kept by {name}, which awaits", f"kept by {name}", f"kept: {short_name(name)}")

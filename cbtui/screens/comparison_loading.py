@@ -15,50 +15,59 @@ from cbtui.engines.follow import GivenUpError
 from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.looks.theme import Charset
-from cbtui.runs.compared_runs import CannotCompareError, ComparedRun, Gathered, Progress, Terms, gather
+from cbtui.runs.compared_runs import (
+    CannotCompareError,
+    ComparedRun,
+    ComparisonTerms,
+    RunPair,
+    RunProgress,
+    load_runs,
+)
 from cbtui.screens.compare import CompareScreen
 from cbtui.screens.sized import SizedScreen
 from cbtui.widgets.key_bar import KeyBar
 
-_QUIET = 1.0
+_QUIET_TIME = 1.0
 """Seconds in which nothing is said: most runs are there by then."""
-_BETWEEN = 0.1
+_PROGRESS_INTERVAL = 0.1
 """Seconds between two messages on how far it has come."""
-_WORKS = {"leave", "help", "command_palette"}
+_ENABLED_ACTIONS = {"leave", "help", "command_palette"}
 
 
-class GatheringScreen(SizedScreen[None]):
+class ComparisonLoadingScreen(SizedScreen[None]):
     """Gets two runs ready on a thread of its own.
 
     What cannot be compared is said; the console ends with exit code 2 when that is left.
     """
 
     SCOPE = Scope.COMPARE
-    CSS_PATH = "gathering.tcss"
+    CSS_PATH = "comparison_loading.tcss"
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.COMPARE)]
 
     class Progressed(Message):
         """How far it has come."""
 
-        def __init__(self, progress: Progress) -> None:
+        def __init__(self, progress: RunProgress) -> None:
             super().__init__()
             self.progress = progress
 
     class Ready(Message):
         """Both runs are there."""
 
-        def __init__(self, found: Gathered) -> None:
+        def __init__(self, found: RunPair) -> None:
             super().__init__()
             self.found = found
 
-    class Failed(Message):
+    class GatheringFailed(Message):
         """There is nothing to compare, for the reason in the sentence."""
 
         def __init__(self, sentence: str) -> None:
             super().__init__()
             self.sentence = sentence
 
-    def __init__(self, first: ComparedRun, second: ComparedRun, terms: Terms, charset: Charset) -> None:
+    def __init__(
+        self, first: ComparedRun, second: ComparedRun, terms: ComparisonTerms, charset: Charset
+    ) -> None:
         super().__init__()
         self._runs = (first, second)
         self._terms = terms
@@ -66,7 +75,7 @@ class GatheringScreen(SizedScreen[None]):
         self._given_up = Event()
         self._began = monotonic()
         self._told = 0.0
-        self._found: Gathered | None = None
+        self._found: RunPair | None = None
         self._failed = False
 
     def compose(self) -> ComposeResult:
@@ -91,17 +100,17 @@ class GatheringScreen(SizedScreen[None]):
 
     def _gather(self) -> None:
         try:
-            found = gather(*self._runs, self._terms, self._tell, self._given_up)
+            found = load_runs(*self._runs, self._terms, self._tell, self._given_up)
         except CannotCompareError as error:
-            self.post_message(self.Failed(str(error)))
+            self.post_message(self.GatheringFailed(str(error)))
         except GivenUpError:
             return
         else:
             self.post_message(self.Ready(found))
 
-    def _tell(self, progress: Progress) -> None:
+    def _tell(self, progress: RunProgress) -> None:
         now = monotonic()
-        if now - self._began >= _QUIET and now - self._told >= _BETWEEN:
+        if now - self._began >= _QUIET_TIME and now - self._told >= _PROGRESS_INTERVAL:
             self._told = now
             self.post_message(self.Progressed(progress))
 
@@ -109,15 +118,15 @@ class GatheringScreen(SizedScreen[None]):
 
     @on(Progressed)
     def _show_progress(self, message: Progressed) -> None:
-        self.query_one("#progress", Static).update(sentence_on(message.progress))
+        self.query_one("#progress", Static).update(progress_text(message.progress))
 
     @on(Ready)
     def _take(self, message: Ready) -> None:
         self._found = message.found
         self._open()
 
-    @on(Failed)
-    def _show_failure(self, message: Failed) -> None:
+    @on(GatheringFailed)
+    def _show_failure(self, message: GatheringFailed) -> None:
         self._failed = True
         self.query_one("#progress", Static).update(message.sentence)
 
@@ -129,7 +138,7 @@ class GatheringScreen(SizedScreen[None]):
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
         """Offer nothing but the way out until there is something to look at."""
-        return action in _WORKS
+        return action in _ENABLED_ACTIONS
 
     def action_leave(self) -> None:
         """Give the comparison up."""
@@ -140,7 +149,7 @@ class GatheringScreen(SizedScreen[None]):
             self.dismiss()
 
 
-def sentence_on(progress: Progress) -> str:
+def progress_text(progress: RunProgress) -> str:
     """How far a run has come, in words."""
     at = f"{progress.at / 1e9:.1f} s"
     of = "" if progress.until is None else f" of {progress.until / 1e9:g} s"

@@ -5,14 +5,14 @@ import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-from cbtui.doctor.verdict import Verdict, fault, note, well
+from cbtui.doctor.examination import Examination, fault, note, well
 from cbtui.keys.config import read_file, standard_path
 from lessons.catalogue import ROOT, VARIABLE, lessons
 from lessons.lesson import BadLesson
 from lessons.progress import faulty_line, usual_path
 
 
-def folders(current: Callable[[], Path]) -> Iterator[Verdict]:
+def folders(current: Callable[[], Path]) -> Iterator[Examination]:
     """Look whether what cbtui writes has a place; nothing is written."""
     yield _folder(
         "state folder",
@@ -30,7 +30,7 @@ def folders(current: Callable[[], Path]) -> Iterator[Verdict]:
     )
 
 
-def _temporary() -> Verdict:
+def _temporary() -> Examination:
     try:
         return well("temp folder", tempfile.gettempdir())
     except OSError:
@@ -39,7 +39,7 @@ def _temporary() -> Verdict:
         )
 
 
-def _folder(subject: str, folder: Path, remedy: str) -> Verdict:
+def _folder(subject: str, folder: Path, remedy: str) -> Examination:
     if not folder.is_absolute():
         return note(subject, "there is no home folder", remedy)
     if not is_writable(folder):
@@ -56,7 +56,7 @@ def is_writable(folder: Path) -> bool:
     return nearest.is_dir() and os.access(nearest, os.W_OK | os.X_OK)
 
 
-def configuration(named: Path | None) -> Iterator[Verdict]:
+def configuration(named: Path | None) -> Iterator[Examination]:
     """Look at the configuration with its keys: the one that is named, else one's own."""
     path = named or standard_path()
     try:
@@ -77,7 +77,7 @@ def configuration(named: Path | None) -> Iterator[Verdict]:
         yield well("config", str(path))
 
 
-def progress() -> Verdict:
+def progress() -> Examination:
     """Look at the file of progress."""
     path = usual_path()
     remedy = f"the next console keeps it under another name and goes on; mend or delete {path}"
@@ -94,7 +94,7 @@ def progress() -> Verdict:
     return well("progress", str(path))
 
 
-def lessons_found() -> Iterator[Verdict]:
+def lessons_found() -> Iterator[Examination]:
     """Look at all lessons, those from elsewhere, too."""
     try:
         every = lessons()

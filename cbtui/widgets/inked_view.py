@@ -3,16 +3,26 @@
 from collections.abc import Sequence
 
 from rich.style import Style
+from textual.message import Message
 from textual.scroll_view import ScrollView
 
 from cbtui.looks.colour_themes import palette_of
 from cbtui.looks.theme import Ink, style_of
+from sim.plural import counted
+from sim.trace.model import Nanoseconds
 
 
-class Inked(ScrollView):
+class InkedView(ScrollView):
     """Keeps the styles that its lines are drawn in until the theme changes."""
 
     ALLOW_SELECT = False
+
+    class MomentPicked(Message):
+        """The person picked a line about the moment ``at``, in nanoseconds of the run."""
+
+        def __init__(self, at: Nanoseconds) -> None:
+            super().__init__()
+            self.at = at
 
     def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
         super().__init__(id=id)
@@ -43,4 +53,4 @@ class Inked(ScrollView):
         """Put lines into the terminal's clipboard (OSC 52, which works over ssh), and say how many."""
         if lines:
             self.app.copy_to_clipboard("\n".join(lines))
-            self.notify(f"copied {len(lines)} line{'' if len(lines) == 1 else 's'}")
+            self.notify(f"copied {counted(len(lines), 'line')}")

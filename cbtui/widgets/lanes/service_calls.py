@@ -4,9 +4,10 @@ from collections.abc import Sequence
 from itertools import islice
 
 from cbtui.looks.theme import GLYPHS, Ink, Role
-from cbtui.text.cells import Row
-from cbtui.widgets.lanes.scale import Scale
+from cbtui.text.cells import CellRow
+from cbtui.widgets.lanes.scale import TimeScale
 from sim.durations import duration
+from sim.plural import counted
 from sim.trace.model import Call, Nanoseconds
 from sim.trace.timeline import Timeline
 
@@ -17,7 +18,7 @@ _LATEST = 500
 """How many calls a picture looks back on."""
 
 
-class Calls:
+class LatestCalls:
     """The latest calls of a run, the very latest first."""
 
     def __init__(self, timeline: Timeline) -> None:
@@ -35,14 +36,14 @@ class Calls:
         sent = [call for call in self.of(service) if call.sent <= now]
         if not sent:
             return "not called"
-        count = "1 call" if len(sent) == 1 else f"{len(sent)} calls"
+        count = counted(len(sent), "call")
         last = sent[0]
         if last.replied is None or last.replied > now:
             return f"no reply {duration(now - last.sent)}"
         return f"{count}, {duration(last.replied - last.sent)}"
 
 
-def draw_calls(row: Row, calls: Sequence[Call], scale: Scale, now: Nanoseconds, key: str) -> None:
+def draw_calls(row: CellRow, calls: Sequence[Call], scale: TimeScale, now: Nanoseconds, key: str) -> None:
     """Mark where calls left (▲, with the person's ``key`` if it was that) and where the reply came (◂)."""
     glyphs = GLYPHS[row.charset]
     for call in calls:

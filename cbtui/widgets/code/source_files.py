@@ -9,10 +9,10 @@ from types import MappingProxyType
 from rich.cells import cell_len
 
 import sim
-from cbtui.widgets.code.highlight import Word, highlight
+from cbtui.widgets.code.highlight import SourceToken, highlight
 from sim.foreign_file import MOST_OF_A_PROGRAM, read_text
 
-_NOT_THE_LEARNERS = tuple(
+_LIBRARY_FOLDERS = tuple(
     {
         Path(place).resolve()
         for place in (*sim.__path__, *map(sysconfig.get_path, ("stdlib", "purelib", "platlib")))
@@ -27,7 +27,7 @@ class SourceFile:
 
     path: Path
     text: str
-    lines: tuple[list[Word], ...]
+    lines: tuple[list[SourceToken], ...]
     recorded: bool = False
 
     @property
@@ -98,7 +98,7 @@ class SourceFiles:
 
     def _is_a_librarys(self, path: Path) -> bool:
         """Tell whether a file lies where no learner writes; a lesson may be installed there itself."""
-        folders = (folder for folder in _NOT_THE_LEARNERS if not self._real_main.is_relative_to(folder))
+        folders = (folder for folder in _LIBRARY_FOLDERS if not self._real_main.is_relative_to(folder))
         return any(path.is_relative_to(folder) for folder in folders)
 
 

@@ -12,12 +12,12 @@ from textual.strip import Strip
 from textual.widget import Widget
 
 from cbtui.looks.colour_themes import palette_of
-from cbtui.looks.theme import Ink, Run, style_of
+from cbtui.looks.theme import Ink, TextRun, style_of
 from cbtui.terminal.textual_internals import is_being_removed
 from cbtui.text.cells import BLANK
 
 
-class Painted(Widget):
+class PaintedWidget(Widget):
     """Draws the rows that ``rows`` paints. Call ``changed`` when there is something new to paint.
 
     However often ``changed`` is called while a message is handled, it paints once.
@@ -25,7 +25,7 @@ class Painted(Widget):
 
     ALLOW_SELECT = False
 
-    _rows: Sequence[Sequence[Run]] = ()
+    _rows: Sequence[Sequence[TextRun]] = ()
     _rows_size: Size | None = None
     _stale = False
     _background: Color | None = None
@@ -37,7 +37,7 @@ class Painted(Widget):
         super().__init__(id=id)
         self._styles: dict[Ink, Style] = {}
 
-    def rows(self, size: Size) -> Sequence[Sequence[Run]]:
+    def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint: return at most ``size.height`` rows, each ``size.width`` columns wide."""
         raise NotImplementedError
 
@@ -130,7 +130,7 @@ class Painted(Widget):
             self.refresh(*regions)
 
 
-def changed_part(before: Sequence[Run], after: Sequence[Run]) -> tuple[int, int]:
+def changed_part(before: Sequence[TextRun], after: Sequence[TextRun]) -> tuple[int, int]:
     """Return the columns from the first run that differs to the end of the last; both rows are as wide."""
     if before == after:
         return 0, 0
@@ -139,7 +139,7 @@ def changed_part(before: Sequence[Run], after: Sequence[Run]) -> tuple[int, int]
     return start, width - _same(before[::-1], after[::-1])
 
 
-def _same(before: Sequence[Run], after: Sequence[Run]) -> int:
+def _same(before: Sequence[TextRun], after: Sequence[TextRun]) -> int:
     """How many columns the runs have that both rows begin with."""
     pairs = takewhile(lambda pair: pair[0] == pair[1], zip(before, after, strict=False))
     return sum(cell_len(run.text) for run, _ in pairs)

@@ -18,7 +18,7 @@ from cbtui.screens.sized import SizedModal
 from cbtui.text.cells import visible
 from cbtui.widgets.key_bar import KeyBar
 
-_OFFERED = 24
+_MOST_NAMES = 24
 """Names that are listed at most."""
 
 
@@ -29,11 +29,11 @@ class PathInput(Input):
         super().__init__(placeholder="my_node.py", compact=True, select_on_focus=False)
 
 
-class OpeningScreen(SizedModal[None]):
+class OpenFileScreen(SizedModal[None]):
     """Opens the file in its own place; what cannot be opened is said, and the path stays to be mended."""
 
     SCOPE = Scope.OPENING
-    CSS_PATH: ClassVar = ["window.tcss", "opening.tcss"]
+    CSS_PATH: ClassVar = ["window.tcss", "open_file.tcss"]
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.OPENING)]
 
     def __init__(self, charset: Charset) -> None:
@@ -65,8 +65,8 @@ class OpeningScreen(SizedModal[None]):
         if text != typed.value[:place]:
             typed.value = text + typed.value[place:]
             typed.cursor_position = len(text)
-        shown = [visible(name, self._charset) for name in names[:_OFFERED]]
-        more = f"… {len(names) - _OFFERED} more" if len(names) > _OFFERED else ""
+        shown = [visible(name, self._charset) for name in names[:_MOST_NAMES]]
+        more = f"… {len(names) - _MOST_NAMES} more" if len(names) > _MOST_NAMES else ""
         self._say("  ".join([*shown, more]) if len(names) != 1 else "", wrong=not names)
         if not names:
             self._say("No folder, program or recording begins like that.", wrong=True)

@@ -28,7 +28,7 @@ The lessons' robot is there for your file too: `/odom`, `/scan`, `/cmd_vel`, `/r
 
 
 @dataclass(frozen=True)
-class Subject:
+class ShownProgram:
     """One program to run on screen; ``service`` is empty where it shows only when the program runs.
 
     ``source`` is the program's text where it is not the one that lies at ``node_path`` now, ``sources`` the
@@ -47,11 +47,11 @@ class Subject:
     sources: Mapping[str, str] = field(default_factory=dict)
 
 
-def of_lesson(lesson: Lesson, lessons: Sequence[Lesson]) -> Subject:
+def of_lesson(lesson: Lesson, lessons: Sequence[Lesson]) -> ShownProgram:
     """Return a lesson as a subject, among the ``lessons`` in their order."""
     place = lessons.index(lesson)
     unit = [each for each in lessons if each.unit == lesson.unit]
-    return Subject(
+    return ShownProgram(
         heading=f"{unit.index(lesson) + 1}/{len(unit)} {lesson.title}",
         guide=lesson.guide,
         node_path=lesson.node_path,
@@ -63,7 +63,7 @@ def of_lesson(lesson: Lesson, lessons: Sequence[Lesson]) -> Subject:
     )
 
 
-def of_exercise(lesson: Lesson, lessons: Sequence[Lesson], file: Path) -> Subject:
+def of_exercise(lesson: Lesson, lessons: Sequence[Lesson], file: Path) -> ShownProgram:
     """Return a learner's file for a lesson's exercise as a subject; it runs as it is judged."""
     subject = of_lesson(lesson, lessons)
 
@@ -79,7 +79,7 @@ def of_exercise(lesson: Lesson, lessons: Sequence[Lesson], file: Path) -> Subjec
     )
 
 
-def of_file(path: Path, arguments: Sequence[str], clock: str) -> Subject:
+def of_file(path: Path, arguments: Sequence[str], clock: str) -> ShownProgram:
     """Return a program file as a subject."""
 
     def set_up(threads: int | None, speed: float | None) -> RunSetup:
@@ -87,7 +87,7 @@ def of_file(path: Path, arguments: Sequence[str], clock: str) -> Subject:
             files=[path], arguments=arguments, changes=Changes(threads), clock=clock, speed=speed
         ).setup()
 
-    return Subject(
+    return ShownProgram(
         heading=path.name,
         guide=_GUIDE.format(name=path.name, clock=clock),
         node_path=path,

@@ -19,7 +19,7 @@ class Sign(Enum):
         return {Sign.WELL: "+", Sign.NOTE: "!", Sign.FAULT: "x"}[self]
 
 
-class Verdict(NamedTuple):
+class Examination(NamedTuple):
     """What was found; ``remedy`` says what to do, and is empty where nothing is to be done."""
 
     sign: Sign
@@ -28,16 +28,16 @@ class Verdict(NamedTuple):
     remedy: str = ""
 
 
-def well(subject: str, what: str) -> Verdict:
+def well(subject: str, what: str) -> Examination:
     """Say that a thing is as it should be."""
-    return Verdict(Sign.WELL, subject, what)
+    return Examination(Sign.WELL, subject, what)
 
 
-def note(subject: str, what: str, remedy: str) -> Verdict:
+def note(subject: str, what: str, remedy: str) -> Examination:
     """Say that a thing could be better."""
-    return Verdict(Sign.NOTE, subject, what, remedy)
+    return Examination(Sign.NOTE, subject, what, remedy)
 
 
-def fault(subject: str, what: str, remedy: str) -> Verdict:
+def fault(subject: str, what: str, remedy: str) -> Examination:
     """Say that a thing is not well."""
-    return Verdict(Sign.FAULT, subject, what, remedy)
+    return Examination(Sign.FAULT, subject, what, remedy)

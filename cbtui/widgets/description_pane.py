@@ -10,10 +10,10 @@ from textual.reactive import reactive
 
 from cbtui.keys.keymap import STANDARD, Keymap
 from cbtui.keys.named_keys import key_in_force
-from cbtui.looks.theme import Charset, Ink, Role, Run
-from cbtui.runs.setup.recent import Kind, Opened, ago
+from cbtui.looks.theme import Charset, Ink, Role, TextRun
+from cbtui.runs.setup.recent import RecentEntry, RecentKind, time_ago
 from cbtui.text.cells import fit, visible
-from cbtui.widgets.painted import Painted
+from cbtui.widgets.painted_widget import PaintedWidget
 from lessons.lesson import Lesson
 
 _STRONG = Ink(Role.STRONG)
@@ -24,7 +24,7 @@ _FACTS = 10
 
 
 @dataclass(frozen=True)
-class Description:
+class EntryDescription:
     """A title, what there is to say, what it is made of, and keys with what they do."""
 
     title: str
@@ -33,12 +33,12 @@ class Description:
     keys: tuple[tuple[str, str], ...] = ()
 
 
-class About(Painted):
+class DescriptionPane(PaintedWidget):
     """Describes something; keys that have no room are left out, the rest is cut off at the bottom."""
 
-    description: reactive[Description | None] = reactive(None, repaint=False)
+    description: reactive[EntryDescription | None] = reactive(None, repaint=False)
 
-    def rows(self, size: Size) -> Sequence[Sequence[Run]]:
+    def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the description."""
         if self.description is None or not size.width:
             return []
@@ -56,7 +56,7 @@ def of_lesson(
     now: float,
     so_far: str = "",
     keymap: Keymap = STANDARD,
-) -> Description:
+) -> EntryDescription:
     """Describe a lesson that was opened at a moment, None for never; times are seconds since 1970.
 
     ``text`` is what there is to say of it, ``so_far`` how far the learner is in it.
@@ -66,35 +66,35 @@ def of_lesson(
         ("groups", lesson.groups),
         ("service", lesson.service.name),
         *((("clock", "real: computing takes time"),) if lesson.setup.clock == "real" else ()),
-        *(() if opened is None else (("opened", ago(opened, now)),)),
+        *(() if opened is None else (("opened", time_ago(opened, now)),)),
         *((("so far", so_far),) if so_far else ()),
     )
     keys = tuple((key_in_force(attempt.key, keymap), attempt.text) for attempt in lesson.tries)
-    return Description(lesson.title, text, facts, keys)
+    return EntryDescription(lesson.title, text, facts, keys)
 
 
 _WHAT = {
-    Kind.PROGRAM: "A program of your own: it is run again, on {clock} time.",
-    Kind.RECORDING: "A recording: it is shown, and nothing in it is run.",
+    RecentKind.PROGRAM: "A program of your own: it is run again, on {clock} time.",
+    RecentKind.RECORDING: "A recording: it is shown, and nothing in it is run.",
 }
 
 
-def of_file(entry: Opened, now: float, forget_key: str) -> Description:
+def of_file(entry: RecentEntry, now: float, forget_key: str) -> EntryDescription:
     """Describe a program or a recording at a moment, in seconds since 1970.
 
     ``forget_key`` takes one off the list that is gone.
     """
     path = Path(entry.what)
-    facts = [("folder", str(path.parent)), ("opened", ago(entry.at, now))]
+    facts = [("folder", str(path.parent)), ("opened", time_ago(entry.at, now))]
     if entry.arguments:
         facts.append(("arguments", " ".join(entry.arguments)))
     if not path.is_file():
         gone = f"There is no file {entry.name} there any more."
-        return Description(entry.name, gone, tuple(facts), ((forget_key, "Take it off this list."),))
-    return Description(entry.name, _WHAT[entry.kind].format(clock=entry.clock), tuple(facts))
+        return EntryDescription(entry.name, gone, tuple(facts), ((forget_key, "Take it off this list."),))
+    return EntryDescription(entry.name, _WHAT[entry.kind].format(clock=entry.clock), tuple(facts))
 
 
-def described(about: Description, size: Size) -> list[list[Run]]:
+def described(about: EntryDescription, size: Size) -> list[list[TextRun]]:
     """Return the lines of a description, each ``size.width`` columns wide; there may be too many."""
     width = size.width
     rows = [[_line(about.title, width, _STRONG)]]
@@ -112,12 +112,12 @@ def described(about: Description, size: Size) -> list[list[Run]]:
     return rows
 
 
-def _entry(name: str, text: str, width: int, indent: int, ink: Ink) -> Iterator[list[Run]]:
+def _entry(name: str, text: str, width: int, indent: int, ink: Ink) -> Iterator[list[TextRun]]:
     """Yield a word at the left and text beside it, wrapped."""
     for number, line in enumerate(wrap(visible(text, Charset.BRAILLE), max(10, width - indent))):
-        left = Run(fit("" if number else name, indent, Charset.BRAILLE), ink)
+        left = TextRun(fit("" if number else name, indent, Charset.BRAILLE), ink)
         yield [left, _line(line, width - indent, _PLAIN)]
 
 
-def _line(text: str, width: int, ink: Ink) -> Run:
-    return Run(fit(text, width, Charset.BRAILLE), ink)
+def _line(text: str, width: int, ink: Ink) -> TextRun:
+    return TextRun(fit(text, width, Charset.BRAILLE), ink)

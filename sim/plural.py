@@ -1,0 +1,11 @@
+"""Numbers of things in words."""
+
+
+def plural(number: int, noun: str) -> str:
+    """Return the noun in the form that goes with a number: ``thread`` for 1, else ``threads``."""
+    return noun if number == 1 else f"{noun}s"
+
+
+def counted(number: int, noun: str) -> str:
+    """Return a number and what it counts: ``1 thread``, ``3 threads``."""
+    return f"{number} {plural(number, noun)}"
