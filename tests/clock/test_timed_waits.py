@@ -6,7 +6,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from tests.clock.timed_waits import WAITS, Runner, Step, random_program, wrong_of
+from tests.clock.timed_waits import Runner, Step, random_program, wrong_of
+from tests.clock.waits import WAITS
 from tests.support.properties import examples
 
 

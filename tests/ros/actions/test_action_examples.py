@@ -4,7 +4,8 @@ from pathlib import Path
 
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
 from sim.trace.events import CallbackStarted, EntityAppeared, EntityKind, Logged
-from tests.ros.actions import action_programs as programs
+from tests.ros.actions import client_programs as clients
+from tests.ros.actions import server_programs as servers
 from tests.support.engine_runs import SECOND, Run, run_to_end
 
 SEQUENCES = ["[0, 1, 1]", "[0, 1, 1, 2]", "[0, 1, 1, 2, 3]"]
@@ -40,40 +41,40 @@ def said_at(run: Run, text: str) -> list[float]:
 
 
 def test_the_minimal_client_gets_feedback_and_a_result_from_the_minimal_server(tmp_path: Path) -> None:
-    for server in (programs.SERVER, programs.SINGLE_THREADED_SERVER):
-        outcome = run(tmp_path, server, programs.CLIENT)
+    for server in (servers.SERVER, servers.SINGLE_THREADED_SERVER):
+        outcome = run(tmp_path, server, clients.CLIENT)
         assert said(outcome, "minimal_action_client") == [*ACCEPTED, *FEEDBACK, SUCCEEDED]
         assert said_at(outcome, SUCCEEDED) == [3.0]
         assert said_at(outcome, FEEDBACK[1]) == [1.0]
 
 
 def test_the_programs_without_classes_do_the_same(tmp_path: Path) -> None:
-    outcome = run(tmp_path, programs.NOT_COMPOSABLE_SERVER, programs.NOT_COMPOSABLE_CLIENT)
+    outcome = run(tmp_path, servers.NOT_COMPOSABLE_SERVER, clients.NOT_COMPOSABLE_CLIENT)
     assert said(outcome, "minimal_action_client") == [*ACCEPTED, *FEEDBACK, SUCCEEDED]
 
 
 def test_the_cancelling_client_stops_the_goal_after_2_seconds(tmp_path: Path) -> None:
-    outcome = run(tmp_path, programs.SERVER, programs.CANCELLING_CLIENT)
+    outcome = run(tmp_path, servers.SERVER, clients.CANCELLING_CLIENT)
     assert said(outcome, "minimal_action_client")[-2:] == ["Canceling goal", "Goal successfully canceled"]
     assert said_at(outcome, "Goal successfully canceled") == [2.0]
     assert said(outcome, "minimal_action_server")[-1] == "Goal canceled"
 
 
 def test_a_single_threaded_server_hears_of_the_cancel_request_only_after_the_goal(tmp_path: Path) -> None:
-    outcome = run(tmp_path, programs.SINGLE_THREADED_SERVER, programs.CANCELLING_CLIENT)
+    outcome = run(tmp_path, servers.SINGLE_THREADED_SERVER, clients.CANCELLING_CLIENT)
     assert said_at(outcome, "Canceling goal") == [2.0]
     assert said_at(outcome, "Goal failed to cancel") == [9.0]
 
 
 def test_a_deferred_goal_begins_when_the_timer_says(tmp_path: Path) -> None:
-    outcome = run(tmp_path, programs.DEFERRING_SERVER, programs.CLIENT)
+    outcome = run(tmp_path, servers.DEFERRING_SERVER, clients.CLIENT)
     assert said_at(outcome, "Executing goal...") == [3.0]
     assert said_at(outcome, SUCCEEDED) == [6.0]
 
 
 def test_a_second_goal_aborts_the_first_where_one_is_allowed(tmp_path: Path) -> None:
-    later = f"import time\ntime.sleep(0.5)\n{programs.CLIENT}"
-    outcome = run(tmp_path, programs.SINGLE_GOAL_SERVER, programs.CLIENT, later)
+    later = f"import time\ntime.sleep(0.5)\n{clients.CLIENT}"
+    outcome = run(tmp_path, servers.SINGLE_GOAL_SERVER, clients.CLIENT, later)
     assert said_at(outcome, "Aborting previous goal") == [0.5]
     assert said_at(outcome, "Goal aborted") == [1.0]
     assert said_at(outcome, "Goal failed with status: 6") == [1.0]
@@ -81,13 +82,13 @@ def test_a_second_goal_aborts_the_first_where_one_is_allowed(tmp_path: Path) -> 
 
 
 def test_queued_goals_run_one_after_another(tmp_path: Path) -> None:
-    outcome = run(tmp_path, programs.QUEUEING_SERVER, programs.CLIENT, programs.CLIENT, programs.CLIENT)
+    outcome = run(tmp_path, servers.QUEUEING_SERVER, clients.CLIENT, clients.CLIENT, clients.CLIENT)
     assert said_at(outcome, "Executing goal...") == [0.0, 3.0, 6.0]
     assert said_at(outcome, SUCCEEDED) == [3.0, 6.0, 9.0]
 
 
 def test_the_execution_of_a_goal_is_on_the_trace_of_a_program(tmp_path: Path) -> None:
-    outcome = run(tmp_path, programs.SERVER, programs.CLIENT)
+    outcome = run(tmp_path, servers.SERVER, clients.CLIENT)
     shown = {event.entity: event for event in outcome.events if isinstance(event, EntityAppeared)}
     started = [shown[event.entity] for event in outcome.events if isinstance(event, CallbackStarted)]
     assert [each.name for each in started if each.callback == "execute_callback"] == ["/fibonacci"]
@@ -96,8 +97,8 @@ def test_the_execution_of_a_goal_is_on_the_trace_of_a_program(tmp_path: Path) ->
 
 def test_the_programs_run_on_the_real_clock_too(tmp_path: Path) -> None:
     server, client = tmp_path / "server.py", tmp_path / "client.py"
-    server.write_text(programs.SERVER.replace("time.sleep(1)", "time.sleep(0.01)"))
-    client.write_text(programs.CLIENT)
+    server.write_text(servers.SERVER.replace("time.sleep(1)", "time.sleep(0.01)"))
+    client.write_text(clients.CLIENT)
     outcome = run_to_end(
         RunSetup(
             title="actions",

@@ -1,88 +1,15 @@
 """Action servers, asked by plain clients of their services and heard by plain subscriptions."""
 
-from collections.abc import Callable
 from typing import Any
 
 import pytest
 
-import sim.ros.rclpy as rclpy
-from sim.interfaces import action, message, service
-from sim.ros.actions.server import ActionServer, CancelResponse, GoalResponse, ServerGoalHandle
+from sim.ros.actions.server import ActionServer, GoalResponse, ServerGoalHandle
 from sim.ros.exceptions import RCLError
 from sim.ros.node.node import Node
-from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
-from sim.ros.scheduling.executors import MultiThreadedExecutor
-from sim.ros.scheduling.task import Future
 from sim.trace.events import CallbackFailed, EntityAppeared, EntityGone
+from tests.ros.actions.asker import Asker, Fibonacci, GoalStatus, Int32, spin_for, succeed
 from tests.support.simulation import Simulation, simulate
-
-Fibonacci = action("example_interfaces", "Fibonacci")
-Impl = Fibonacci.Impl
-CancelGoal = service("action_msgs", "CancelGoal")
-GoalStatus = message("action_msgs", "GoalStatus")
-Int32 = message("std_msgs", "Int32")
-
-
-class Asker:
-    """Asks an action server by its services, and keeps what it publishes."""
-
-    def __init__(self, node: Node, name: str = "/fibonacci") -> None:
-        self.node = node
-        self.feedback: list[tuple[int, list[int]]] = []
-        self.statuses: list[list[int]] = []
-        group = ReentrantCallbackGroup()
-        self.goals, self.cancels, self.results = (
-            node.create_client(kind, f"{name}/_action/{part}", callback_group=group)
-            for kind, part in (
-                (Impl.SendGoalService, "send_goal"),
-                (Impl.CancelGoalService, "cancel_goal"),
-                (Impl.GetResultService, "get_result"),
-            )
-        )
-        node.create_subscription(
-            Impl.FeedbackMessage, f"{name}/_action/feedback", self._hear, 10, callback_group=group
-        )
-        node.create_subscription(
-            Impl.GoalStatusMessage, f"{name}/_action/status", self._see, 10, callback_group=group
-        )
-
-    def _hear(self, feedback: Any) -> None:
-        self.feedback.append((int(feedback.goal_id.uuid[0]), list(feedback.feedback.sequence)))
-
-    def _see(self, status: Any) -> None:
-        self.statuses.append([each.status for each in status.status_list])
-
-    def send(self, number: int, order: int = 0) -> Any:
-        return self._answer(self.goals.call_async(self.goal(number, order)))
-
-    def goal(self, number: int, order: int = 0) -> Any:
-        request = Impl.SendGoalService.Request()
-        request.goal_id.uuid = [number] * 16
-        request.goal.order = order
-        return request
-
-    def cancel(self, number: int) -> Any:
-        request = CancelGoal.Request()
-        request.goal_info.goal_id.uuid = [number] * 16
-        return self._answer(self.cancels.call_async(request))
-
-    def result(self, number: int) -> Any:
-        request = Impl.GetResultService.Request()
-        request.goal_id.uuid = [number] * 16
-        return self._answer(self.results.call_async(request))
-
-    def _answer(self, future: Future[Any]) -> Any:
-        rclpy.spin_until_future_complete(self.node, future, timeout_sec=50)
-        return future.result()
-
-
-def spin_for(node: Node, seconds: float) -> None:
-    rclpy.spin_until_future_complete(node, Future(), timeout_sec=seconds)
-
-
-def succeed(goal_handle: ServerGoalHandle) -> Any:
-    goal_handle.succeed()
-    return Fibonacci.Result(sequence=[1, 1, 2])
 
 
 def test_an_accepted_goal_is_executed_and_its_result_is_for_whoever_asks() -> None:
@@ -274,87 +201,6 @@ def test_the_status_of_all_goals_is_told_at_each_change_and_to_late_listeners() 
     simulate(program)
 
 
-def cancelled_by(answer: Callable[[Any], Any] | None, reply: Callable[[Any], None]) -> None:
-    """Cancel a goal that runs for 2 s at 1 s, and let ``reply`` judge the answer."""
-
-    def program(simulation: Simulation) -> None:
-        asker = Asker(Node("n"))
-
-        def execute(goal_handle: ServerGoalHandle) -> Any:
-            simulation.sleep(2.0)
-            if goal_handle.is_cancel_requested:
-                goal_handle.canceled()
-            else:
-                goal_handle.succeed()
-            return Fibonacci.Result()
-
-        group = ReentrantCallbackGroup()
-        ActionServer(
-            asker.node, Fibonacci, "fibonacci", execute, cancel_callback=answer, callback_group=group
-        )
-        executor = MultiThreadedExecutor(3)
-        executor.add_node(asker.node)
-        simulation.start(executor.spin)
-        future = asker.goals.call_async(asker.goal(1))
-        simulation.sleep(1.0)
-        assert future.done()
-        request = CancelGoal.Request()
-        cancelled = asker.cancels.call_async(request)
-        result = asker.results.call_async(Impl.GetResultService.Request(goal_id=asker.goal(1).goal_id))
-        simulation.sleep(2.0)
-        reply((cancelled.result(), result.result()))
-
-    simulate(program)
-
-
-def test_a_granted_cancel_request_lets_the_goal_end_as_canceled() -> None:
-    def judge(answers: Any) -> None:
-        cancel, result = answers
-        assert [int(info.goal_id.uuid[0]) for info in cancel.goals_canceling] == [1]
-        assert result.status == GoalStatus.STATUS_CANCELED
-
-    cancelled_by(lambda _: CancelResponse.ACCEPT, judge)
-
-
-@pytest.mark.parametrize("answer", [None, lambda _: CancelResponse.REJECT, lambda _: True])
-def test_a_cancel_request_that_is_not_granted_changes_nothing(answer: Callable[[Any], Any] | None) -> None:
-    def judge(answers: Any) -> None:
-        cancel, result = answers
-        assert list(cancel.goals_canceling) == []
-        assert result.status == GoalStatus.STATUS_SUCCEEDED
-
-    cancelled_by(answer, judge)
-
-
-def test_a_goal_cancelled_before_it_began_is_executed_as_canceling() -> None:
-    def program(simulation: Simulation) -> None:
-        asker = Asker(Node("n"))
-        begun: list[ServerGoalHandle] = []
-
-        def execute(goal_handle: ServerGoalHandle) -> Any:
-            assert goal_handle.is_cancel_requested
-            goal_handle.canceled()
-            return Fibonacci.Result()
-
-        ActionServer(
-            asker.node,
-            Fibonacci,
-            "fibonacci",
-            execute,
-            handle_accepted_callback=begun.append,
-            cancel_callback=lambda _: CancelResponse.ACCEPT,
-        )
-        asker.send(1)
-        assert len(asker.cancel(1).goals_canceling) == 1
-        assert begun[0].status == GoalStatus.STATUS_CANCELING
-        begun[0].execute()
-        assert asker.result(1).status == GoalStatus.STATUS_CANCELED
-        assert asker.cancel(1).return_code == CancelGoal.Response.ERROR_GOAL_TERMINATED
-        assert asker.cancel(2).return_code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID
-
-    simulate(program)
-
-
 def test_a_goal_cannot_be_executed_twice() -> None:
     def program(simulation: Simulation) -> None:
         asker = Asker(Node("n"))
@@ -386,64 +232,6 @@ def test_the_callback_given_to_execute_takes_the_place_of_the_servers() -> None:
         )
         asker.send(1)
         assert asker.result(1).status == GoalStatus.STATUS_ABORTED
-
-    simulate(program)
-
-
-@pytest.mark.parametrize(("timeout", "left"), [(1, 0), (3, 2), (-1, 2)])
-def test_results_are_kept_for_a_while_after_the_end(timeout: float, left: int) -> None:
-    def program(simulation: Simulation) -> None:
-        asker = Asker(Node("n"))
-        server = ActionServer(asker.node, Fibonacci, "fibonacci", succeed, result_timeout=timeout)
-        for number in (1, 2):
-            asker.send(number)
-            asker.result(number)
-        spin_for(asker.node, 2.0)
-        assert len(server._goal_handles) == left
-        known = asker.result(1).status != GoalStatus.STATUS_UNKNOWN
-        assert known == bool(left)
-
-    simulate(program)
-
-
-def test_results_are_kept_10_s_and_counted_from_the_end_of_the_goal() -> None:
-    def program(simulation: Simulation) -> None:
-        asker = Asker(Node("n"))
-
-        def execute(goal_handle: ServerGoalHandle) -> Any:
-            simulation.sleep(5.0)
-            return succeed(goal_handle)
-
-        ActionServer(asker.node, Fibonacci, "fibonacci", execute)
-        asker.send(1)
-        assert simulation.now == 5.0
-        spin_for(asker.node, 9.9)
-        assert asker.result(1).status == GoalStatus.STATUS_SUCCEEDED
-        spin_for(asker.node, 0.2)
-        assert asker.result(1).status == GoalStatus.STATUS_UNKNOWN
-
-    simulate(program)
-
-
-def test_a_goal_forgotten_while_its_result_is_awaited_is_answered_all_the_same() -> None:
-    def program(simulation: Simulation) -> None:
-        asker = Asker(Node("n"))
-
-        async def execute(goal_handle: ServerGoalHandle) -> Any:
-            goal_handle.succeed()
-            await later
-            assert goal_handle.status == GoalStatus.STATUS_UNKNOWN
-            assert not goal_handle.is_active
-            goal_handle.publish_feedback(Fibonacci.Feedback())
-            goal_handle.abort()
-            return Fibonacci.Result(sequence=[3])
-
-        later: Future[None] = Future()
-        ActionServer(asker.node, Fibonacci, "fibonacci", execute, result_timeout=1)
-        asker.send(1)
-        simulation.at(3.0, lambda: later.set_result(None))
-        assert list(asker.result(1).result.sequence) == [3]
-        assert asker.feedback == []
 
     simulate(program)
 

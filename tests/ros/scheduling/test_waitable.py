@@ -1,105 +1,31 @@
-"""Waitables that a program writes: what they may wait for, when they are asked, and who goes before whom."""
+"""Waitables that a program writes: what they may wait for, and what they are held to."""
 
 from collections.abc import Callable
-from typing import Any
 
 import pytest
 
-from sim.interfaces import message, service
 from sim.ros.clocks.clock import Clock
 from sim.ros.exceptions import InvalidHandle, RCLError
 from sim.ros.internals import compiled as _rclpy
 from sim.ros.node.node import Node
-from sim.ros.qos.qos import QoSProfile
 from sim.ros.scheduling.callback_groups import (
-    CallbackGroup,
-    MutuallyExclusiveCallbackGroup,
     ReentrantCallbackGroup,
 )
-from sim.ros.scheduling.executors import Executor, MultiThreadedExecutor, SingleThreadedExecutor
+from sim.ros.scheduling.executors import Executor, SingleThreadedExecutor
 from sim.ros.scheduling.program_wait_set import ProgramWaitSet
 from sim.ros.scheduling.task import Future
 from sim.ros.scheduling.waitable import NumberOfEntities, Waitable
 from sim.ros.time.clock_type import ClockType
+from tests.ros.scheduling.waitables import (
+    QOS,
+    Empty,
+    EmptySrv,
+    Flag,
+    Waiting,
+    every_executor,
+    served,
+)
 from tests.support.simulation import Simulation, simulate
-
-Empty = message("std_msgs", "Empty")
-EmptySrv = service("std_srvs", "Empty")
-QOS = QoSProfile(depth=10).get_c_qos_profile()
-
-
-def two_threads() -> Executor:
-    return MultiThreadedExecutor(2)
-
-
-every_executor = pytest.mark.parametrize("make", [SingleThreadedExecutor, two_threads])
-
-
-class Waiting(Waitable[Any]):
-    """Waits for one entity of one kind, and gives what it takes to a future."""
-
-    def __init__(self, kind: str, waited: Any, take: Callable[[Any], Any]) -> None:
-        super().__init__(ReentrantCallbackGroup())
-        self.kind = kind
-        self.waited = waited
-        self.take = take
-        self.index = -1
-        self.found_ready = False
-        self.future: Future[Any] = Future()
-
-    def is_ready(self, wait_set: ProgramWaitSet) -> bool:
-        self.found_ready = self.found_ready or wait_set.is_ready(self.kind, self.index)
-        return self.found_ready
-
-    def take_data(self) -> Any:
-        self.found_ready = False
-        return self.take(self.waited)
-
-    async def execute(self, taken_data: Any) -> None:
-        self.future.set_result(taken_data)
-
-    def get_num_entities(self) -> NumberOfEntities:
-        return NumberOfEntities(**{f"num_{self.kind}s": 1})
-
-    def add_to_wait_set(self, wait_set: ProgramWaitSet) -> None:
-        self.index = getattr(wait_set, f"add_{self.kind}")(self.waited)
-
-
-class Flag(Waitable[str]):
-    """Ready while something is in its list; wakes its executor itself."""
-
-    def __init__(self, group: CallbackGroup, ran: list[str]) -> None:
-        super().__init__(group)
-        self.waiting: list[str] = []
-        self.ran = ran
-        self.asked = 0
-
-    def is_ready(self, wait_set: ProgramWaitSet) -> bool:
-        self.asked += 1
-        return bool(self.waiting)
-
-    def take_data(self) -> str:
-        return self.waiting.pop(0)
-
-    async def execute(self, taken_data: str) -> None:
-        self.ran.append(taken_data)
-
-    def get_num_entities(self) -> NumberOfEntities:
-        return NumberOfEntities()
-
-    def add_to_wait_set(self, wait_set: ProgramWaitSet) -> None:
-        pass
-
-
-def served(make: Callable[[], Executor], node: Node, waitable: Waiting) -> Any:
-    """Serve a waitable until its future is done, and return the result."""
-    executor = make()
-    executor.add_node(node)
-    node.add_waitable(waitable)
-    executor.spin_until_future_complete(waitable.future, timeout_sec=10)
-    assert waitable.future.done()
-    node.remove_waitable(waitable)
-    return waitable.future.result()
 
 
 def test_counts_of_entities_add_up() -> None:
@@ -199,191 +125,6 @@ def test_a_waitable_may_wait_for_an_entity_of_its_node_that_has_its_own_callback
         simulation.at(1.0, guard.trigger)
         served(SingleThreadedExecutor, node, Waiting("guard_condition", guard.handle, lambda _: None))
         assert simulation.now == 1.0
-
-    simulate(program)
-
-
-@every_executor
-def test_a_waitable_that_is_set_by_a_callback_is_served_next(make: Callable[[], Executor]) -> None:
-    ran: list[str] = []
-
-    def program(simulation: Simulation) -> None:
-        node = Node("n")
-        flag = Flag(MutuallyExclusiveCallbackGroup(), ran)
-        node.add_waitable(flag)
-        node.create_timer(1.0, lambda: flag.waiting.append(f"{simulation.now}"))
-        executor = make()
-        executor.add_node(node)
-        simulation.at(2.5, executor.shutdown)
-        executor.spin()
-        assert ran == ["1.0", "2.0"]
-
-    simulate(program)
-
-
-@every_executor
-def test_a_waitable_is_asked_again_whenever_its_executor_is_woken(make: Callable[[], Executor]) -> None:
-    ran: list[str] = []
-
-    def program(simulation: Simulation) -> None:
-        node = Node("n")
-        flag = Flag(node.default_callback_group, ran)
-        executor = make()
-        executor.add_node(node)
-        node.add_waitable(flag)
-
-        def set_flag() -> None:
-            flag.waiting.append("set")
-            executor.wake()
-
-        simulation.at(1.0, set_flag)
-        simulation.at(1.0, lambda: None)
-        simulation.at(2.0, executor.shutdown)
-        executor.spin()
-        assert ran == ["set"]
-        assert flag.asked < 10
-
-    simulate(program)
-
-
-def test_waitables_of_every_node_go_before_the_timers_of_the_first() -> None:
-    def program(simulation: Simulation) -> None:
-        first, second = Node("first"), Node("second")
-        ran: list[str] = []
-        first.create_timer(1.0, lambda: ran.append("timer"))
-        flag = Flag(second.default_callback_group, ran)
-        flag.waiting.append("waitable")
-        second.add_waitable(flag)
-        executor = SingleThreadedExecutor()
-        simulation.sleep(1.0)
-        for node in (first, second):
-            executor.add_node(node)
-        for _ in range(2):
-            executor.spin_once(timeout_sec=0)
-        assert ran == ["waitable", "timer"]
-
-    simulate(program)
-
-
-def test_tasks_that_never_end_do_not_starve_a_waitable() -> None:
-    def program(simulation: Simulation) -> None:
-        node = Node("n")
-        ran: list[str] = []
-        flag = Flag(node.default_callback_group, ran)
-        flag.waiting.append("waitable")
-        node.add_waitable(flag)
-        executor = SingleThreadedExecutor()
-        executor.add_node(node)
-
-        def again() -> None:
-            executor.create_task(again)
-
-        again()
-        for _ in range(3):
-            executor.spin_once(timeout_sec=0)
-        assert ran == ["waitable"]
-
-    simulate(program)
-
-
-@every_executor
-def test_a_waitable_of_a_busy_group_is_not_asked_until_the_group_is_free(
-    make: Callable[[], Executor],
-) -> None:
-    def program(simulation: Simulation) -> None:
-        node = Node("n")
-        ran: list[str] = []
-        group = MutuallyExclusiveCallbackGroup()
-        flag = Flag(group, ran)
-        node.add_waitable(flag)
-        asked: list[int] = []
-
-        def callback() -> None:
-            flag.waiting.append("waitable")
-            asked.append(flag.asked)
-            simulation.sleep(0.5)
-            asked.append(flag.asked)
-            assert ran == []
-
-        timer = node.create_timer(1.0, callback, group)
-        node.create_timer(0.3, lambda: None, ReentrantCallbackGroup())
-        executor = make()
-        executor.add_node(node)
-        simulation.at(1.9, executor.shutdown)
-        executor.spin()
-        assert ran == ["waitable"]
-        assert asked[0] == asked[1]
-        assert timer.is_ready() is False
-
-    simulate(program)
-
-
-def test_a_waitable_is_not_asked_again_while_it_takes_its_data() -> None:
-    def program(simulation: Simulation) -> None:
-        node = Node("n")
-        ran: list[str] = []
-
-        class Slow(Flag):
-            def take_data(self) -> str:
-                before = self.asked
-                simulation.sleep(1.0)
-                assert self.asked == before
-                return super().take_data()
-
-        flag = Slow(ReentrantCallbackGroup(), ran)
-        flag.waiting.append("once")
-        node.add_waitable(flag)
-        node.create_timer(0.1, lambda: None, ReentrantCallbackGroup())
-        executor = MultiThreadedExecutor(3)
-        executor.add_node(node)
-        simulation.at(1.5, executor.shutdown)
-        executor.spin()
-        assert ran == ["once"]
-
-    simulate(program)
-
-
-def test_execute_holds_its_group_while_it_awaits() -> None:
-    def program(simulation: Simulation) -> None:
-        node = Node("n")
-        ran: list[str] = []
-        gate: Future[None] = Future()
-
-        class Awaiting(Flag):
-            async def execute(self, taken_data: str) -> None:
-                await gate
-                ran.append(taken_data)
-
-        group = MutuallyExclusiveCallbackGroup()
-        flag = Awaiting(group, ran)
-        flag.waiting.append("waitable")
-        node.add_waitable(flag)
-        node.create_timer(1.0, lambda: ran.append("timer"), group)
-        executor = SingleThreadedExecutor()
-        executor.add_node(node)
-        simulation.at(1.5, lambda: gate.set_result(None))
-        simulation.at(1.8, executor.shutdown)
-        executor.spin()
-        assert ran == ["waitable", "timer"]
-
-    simulate(program)
-
-
-def test_an_execute_that_is_no_coroutine_is_a_type_error() -> None:
-    def program(simulation: Simulation) -> None:
-        node = Node("n")
-
-        class Plain(Flag):
-            def execute(self, taken_data: str) -> None:  # type: ignore[override]
-                pass
-
-        flag = Plain(node.default_callback_group, [])
-        flag.waiting.append("x")
-        node.add_waitable(flag)
-        executor = SingleThreadedExecutor()
-        executor.add_node(node)
-        with pytest.raises(TypeError, match="can't be used in 'await' expression"):
-            executor.spin_once(timeout_sec=0)
 
     simulate(program)
 

@@ -6,9 +6,9 @@ from hypothesis import strategies as st
 from rich.cells import cell_len
 
 from cbtui.looks.theme import Charset, Role
-from cbtui.widgets.lanes import LanePainter, Selection, wanted_rows
-from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLane, ThreadLane, all_lanes
-from sim.trace.events import MessageDropped, Reason
+from cbtui.widgets.lanes import LanePainter, wanted_rows
+from cbtui.widgets.lanes.rows import GroupLane, MemberLane, ServiceLane, SoleLane, ThreadLane
+from sim.trace.events import Reason
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 from tests.support.properties import examples
@@ -293,107 +293,6 @@ def test_the_rows_wanted_are_the_rows_painted() -> None:
     for timeline in RUNS:
         wanted = wanted_rows(timeline, "/motor_power")
         assert len(LanePainter(service="/motor_power").paint(timeline, *last(10, 10), 80, 50).rows) == wanted
-
-
-def blocked_run() -> Run:
-    """A callback that stands still in a call of /x from 2 to 8 s of the 9 s that it runs."""
-    run, thread, a, _ = small_run()
-    call = run.call("/x", 2.0, 8.0, entity=a)
-    run.blocked(call, "/x", thread, a, 2.0, 8.0)
-    run.callback(a, thread, 0.2, 9.0)
-    run.stop(10.0)
-    return run
-
-
-def test_a_thread_that_stands_still_in_a_call_is_hatched_and_says_in_which() -> None:
-    assert LanePainter().text(told(blocked_run()), *last(10, 10.0), 80, 8).splitlines()[0] == drawn(
-        "|MainThread  │ A a_callback ░░ blocked in call /x ░░░░██████    │  90% busy      |"
-    )
-
-
-def test_a_bars_name_is_kept_where_its_thread_stands_still_at_once() -> None:
-    run, thread, a, _ = small_run()
-    run.callback(a, thread, 0.2)
-    run.blocked(run.call("/x", 0.2, entity=a), "/x", thread, a, 0.2)
-    text = LanePainter(Charset.ASCII).text(told(run, 10.0), Window(0, ns(10)), ns(10), 80, 8)
-    assert "A a" in text.splitlines()[0]
-    assert "%% blocked in call /x %%" in text.splitlines()[0]
-
-
-def test_lost_messages_are_crosses_on_the_lane_of_their_queue() -> None:
-    run, _, a, _ = small_run()
-    for at in (1.0, 1.5, 5.0, 5.1):
-        run.add(MessageDropped(ns(at), a, 10, 1))
-    run.stop(10.0)
-    assert LanePainter().text(told(run), *last(10, 10.0), 80, 8).splitlines()[2] == drawn(
-        "|  a         │     × ×                 ×                        │ 10/10! lost 4  |"
-    )
-
-
-def neighbours() -> Timeline:
-    """Two groups whose callbacks follow each other at once on one thread."""
-    run = Run()
-    thread, node = run.thread("MainThread"), run.node("/n")
-    one, other = (run.timer(run.exclusive(node), f"{name}_callback", 9.0) for name in ("one", "other"))
-    run.callback(one, thread, 0.0, 4.8)
-    run.callback(other, thread, 4.8, 10.0)
-    return told(run, until=10.0)
-
-
-@pytest.mark.parametrize(
-    ("charset", "bars"),
-    [
-        (Charset.BRAILLE, "│A one_callback ████████▉B other_callback ·········│"),
-        (Charset.BLOCK, "│A one_callback ████████▉B other_callback ·········│"),
-        (Charset.ASCII, "|A one_callback #########B other_callback +++++++++|"),
-    ],
-)
-def test_what_a_bars_label_leaves_has_the_texture_of_its_group(charset: Charset, bars: str) -> None:
-    assert bars in LanePainter(charset).text(neighbours(), *last(10, 10.0), 80, 8).splitlines()[0]
-
-
-def test_wide_lanes_show_each_groups_texture_beside_its_letter() -> None:
-    names = [line[:23] for line in LanePainter().text(neighbours(), *last(10, 10.0), 140, 8).splitlines()]
-    assert names[1:3] == ["A ██ exclusive one     ", "B ·· exclusive other   "]
-
-
-def test_keys_of_the_person_are_marked_on_the_axis_in_words_where_there_is_room() -> None:
-    run, _, _, _ = small_run()
-    run.command("reset the world", 3.0)
-    run.command("speed x2", 3.2)
-    run.stop(10.0)
-    axis = LanePainter().text(told(run), *last(10, 10.0), 80, 8).splitlines()[-1]
-    assert "▲▲speed x2" in axis
-
-
-@pytest.mark.parametrize(("start", "sign"), [(6.0, "◂now"), (1.0, "now▸")])
-def test_an_axis_tells_on_which_side_the_cursor_is(start: float, sign: str) -> None:
-    timeline = told(shared_group_run())
-    window = Window(ns(start), ns(start + 2))
-    axis = LanePainter().text(timeline, window, ns(4.5), 80, 7).splitlines()[-1]
-    assert sign in axis
-
-
-def test_the_selected_lane_is_pointed_at_and_its_bar_stands_out() -> None:
-    timeline = told(shared_group_run(), until=12.9)
-    lane = ThreadLane(timeline.threads[1])
-    bar = timeline.spans_on(1, Window(ns(5), ns(6)))[0]
-    picture = LanePainter().paint(timeline, *last(10, 12.9), 80, 8, Selection(lane, bar))
-    assert picture.text.splitlines()[0].startswith("MainThread  ▸▎▎▎▎▎A timer_callback")
-    selected = "".join(run.text for run in picture.rows[0] if run.ink.selected)
-    assert selected.startswith("A timer_callback ███")
-    assert not any(run.ink.selected for row in picture.rows[1:] for run in row)
-
-
-def test_the_selected_lane_and_its_neighbours_are_shown_however_few_there_is_room_for() -> None:
-    timeline = told(shared_group_run(), until=12.9)
-    every = all_lanes(timeline, "/motor_power")
-    for place, lane in enumerate(every):
-        shown = (
-            LanePainter(service="/motor_power").paint(timeline, *last(10, 12.9), 80, 5, Selection(lane)).lanes
-        )
-        assert set(every[max(0, place - 1) : place + 2]) <= set(shown)
-        assert list(shown) == [each for each in every if each in shown]
 
 
 def test_a_millisecond_and_ten_minutes_fill_a_screen() -> None:
