@@ -62,7 +62,7 @@ def grade(options: argparse.Namespace) -> int:
         refuse("--resume goes on with a table; name it with --csv OUT.csv")
     from cbtui.grading.confinement import Confinement
     from cbtui.grading.grading import Grader, PackagesChangedError, line
-    from cbtui.grading.mark_sheet import MarkSheet, SheetFile, SheetStream
+    from cbtui.grading.mark_sheet import MarkSheet, SheetFile, SheetStream, UnwritableSheetError
 
     handed_in = Grader(papers)
     sheet = MarkSheet(handed_in.most_checks)
@@ -91,13 +91,11 @@ def grade(options: argparse.Namespace) -> int:
     except PackagesChangedError as error:
         complain(str(error))
         return CHANGED
-    except OSError as error:
-        if error.filename != options.csv:
-            raise
-        complain(f"{options.csv} cannot be written: {error.strerror}")
+    except UnwritableSheetError as error:
+        complain(str(error))
         return 1
     finally:
-        with suppress(OSError):
+        with suppress(UnwritableSheetError):
             out.end()
     if any(row["suspicious"] for row in sheet.rows):
         return SUSPICIOUS

@@ -18,6 +18,10 @@ class BadSheetError(Exception):
     """A table that cannot be gone on with; the text is a sentence."""
 
 
+class UnwritableSheetError(Exception):
+    """A table that cannot be written; the text is a sentence."""
+
+
 class MarkSheet:
     """The rows, by their columns; ``checks`` is the number of columns for check results."""
 
@@ -144,7 +148,7 @@ class SheetFile:
         """Write what is in the table already.
 
         Raises:
-            OSError: as every method, the file cannot be written.
+            UnwritableSheetError: as by every method.
         """
         self._written = _encoded(self._sheet.text())
         self._write(self._written, "wb")
@@ -171,7 +175,7 @@ class SheetFile:
     def mended(self) -> str | None:
         """Look whether the file is as it was written, and write it again if not; says so then."""
         whole = self._written + self._begun
-        if not self._is_ordinary() or (self.path.exists() and self.path.read_bytes() == whole):
+        if not self._is_ordinary() or self._holds(whole):
             return None
         self._write(whole, "wb")
         return f"{self.path} was changed while it ran"
@@ -179,12 +183,21 @@ class SheetFile:
     def _is_ordinary(self) -> bool:
         return self.path.is_file() or not self.path.exists()
 
+    def _holds(self, data: bytes) -> bool:
+        try:
+            return self.path.read_bytes() == data
+        except OSError:
+            return False
+
     def _write(self, data: bytes, mode: str) -> None:
-        with self.path.open(mode) as file:
-            file.write(data)
-            file.flush()
-            if self._is_ordinary():
-                os.fsync(file.fileno())
+        try:
+            with self.path.open(mode) as file:
+                file.write(data)
+                file.flush()
+                if self._is_ordinary():
+                    os.fsync(file.fileno())
+        except OSError as error:
+            raise UnwritableSheetError(f"{self.path} cannot be written: {error.strerror}") from error
 
 
 def _encoded(text: str) -> bytes:

@@ -135,6 +135,13 @@ def test_a_table_that_cannot_be_written_is_said_to_be_so(
     assert "marks.csv cannot be written: there is no folder " in capsys.readouterr().err
 
 
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no device that is always full")
+def test_a_table_on_a_full_disk_is_said_to_be_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "split_groups.py").write_text("")
+    assert cli.main(["grade", str(tmp_path), "--csv", "/dev/full"]) == 1
+    assert capsys.readouterr().err.endswith("cbtui: /dev/full cannot be written: No space left on device\n")
+
+
 def test_names_that_are_not_utf_8_keep_nobody_else_from_being_graded(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
