@@ -5,7 +5,6 @@ import threading
 import traceback
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
-from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
 import sim.ros.rclpy
@@ -20,6 +19,7 @@ from sim.ros.scheduling.executors import SingleThreadedExecutor
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,
+    CallbackFailed,
     CallbackStarted,
     EntityAppeared,
     EntityId,
@@ -112,7 +112,11 @@ class Simulation:
     def __init__(self, clock: Clock) -> None:
         self.events: list[AnyEvent] = []
         self.clock = clock
-        self.host = Host(clock, Probe(clock, self.events.append))
+        self.host = Host(clock, Probe(clock, self._record))
+
+    def _record(self, event: AnyEvent) -> None:
+        if not (isinstance(event, CallbackFailed) and event.error.startswith(Ended.__name__)):
+            self.events.append(event)
 
     @property
     def now(self) -> float:
@@ -180,7 +184,7 @@ def simulate(program: Program, until: float = 60.0, schedule: Schedule | None = 
         clock = EndedClock(schedule=schedule)
         simulation = Simulation(clock)
         clock.time.before_jump = simulation.host.explain_waits
-        clock.interrupt_at(until)
+        clock.call_at(ns(until), clock.end)
         with installed(simulation.host):
             try:
                 program(simulation)
@@ -211,37 +215,58 @@ def no_thread_left() -> Iterator[None]:
         assert not thread.is_alive(), f"{thread.name} was left behind:\n{_where_threads_stand()}"
 
 
+class Ended(BaseException):
+    """The run is over: raised out of each wait of every thread but the main one."""
+
+
 class EndedClock(VirtualClock):
-    """A virtual clock whose threads can all be ended: a test goes on after the run, an engine does not."""
+    """A virtual clock that can end all its threads: a test goes on after the run, an engine does not.
+
+    At the end the main thread is interrupted, and its later waits let the others end.
+    """
 
     def __init__(self, speed: float | None = None, schedule: Schedule | None = None) -> None:
         super().__init__(speed, schedule)
-        self._is_over = False
+        self._is_over = self._main_knows = False
 
     def adopt(self, target: Callable[[], None], name: str) -> Callable[[], None]:
         """As ever, but a thread that has not begun when the run ends never does, and none tells its end."""
 
         def run() -> None:
-            with suppress(KeyboardInterrupt):
+            with suppress(Ended):
                 if not self._is_over:
                     target()
 
         return super().adopt(run, name)
 
-    def interrupt_at(self, seconds: float) -> None:
-        """Interrupt the calling thread at that time."""
-        self.call_at(ns(seconds), partial(self.interrupt, threading.get_ident()))
+    def park(self, deadline: int | None) -> bool:
+        """As ever, but from the end on nobody waits."""
+        woken = not self._is_over and super().park(deadline)
+        if not self._is_over:
+            return woken
+        me = self.current
+        if not me.is_main:
+            raise Ended
+        if not self._main_knows:
+            self._main_knows = True
+            raise KeyboardInterrupt
+        self._ready.append(me)
+        self._hand_on(me)
+        return False
 
-    def wind_up(self) -> None:
-        """Interrupt every thread but the main one, which calls this, until it has ended."""
+    def end(self) -> None:
+        """End the run; to be called at a time, or from the main thread."""
         self._is_over = True
         self.time.resume()
+        for thread in sorted(self.threads, key=lambda each: (not each.is_main, each.current_wait)):
+            self.unpark(thread)
+
+    def wind_up(self) -> None:
+        """End the run from its main thread, and let all others come to their end."""
+        self._main_knows = True
+        self.end()
         while len(self.threads) > 1:
-            for thread in sorted(self.threads - {self.current}, key=lambda each: each.current_wait):
-                thread.interrupted = True
-                self.unpark(thread)
-            with suppress(KeyboardInterrupt):
-                self.sleep(0)
+            self.sleep(0)
 
 
 @contextmanager

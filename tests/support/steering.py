@@ -10,6 +10,7 @@ from sim.engine.time_control import VirtualControl
 from sim.probes.probe import Probe
 from sim.ros.middleware.host import Host
 from sim.trace.events import AnyEvent, CommandGiven, TimeHalted
+from tests.support.builder import ns
 from tests.support.simulation import EndedClock, Program, Simulation, installed, no_thread_left
 
 _PATIENCE = 60.0
@@ -68,7 +69,7 @@ def steered(program: Program, steering: Steering, until: float, speed: float | N
         simulation = Simulation(clock)
         simulation.host = Host(clock, Probe(clock, helm.record))
         clock.time.before_jump = simulation.host.explain_waits
-        clock.interrupt_at(until)
+        clock.call_at(ns(until), clock.end)
         outside = threading.Thread(target=lambda: _steer(steering, helm, began, trouble), daemon=True)
         outside.start()
         with installed(simulation.host):
