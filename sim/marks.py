@@ -10,14 +10,14 @@ from typing import Any, TypeVar
 FunctionT = TypeVar("FunctionT", bound=Callable[..., Any])
 
 
-class Mark:
+class FunctionMark:
     """Functions that do one kind of thing; ``frame in mark`` tells whether a frame runs one of them."""
 
     def __init__(self) -> None:
         self._codes: set[CodeType] = set()
 
     def __call__(self, function: FunctionT) -> FunctionT:
-        """Mark a function."""
+        """FunctionMark a function."""
         self._codes.add(function.__code__)
         return function
 
@@ -25,9 +25,9 @@ class Mark:
         return frame.f_code in self._codes
 
 
-calls_the_program = Mark()
+calls_the_program = FunctionMark()
 """Calls a callback or a task that the program wrote."""
-waits_for_time = Mark()
+waits_for_time = FunctionMark()
 """Waits for time to pass."""
-waits_for_keyboard = Mark()
+waits_for_keyboard = FunctionMark()
 """Waits for what is typed at the run's terminal."""

@@ -1,18 +1,18 @@
 """Rules over a timeline that tell why callbacks do not run as meant, and what to do about it."""
 
 from sim.diagnosis.diagnoses import Diagnoses, diagnose
-from sim.diagnosis.look import Look
-from sim.diagnosis.rule import Explanation, Finding, Place, Rule, Weight
+from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight
 from sim.diagnosis.rules import RULES
 from sim.diagnosis.text import findings_text, sentence, whereabouts
+from sim.diagnosis.timeline_view import TimelineView
 
 __all__ = [
     "RULES",
     "Diagnoses",
     "Explanation",
     "Finding",
-    "Look",
-    "Place",
+    "TimelineView",
+    "CodeLocation",
     "Rule",
     "Weight",
     "diagnose",

@@ -4,9 +4,9 @@ from collections.abc import Iterable
 from dataclasses import replace
 from typing import TypeAlias
 
-from sim.diagnosis.look import Look
 from sim.diagnosis.rule import Finding, Rule, Weight
 from sim.diagnosis.rules import RULES
+from sim.diagnosis.timeline_view import TimelineView
 from sim.trace.events import EntityId
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Nanoseconds, Window
@@ -37,11 +37,11 @@ class Diagnoses:
         self._settled: dict[_Key, Finding] = {}
 
     def update(self, timeline: Timeline) -> tuple[Finding, ...]:
-        """Look at what a timeline has learnt since the last update; another timeline begins anew."""
+        """TimelineView at what a timeline has learnt since the last update; another timeline begins anew."""
         if timeline is not self._timeline:
             self._begin(timeline)
         window = Window(self._from, timeline.end + 1)
-        look = Look(timeline, window, self._concurrency)
+        look = TimelineView(timeline, window, self._concurrency)
         self._from = max(self._from, (timeline.end - _LATE) // SECOND * SECOND)
         merged = dict(self._settled)
         for rule in self._rules:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import ClassVar
 
 import sim
-from sim.diagnosis.look import Look
+from sim.diagnosis.timeline_view import TimelineView
 from sim.trace.events import EntityId, ThreadId
 from sim.trace.model import Entity, Nanoseconds
 from sim.trace.timeline import Timeline
@@ -22,7 +22,7 @@ class Weight(Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Place:
+class CodeLocation:
     """Lines of the learner's code."""
 
     file: str
@@ -71,7 +71,7 @@ class Explanation:
     what: str
     why: str
     cure: str
-    place: Place | None
+    place: CodeLocation | None
     for_ever: bool = False
 
 
@@ -84,7 +84,7 @@ class Rule(ABC):
     weight: ClassVar[Weight] = Weight.PROBLEM
 
     @abstractmethod
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         """Yield every occurrence that lasted into the window of the look, each whole."""
 
     @abstractmethod
@@ -99,12 +99,12 @@ class Rule(ABC):
 _OURS = str(Path(sim.__file__).parent)
 
 
-def place_of(entity: EntityId, timeline: Timeline) -> Place | None:
+def place_of(entity: EntityId, timeline: Timeline) -> CodeLocation | None:
     """Where an entity's callback is written, None where the model itself wrote it, as a rate's tick."""
     known = timeline.entities.get(entity)
     if known is None or not known.file or known.file.startswith(_OURS):
         return None
-    return Place(known.file, known.first_line, known.last_line)
+    return CodeLocation(known.file, known.first_line, known.last_line)
 
 
 def entity_of(found: Finding, timeline: Timeline) -> Entity:

@@ -32,7 +32,7 @@ class LongWait:
         return tuple(part for part in self.parts if part.reason is reason and part.holder != part.entity)
 
 
-class Look:
+class TimelineView:
     """A timeline from the start of ``window`` to its end, with what lasts into that from before."""
 
     def __init__(self, timeline: Timeline, window: Window, concurrency: Concurrency) -> None:

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from operator import attrgetter
 from typing import TypeAlias
 
-from sim.diagnosis.look import pool_of
+from sim.diagnosis.timeline_view import pool_of
 from sim.diagnosis.words import group_of, who
 from sim.trace.events import CallId, EntityId, EntityKind, GroupKind, Reason, ThreadId
 from sim.trace.model import Call, Moment, Nanoseconds, Span, Window
@@ -36,7 +36,7 @@ class Suspended:
     entity: EntityId
 
 
-Actor: TypeAlias = OnThread | Suspended
+Waiter: TypeAlias = OnThread | Suspended
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,7 +48,7 @@ class Obstacle:
 
     service: str
     text: str
-    by: tuple[Actor, ...]
+    by: tuple[Waiter, ...]
     needs_worker: bool = False
 
 
@@ -56,13 +56,13 @@ class Obstacle:
 class Stuck:
     """One that can never go on: the callback, since when it waits, and why."""
 
-    actor: Actor
+    actor: Waiter
     entity: EntityId
     since: Nanoseconds
     obstacle: Obstacle
 
 
-class Standstill:
+class WaitForGraph:
     """The callbacks that can never go on at ``at``, as far as the trace tells."""
 
     def __init__(self, timeline: Timeline, at: Nanoseconds) -> None:
@@ -76,15 +76,15 @@ class Standstill:
     def knots(self) -> Iterator[tuple[Stuck, ...]]:
         """The sets of callbacks that only wait for each other, each in the order of its waiting."""
         reach = {actor: self._reach(actor) for actor in self.stuck}
-        told: set[Actor] = set()
+        told: set[Waiter] = set()
         for actor, reached in reach.items():
             if actor in told or any(actor not in reach[other] for other in reached):
                 continue
             told |= reached
             yield self._in_order(reached)
 
-    def _reach(self, actor: Actor) -> frozenset[Actor]:
-        reached: set[Actor] = set()
+    def _reach(self, actor: Waiter) -> frozenset[Waiter]:
+        reached: set[Waiter] = set()
         coming = [actor]
         while coming:
             for other in self.stuck[coming.pop()].obstacle.by:
@@ -93,7 +93,7 @@ class Standstill:
                     coming.append(other)
         return frozenset(reached)
 
-    def _in_order(self, knot: frozenset[Actor]) -> tuple[Stuck, ...]:
+    def _in_order(self, knot: frozenset[Waiter]) -> tuple[Stuck, ...]:
         """From the one that began to wait last on, each followed by one that keeps it, where possible."""
         left = sorted((self.stuck[actor] for actor in knot), key=lambda each: -each.since)
         order = [left.pop(0)]
@@ -104,7 +104,7 @@ class Standstill:
             order.append(following)
         return tuple(order)
 
-    def _without_those_that_go_on(self, waiting: dict[Actor, Stuck]) -> dict[Actor, Stuck]:
+    def _without_those_that_go_on(self, waiting: dict[Waiter, Stuck]) -> dict[Waiter, Stuck]:
         stuck = waiting
         while True:
             left = {
@@ -118,7 +118,7 @@ class Standstill:
 
     # who waits for a reply
 
-    def _waiting(self) -> Iterator[tuple[Actor, Stuck]]:
+    def _waiting(self) -> Iterator[tuple[Waiter, Stuck]]:
         for thread, blocked in self._moment.blocked.items():
             call = self._call(blocked.call)
             obstacle = None if call is None else self._obstacle(call, blocked.entity)
@@ -193,7 +193,7 @@ class Standstill:
                 return self._by_service(call, suspended, Suspended(suspended))
         return None
 
-    def _by_service(self, call: Call, entity: EntityId, by: Actor) -> Obstacle:
+    def _by_service(self, call: Call, entity: EntityId, by: Waiter) -> Obstacle:
         return Obstacle(call.service, f"{call.service} is answered by {who(entity, self._timeline)}", (by,))
 
     def _serves(self, entity: EntityId, call: Call) -> bool:
@@ -211,7 +211,7 @@ class Standstill:
                         return self._worker(pool, call.service, f"the reply of {call.service}")
         return None
 
-    def _worker(self, pool: tuple[Actor, ...], service: str, needing: str) -> Obstacle | None:
+    def _worker(self, pool: tuple[Waiter, ...], service: str, needing: str) -> Obstacle | None:
         if len(pool) == 1:
             text = f"{needing} needs the only thread, which {self._names(pool)} keeps"
         else:
@@ -233,19 +233,19 @@ class Standstill:
                 if span.end is None or span.end > self._at:
                     yield thread, span
 
-    def _actors(self, entity: EntityId) -> list[Actor]:
+    def _actors(self, entity: EntityId) -> list[Waiter]:
         threads = self._threads_of.get(entity)
         return [Suspended(entity)] if threads is None else [OnThread(thread) for thread in threads]
 
-    def _pool(self, holder: EntityId) -> tuple[Actor, ...]:
+    def _pool(self, holder: EntityId) -> tuple[Waiter, ...]:
         threads = self._threads_of.get(holder, [])
         return tuple(OnThread(each) for each in pool_of(threads[0], self._timeline)) if threads else ()
 
-    def _names(self, actors: tuple[Actor, ...]) -> str:
+    def _names(self, actors: tuple[Waiter, ...]) -> str:
         names = dict.fromkeys(self._name(actor) for actor in actors)
         return " and ".join(names)
 
-    def _name(self, actor: Actor) -> str:
+    def _name(self, actor: Waiter) -> str:
         if isinstance(actor, Suspended):
             return who(actor.entity, self._timeline)
         span = self._moment.running.get(actor.thread)

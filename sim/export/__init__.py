@@ -1,14 +1,14 @@
-"""Takes a run to other programs: trace viewers, spreadsheets, paper.
+"""Exports a run for other programs: trace viewers, spreadsheets, documents.
 
-``Narrator`` (into a ``PerfettoFile`` or ``ChromeFile``) and ``CallTable`` take batches of events and need
-no more memory for a longer run; a picture and a report are made of a timeline.
+``TraceExporter`` (to a ``PerfettoFile`` or ``ChromeFile``) and ``CallTable`` take batches of events, in
+constant memory; pictures and reports are made from a timeline.
 """
 
 from sim.export.chrome import ChromeFile
 from sim.export.csv import CallTable
 from sim.export.markdown import report
-from sim.export.narrator import Narrator
 from sim.export.perfetto import PerfettoFile
 from sim.export.svg import svg
+from sim.export.trace_exporter import TraceExporter
 
-__all__ = ["CallTable", "ChromeFile", "Narrator", "PerfettoFile", "report", "svg"]
+__all__ = ["CallTable", "ChromeFile", "TraceExporter", "PerfettoFile", "report", "svg"]

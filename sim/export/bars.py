@@ -1,4 +1,4 @@
-"""The rows of a picture of lanes and the bars on each, reduced to what is visible."""
+"""The rows of a drawing of lanes and the bars on each, reduced to what is visible."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -7,21 +7,21 @@ from typing import Generic, TypeVar
 from sim.trace.model import Entity, Group, Nanoseconds, Span, Thread, Wait, Window
 from sim.trace.timeline import Timeline
 
-_SEEN = 0.4
+_VISIBLE = 0.4
 """Pixels by which a bar must go beyond the one before to be drawn."""
 _NARROWEST = 0.8
 
 
 @dataclass(frozen=True, slots=True)
-class Scale:
-    """Where a time of the window lies between ``left`` and ``right``, in pixels."""
+class TimeScale:
+    """Maps the times of a window to pixels from ``left`` to ``right``."""
 
     window: Window
     left: float
     right: float
 
     def x(self, t: Nanoseconds) -> float:
-        """The place of a time, at the edge for one outside."""
+        """The pixel of a time, clamped to the edges."""
         share = (t - self.window.start) / max(1, self.window.length)
         return self.left + min(1.0, max(0.0, share)) * (self.right - self.left)
 
@@ -30,8 +30,8 @@ IntervalT = TypeVar("IntervalT", Span, Wait)
 
 
 @dataclass(frozen=True, slots=True)
-class Piece(Generic[IntervalT]):
-    """A bar: from ``left`` to ``right`` in pixels; ``level`` counts the intervals that it lies within."""
+class Bar(Generic[IntervalT]):
+    """A bar from ``left`` to ``right``, in pixels; ``level`` is its nesting depth."""
 
     left: float
     right: float
@@ -40,7 +40,7 @@ class Piece(Generic[IntervalT]):
 
 
 def rows(timeline: Timeline, window: Window) -> Iterator[Thread | Group | Entity]:
-    """All threads; then each group with those of its entities that have a callback or something to show."""
+    """All threads, then each group with its entities that have a callback, a call or a wait."""
     yield from timeline.threads.values()
     for group in timeline.groups.values():
         yield group
@@ -50,10 +50,10 @@ def rows(timeline: Timeline, window: Window) -> Iterator[Thread | Group | Entity
                 yield entity
 
 
-def pieces(intervals: Iterable[IntervalT], scale: Scale, end: Nanoseconds) -> Iterator[Piece[IntervalT]]:
-    """The bars of intervals in order of start: no more than a few for each pixel and level.
+def bars(intervals: Iterable[IntervalT], scale: TimeScale, end: Nanoseconds) -> Iterator[Bar[IntervalT]]:
+    """The bars of intervals in order of start, at most a few for each pixel and level.
 
-    ``end`` is where those end that still last.
+    Open intervals end at ``end``.
     """
     running: list[Nanoseconds | None] = []
     drawn: list[float] = []
@@ -64,16 +64,16 @@ def pieces(intervals: Iterable[IntervalT], scale: Scale, end: Nanoseconds) -> It
         if level == len(drawn):
             drawn.append(scale.left - 1)
         left, right = scale.x(interval.start), scale.x(until)
-        if right < drawn[level] + _SEEN:
+        if right < drawn[level] + _VISIBLE:
             continue
         left = min(max(left, drawn[level]), scale.right - _NARROWEST)
         right = max(right, left + _NARROWEST)
         drawn[level] = right
-        yield Piece(left, right, level, interval)
+        yield Bar(left, right, level, interval)
 
 
-def losses(timeline: Timeline, entity: Entity, scale: Scale, step: float) -> Iterator[tuple[float, int]]:
-    """Where an entity's queue lost messages, and how many: one for each ``step`` pixels."""
+def losses(timeline: Timeline, entity: Entity, scale: TimeScale, step: float) -> Iterator[tuple[float, int]]:
+    """Position and number of an entity's lost messages, summed over ``step`` pixels."""
     window = scale.window
     buckets = max(1, int((scale.right - scale.left) / step))
     for number in range(buckets):
@@ -85,7 +85,7 @@ def losses(timeline: Timeline, entity: Entity, scale: Scale, step: float) -> Ite
 
 
 def ticks(window: Window, most: int) -> Sequence[Nanoseconds]:
-    """Round times in the window, at most so many of them, in steps of 1, 2 or 5 times a power of ten."""
+    """At most ``most`` round times in the window, in steps of 1, 2 or 5 times a power of ten."""
     step = 1
     while True:
         for factor in (1, 2, 5):

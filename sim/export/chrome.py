@@ -8,16 +8,25 @@ from typing import IO
 
 import msgspec
 
-from sim.export.sink import NO_FACTS, NO_LINKS, Facts, FlowId, Links, Track, TrackId, TrackKind
+from sim.export.trace_sink import (
+    NO_ATTRIBUTES,
+    NO_LINKS,
+    Attributes,
+    FlowId,
+    Links,
+    Track,
+    TrackId,
+    TrackKind,
+)
 from sim.trace.model import Nanoseconds
 
 _LINES_AT_ONCE = 4096
 
 
 class ChromeFile:
-    """A sink that writes JSON to a binary file, an event a line.
+    """A trace sink that writes JSON to a binary file, an event a line.
 
-    The format knows processes and threads only: what stands at the top is a process, what lies below it a
+    The format has processes and threads only: a track at the top level is a process, a track below it a
     thread of that process.
     """
 
@@ -32,7 +41,7 @@ class ChromeFile:
         self._first = True
 
     def begin_run(self, epoch: Nanoseconds) -> None:
-        """Keep the wall time for the file's end."""
+        """Keep the wall time, which is written at the end."""
         self._epoch = epoch
 
     def add(self, track: Track) -> None:
@@ -45,21 +54,33 @@ class ChromeFile:
             self._name("thread_name", "thread_sort_index", root, track.id, track)
 
     def begin(
-        self, track: TrackId, t: Nanoseconds, name: str, category: str, facts: Facts, links: Links = NO_LINKS
+        self,
+        track: TrackId,
+        t: Nanoseconds,
+        name: str,
+        category: str,
+        attributes: Attributes,
+        links: Links = NO_LINKS,
     ) -> None:
         """Begin a slice."""
-        self._put(track, t, {"ph": "B", "name": name, "cat": category, "args": facts})
+        self._put(track, t, {"ph": "B", "name": name, "cat": category, "args": attributes})
         self._link(track, t, links)
 
-    def end(self, track: TrackId, t: Nanoseconds, facts: Facts = NO_FACTS) -> None:
+    def end(self, track: TrackId, t: Nanoseconds, attributes: Attributes = NO_ATTRIBUTES) -> None:
         """End the innermost slice."""
-        self._put(track, t, {"ph": "E", "args": facts} if facts else {"ph": "E"})
+        self._put(track, t, {"ph": "E", "args": attributes} if attributes else {"ph": "E"})
 
     def instant(
-        self, track: TrackId, t: Nanoseconds, name: str, category: str, facts: Facts, links: Links = NO_LINKS
+        self,
+        track: TrackId,
+        t: Nanoseconds,
+        name: str,
+        category: str,
+        attributes: Attributes,
+        links: Links = NO_LINKS,
     ) -> None:
-        """Put down an instant; one with arrows as a slice of no length, since arrows bind to slices."""
-        about: dict[str, object] = {"name": name, "cat": category, "args": facts}
+        """Add an instant; one with flows as a slice of no length, since flows bind to slices."""
+        about: dict[str, object] = {"name": name, "cat": category, "args": attributes}
         if any(links):
             self._put(track, t, {"ph": "X", "dur": 0, **about})
             self._link(track, t, links)
@@ -67,12 +88,12 @@ class ChromeFile:
             self._put(track, t, {"ph": "i", "s": "t", **about})
 
     def count(self, track: TrackId, t: Nanoseconds, value: float) -> None:
-        """Put down a counter's value."""
+        """Add a value of a counter."""
         if math.isfinite(value):
             self._put(track, t, {"ph": "C", "name": self._names[track], "args": {"value": value}})
 
     def close(self) -> None:
-        """End the file."""
+        """Write the rest of the file."""
         self._write()
         other = {"epoch_ns": str(self._epoch)}
         self._file.write(b'\n],"displayTimeUnit":"ms","otherData":' + self._encode(other) + b"}\n")
@@ -85,9 +106,9 @@ class ChromeFile:
     def _link(self, track: TrackId, t: Nanoseconds, links: Links) -> None:
         for phase, flows in zip("stf", links, strict=True):
             for flow in flows:
-                self._arrow(track, t, phase, flow)
+                self._flow(track, t, phase, flow)
 
-    def _arrow(self, track: TrackId, t: Nanoseconds, phase: str, flow: FlowId) -> None:
+    def _flow(self, track: TrackId, t: Nanoseconds, phase: str, flow: FlowId) -> None:
         about: dict[str, object] = {"ph": phase, "id": flow, "name": "flow", "cat": "flow"}
         if phase != "s":
             about["bp"] = "e"

@@ -1,11 +1,11 @@
-"""Writes the calls of a run as a table, a line for each, for spreadsheets (RFC 4180)."""
+"""Writes the calls of a run as comma-separated values, a row a call (RFC 4180)."""
 
 import csv
 from collections.abc import Callable, Sequence
 from typing import Any, TextIO
 
-from sim.export.ordering import InOrder
-from sim.export.running import Running, Stretch
+from sim.export.open_calls import CallSegment, OpenCalls
+from sim.export.reorder_buffer import ReorderBuffer
 from sim.export.texts import cell, seconds
 from sim.trace import events as ev
 from sim.trace.events import AnyEvent, EntityId
@@ -28,24 +28,24 @@ COLUMNS = (
 
 
 class CallTable:
-    """Writes a line when a call leaves its thread, so lines stand in order of their end.
+    """Writes a row when a call leaves its thread, so rows are in order of their end.
 
-    A coroutine's call that was suspended is several lines, the first with its wait. ``wait_s`` is how long
-    the callback was ready before it ran, ``age_s`` the age of its message then or how late its timer was.
-    Calls that never end come last and have neither end nor duration. The file is to be opened with
-    ``newline=""``. Memory does not grow with the length of the run. Not thread-safe.
+    A coroutine's call that was suspended has several rows, the first with its wait. ``wait_s`` is how long
+    the callback was ready before it ran, ``age_s`` the age of its message then, or how late its timer was.
+    Calls that never end come last and have neither end nor duration. Open the file with ``newline=""``.
+    Memory does not grow with the length of the run. Not thread-safe.
     """
 
     def __init__(self, file: TextIO) -> None:
         self._rows = csv.writer(file)
         self._rows.writerow(COLUMNS)
-        self._order = InOrder()
+        self._reordered = ReorderBuffer()
         self._participants = Participants()
-        self._running = Running()
+        self._open_calls = OpenCalls()
         self._waiting: dict[EntityId, Nanoseconds] = {}
         self._waited: dict[EntityId, Nanoseconds] = {}
-        self._told: dict[EntityId, tuple[str, str, str, str]] = {}
-        self._fold: dict[type, Callable[[Any], object]] = {
+        self._cells: dict[EntityId, tuple[str, str, str, str]] = {}
+        self._handlers: dict[type, Callable[[Any], object]] = {
             ev.ProcessAppeared: self._participants.add_process,
             ev.ThreadAppeared: self._participants.add_thread,
             ev.GroupAppeared: self._participants.add_group,
@@ -55,26 +55,26 @@ class CallTable:
             ev.CallbackStarted: self._callback_started,
             ev.CallbackEnded: self._callback_ended,
             ev.CallbackSuspended: self._callback_suspended,
-            ev.CallbackResumed: self._running.resume,
-            ev.CallbackFailed: self._running.fail,
+            ev.CallbackResumed: self._open_calls.resume,
+            ev.CallbackFailed: self._open_calls.fail,
             ev.EventsLost: self._events_lost,
         }
 
     def take(self, events: Sequence[AnyEvent]) -> None:
-        """Write the calls that end in a batch; some of them may be written later."""
-        known = self._fold
-        self._fold_all(self._order.take([event for event in events if event.__class__ in known]))
+        """Write the calls that end in a batch; the latest stay in the reorder buffer."""
+        known = self._handlers
+        self._handle_all(self._reordered.take([event for event in events if event.__class__ in known]))
 
     def finish(self) -> None:
         """Write the rest."""
-        self._fold_all(self._order.rest())
-        for stretch in sorted(self._running.left_over(), key=lambda stretch: stretch.number):
-            self._write(stretch, None)
+        self._handle_all(self._reordered.flush())
+        for segment in sorted(self._open_calls.running(), key=lambda segment: segment.number):
+            self._write(segment, None)
 
-    def _fold_all(self, events: Sequence[AnyEvent]) -> None:
-        fold = self._fold
+    def _handle_all(self, events: Sequence[AnyEvent]) -> None:
+        handlers = self._handlers
         for event in events:
-            fold[event.__class__](event)
+            handlers[event.__class__](event)
 
     def _wait_started(self, event: ev.WaitStarted) -> None:
         self._waiting[event.entity] = event.since
@@ -85,50 +85,50 @@ class CallTable:
             self._waited[event.entity] = event.t - since
 
     def _callback_started(self, event: ev.CallbackStarted) -> None:
-        for stretch in self._running.outdated(event.thread):
-            self._write(stretch, event.t)
-        self._running.start(event, self._waited.pop(event.entity, 0))
+        for segment in self._open_calls.ended_unseen(event.thread):
+            self._write(segment, event.t)
+        self._open_calls.start(event, self._waited.pop(event.entity, 0))
 
     def _callback_ended(self, event: ev.CallbackEnded) -> None:
-        left = self._running.finish(event)
-        for stretch in left:
-            self._write(stretch, event.t)
+        left = self._open_calls.finish(event)
+        for segment in left:
+            self._write(segment, event.t)
         if not left:
-            self._running.finish_suspended(event.entity)
+            self._open_calls.finish_suspended(event.entity)
 
     def _callback_suspended(self, event: ev.CallbackSuspended) -> None:
-        for stretch in self._running.suspend(event):
-            self._write(stretch, event.t)
+        for segment in self._open_calls.suspend(event):
+            self._write(segment, event.t)
 
     def _events_lost(self, _event: ev.EventsLost) -> None:
-        self._running.doubt()
+        self._open_calls.mark_uncertain()
 
-    def _write(self, stretch: Stretch, end: Nanoseconds | None) -> None:
-        callback, kind, entity, group = self._about(stretch.entity)
-        thread = self._participants.threads.get(stretch.thread)
+    def _write(self, segment: CallSegment, end: Nanoseconds | None) -> None:
+        callback, kind, entity, group = self._entity_cells(segment.entity)
+        thread = self._participants.threads.get(segment.thread)
         self._rows.writerow(
             (
-                seconds(stretch.start),
+                seconds(segment.start),
                 "" if end is None else seconds(end),
-                "" if end is None else seconds(end - stretch.start),
-                seconds(stretch.wait),
+                "" if end is None else seconds(end - segment.start),
+                seconds(segment.wait),
                 callback,
                 kind,
                 entity,
                 group,
-                f"thread {stretch.thread}" if thread is None else cell(thread.name),
-                seconds(stretch.age),
-                cell(stretch.error),
+                f"thread {segment.thread}" if thread is None else cell(thread.name),
+                seconds(segment.age),
+                cell(segment.error),
             )
         )
 
-    def _about(self, entity: EntityId) -> tuple[str, str, str, str]:
-        told = self._told.get(entity)
-        if told is None:
-            told = self._told[entity] = self._tell(entity)
-        return told
+    def _entity_cells(self, entity: EntityId) -> tuple[str, str, str, str]:
+        cells = self._cells.get(entity)
+        if cells is None:
+            cells = self._cells[entity] = self._make_cells(entity)
+        return cells
 
-    def _tell(self, entity: EntityId) -> tuple[str, str, str, str]:
+    def _make_cells(self, entity: EntityId) -> tuple[str, str, str, str]:
         known = self._participants.entities.get(entity)
         if known is None:
             return f"callback {entity}", "", "", ""

@@ -4,7 +4,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 from itertools import count
 
-from sim.export.sink import FlowId
+from sim.export.trace_sink import FlowId
 from sim.trace.events import CallId, EntityId
 
 

@@ -15,7 +15,7 @@ from sim.trace.events import (
     EntityId,
     GroupId,
     JsonForm,
-    Line,
+    JsonObject,
     NodeId,
     ProcessId,
     Shown,
@@ -75,7 +75,7 @@ class RunNames:
 
     def __init__(self) -> None:
         self._participants = Participants()
-        self._entities: dict[EntityId, Line] = {}
+        self._entities: dict[EntityId, JsonObject] = {}
         self._topics: dict[TopicId, str] = {}
         self._take: dict[type[AnyEvent], Callable[[Any], object]] = {
             ev.ProcessAppeared: self._participants.add_process,
@@ -127,11 +127,11 @@ class RunNames:
         known = self._participants.entities.get(entity)
         return None if known is None else known.spoken_name
 
-    def entity(self, entity: EntityId) -> Line:
+    def entity(self, entity: EntityId) -> JsonObject:
         """The fields of an entity."""
         return self._entities.get(entity, {})
 
-    def group(self, group: GroupId) -> Line:
+    def group(self, group: GroupId) -> JsonObject:
         """The fields of a callback group."""
         known = self._participants.groups.get(group)
         return {} if known is None else {"group": known.letter, "group_type": known.kind}
@@ -155,9 +155,9 @@ class JsonLines:
                 self._names.take(event)
                 yield self._encode(self._line(event)) + b"\n"
 
-    def _line(self, event: AnyEvent) -> Line:
+    def _line(self, event: AnyEvent) -> JsonObject:
         kind = event.__class__
-        line: Line = {"t": event.t / 1e9, "event": kind.__struct_config__.tag}
+        line: JsonObject = {"t": event.t / 1e9, "event": kind.__struct_config__.tag}
         for attribute, name, _, form, optional in json_fields(kind):
             value = getattr(event, attribute)
             if optional and not value:

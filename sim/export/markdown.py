@@ -12,7 +12,7 @@ from sim.trace.events import EntityId, EntityKind
 from sim.trace.figures.statistics import CallbackStatistics, Distribution, Statistics, ages_used, statistics
 from sim.trace.figures.summary import CallbackFigures, Summary, summarise
 from sim.trace.figures.summary_text import robot_line, service_line
-from sim.trace.model import Mark, Nanoseconds, Window
+from sim.trace.model import AxisMark, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 _MARKS = 200
@@ -216,7 +216,7 @@ def _words(timeline: Timeline) -> Iterator[str]:
         yield ""
 
 
-def _mark(mark: Mark) -> str:
+def _mark(mark: AxisMark) -> str:
     return f"- {seconds(mark.at)} s: {plain(mark.text)}"
 
 

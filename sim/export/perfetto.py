@@ -8,7 +8,7 @@ from typing import IO
 
 import perfetto.protos.perfetto.trace.perfetto_trace_pb2 as pb
 
-from sim.export.sink import NO_FACTS, NO_LINKS, Facts, Links, Track, TrackId, TrackKind
+from sim.export.trace_sink import NO_ATTRIBUTES, NO_LINKS, Attributes, Links, Track, TrackId, TrackKind
 from sim.trace.model import Nanoseconds
 
 _SEQUENCE = 1
@@ -22,7 +22,7 @@ _FIRST_THREAD_NUMBER = 1_000_000
 
 
 class PerfettoFile:
-    """A sink that writes packets to a binary file, some thousand at a time. Times are nanoseconds."""
+    """A trace sink that writes packets to a binary file, some thousand at a time. Times are nanoseconds."""
 
     def __init__(self, file: IO[bytes]) -> None:
         self._file = file
@@ -31,7 +31,7 @@ class PerfettoFile:
         self._processes: dict[TrackId, int] = {}
 
     def begin_run(self, epoch: Nanoseconds) -> None:
-        """Tell which wall time the run's own has."""
+        """Write the wall time of the run's start."""
         snapshot = self._packet(0).clock_snapshot
         snapshot.clocks.add(clock_id=pb.BUILTIN_CLOCK_BOOTTIME, timestamp=0)
         snapshot.clocks.add(clock_id=pb.BUILTIN_CLOCK_REALTIME, timestamp=max(0, epoch))
@@ -60,42 +60,53 @@ class PerfettoFile:
             about.child_ordering = pb.TrackDescriptor.EXPLICIT
 
     def begin(
-        self, track: TrackId, t: Nanoseconds, name: str, category: str, facts: Facts, links: Links = NO_LINKS
+        self,
+        track: TrackId,
+        t: Nanoseconds,
+        name: str,
+        category: str,
+        attributes: Attributes,
+        links: Links = NO_LINKS,
     ) -> None:
         """Begin a slice."""
-        event = self._event(track, t, _BEGIN)
-        event.name = name
-        event.categories.append(category)
-        _fill(event, facts, links)
+        _fill(self._event(track, t, _BEGIN, name, category), attributes, links)
 
-    def end(self, track: TrackId, t: Nanoseconds, facts: Facts = NO_FACTS) -> None:
+    def end(self, track: TrackId, t: Nanoseconds, attributes: Attributes = NO_ATTRIBUTES) -> None:
         """End the innermost slice."""
-        _fill(self._event(track, t, _END), facts, NO_LINKS)
+        _fill(self._event(track, t, _END), attributes, NO_LINKS)
 
     def instant(
-        self, track: TrackId, t: Nanoseconds, name: str, category: str, facts: Facts, links: Links = NO_LINKS
+        self,
+        track: TrackId,
+        t: Nanoseconds,
+        name: str,
+        category: str,
+        attributes: Attributes,
+        links: Links = NO_LINKS,
     ) -> None:
-        """Put down an instant."""
-        event = self._event(track, t, _INSTANT)
-        event.name = name
-        event.categories.append(category)
-        _fill(event, facts, links)
+        """Add an instant."""
+        _fill(self._event(track, t, _INSTANT, name, category), attributes, links)
 
     def count(self, track: TrackId, t: Nanoseconds, value: float) -> None:
-        """Put down a counter's value."""
+        """Add a value of a counter."""
         if math.isfinite(value):
             self._event(track, t, _COUNTER).double_counter_value = value
 
     def close(self) -> None:
-        """Write what has not been written yet."""
+        """Write the rest of the file."""
         self._file.write(self._trace.SerializeToString())
         # A cleared message keeps its memory; a new one does not.
         self._trace = pb.Trace()
 
-    def _event(self, track: TrackId, t: Nanoseconds, kind: pb.TrackEvent.Type) -> pb.TrackEvent:
+    def _event(
+        self, track: TrackId, t: Nanoseconds, kind: pb.TrackEvent.Type, name: str = "", category: str = ""
+    ) -> pb.TrackEvent:
         event = self._packet(t).track_event
         event.type = kind
         event.track_uuid = track
+        if name:
+            event.name = name
+            event.categories.append(category)
         return event
 
     def _packet(self, t: Nanoseconds) -> pb.TracePacket:
@@ -107,10 +118,10 @@ class PerfettoFile:
         return packet
 
 
-def _fill(event: pb.TrackEvent, facts: Facts, links: Links) -> None:
-    if facts:
+def _fill(event: pb.TrackEvent, attributes: Attributes, links: Links) -> None:
+    if attributes:
         add = event.debug_annotations.add
-        for name, value in facts.items():
+        for name, value in attributes.items():
             if isinstance(value, str):
                 add(name=name, string_value=value)
             elif isinstance(value, float):

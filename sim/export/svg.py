@@ -4,9 +4,9 @@ from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 from sim.durations import duration
-from sim.export import paper
-from sim.export.lanes import Piece, Scale, losses, pieces, rows, ticks
-from sim.export.paper import Box
+from sim.export import svg_elements as draw
+from sim.export.bars import Bar, TimeScale, bars, losses, rows, ticks
+from sim.export.svg_elements import Box
 from sim.export.texts import seconds, xml
 from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import GroupKind, Reason
@@ -44,7 +44,7 @@ class _Picture:
         self._window = window
         self._width = width
         self._height = float(row_height)
-        self._scale = Scale(window, LABELS + MARGIN, width - MARGIN)
+        self._scale = TimeScale(window, LABELS + MARGIN, width - MARGIN)
         self._numbers = {group: number for number, group in enumerate(timeline.groups)}
 
     def lines(self) -> Iterator[str]:
@@ -63,11 +63,11 @@ class _Picture:
         legend, y = self._legend(y + 18)
         yield (
             f'<svg xmlns="http://www.w3.org/2000/svg" width="{self._width}" height="{y:.0f}" '
-            f'viewBox="0 0 {self._width} {y:.0f}" font-family="{paper.FONT}" '
-            f'font-size="{paper.FONT_SIZE}">'
+            f'viewBox="0 0 {self._width} {y:.0f}" font-family="{draw.FONT}" '
+            f'font-size="{draw.FONT_SIZE}">'
         )
         yield f"<title>{xml(self._heading())}</title>"
-        yield paper.definitions(len(self._numbers) + 1)
+        yield draw.definitions(len(self._numbers) + 1)
         yield f'<rect width="{self._width}" height="{y:.0f}" fill="#FFFFFF"/>'
         yield from axis
         yield from body
@@ -83,16 +83,16 @@ class _Picture:
 
     def _title(self, y: float) -> Iterator[str]:
         room = self._width - 2 * MARGIN
-        yield paper.words(MARGIN, y, paper.shortened(self._heading(), room), weight="bold")
+        yield draw.words(MARGIN, y, draw.shortened(self._heading(), room), weight="bold")
 
     # rows
 
     def _row(self, row: Thread | Group | Entity, y: float) -> Iterator[str]:
-        yield paper.ground(Box(self._scale.left, y, self._scale.right - self._scale.left, self._height))
+        yield draw.ground(Box(self._scale.left, y, self._scale.right - self._scale.left, self._height))
         indent = 14.0 if isinstance(row, Entity) else 0.0
-        label = paper.shortened(self._label(row), LABELS - indent - 6)
+        label = draw.shortened(self._label(row), LABELS - indent - 6)
         weight = "" if isinstance(row, Entity) else "bold"
-        yield paper.words(MARGIN + indent, y + self._height / 2 + 4, label, weight=weight)
+        yield draw.words(MARGIN + indent, y + self._height / 2 + 4, label, weight=weight)
         if isinstance(row, Thread):
             yield from self._thread(row, y)
         elif isinstance(row, Group):
@@ -109,64 +109,64 @@ class _Picture:
 
     def _thread(self, thread: Thread, y: float) -> Iterator[str]:
         spans = self._timeline.spans_on(thread.id, self._window)
-        for piece in self._pieces(spans):
-            inset = min(piece.level, _LEVELS) * self._height / 8
-            box = Box(piece.left, y + inset, piece.right - piece.left, self._height - 2 * inset)
-            yield from self._call(piece, box, self._names(piece))
+        for bar in self._bars(spans):
+            inset = min(bar.level, _LEVELS) * self._height / 8
+            box = Box(bar.left, y + inset, bar.right - bar.left, self._height - 2 * inset)
+            yield from self._call(bar, box, self._names(bar))
 
     def _group(self, group: Group, y: float) -> Iterator[str]:
-        found = list(self._pieces(self._timeline.spans_in(group.id, self._window)))
-        levels = 1 + min(_LEVELS - 1, max((piece.level for piece in found), default=0))
+        found = list(self._bars(self._timeline.spans_in(group.id, self._window)))
+        levels = 1 + min(_LEVELS - 1, max((bar.level for bar in found), default=0))
         verb = "held by" if group.kind is GroupKind.EXCLUSIVE else "runs"
-        for piece in found:
-            level = min(piece.level, levels - 1)
+        for bar in found:
+            level = min(bar.level, levels - 1)
             part = self._height / levels
-            box = Box(piece.left, y + level * part + part / 4, piece.right - piece.left, part / 2)
-            name = name_of(piece.interval.entity, self._timeline)
-            yield from self._call(piece, box, (f"{verb} {name}", name) if levels == 1 else ())
+            box = Box(bar.left, y + level * part + part / 4, bar.right - bar.left, part / 2)
+            name = name_of(bar.interval.entity, self._timeline)
+            yield from self._call(bar, box, (f"{verb} {name}", name) if levels == 1 else ())
 
     def _entity(self, entity: Entity, y: float) -> Iterator[str]:
         height = self._height
         waits = self._timeline.waits_of(entity.id, self._window)
-        for wait in pieces(waits, self._scale, self._timeline.end):
+        for wait in bars(waits, self._scale, self._timeline.end):
             yield from self._wait(wait.interval, Box(wait.left, y + 1, wait.right - wait.left, height - 2))
-        for piece in self._pieces(self._timeline.spans_of(entity.id, self._window)):
-            box = Box(piece.left, y + height / 5, piece.right - piece.left, height * 3 / 5)
-            took = self._took(piece.interval)
-            yield from self._call(piece, box, (f"runs {took}", took))
+        for bar in self._bars(self._timeline.spans_of(entity.id, self._window)):
+            box = Box(bar.left, y + height / 5, bar.right - bar.left, height * 3 / 5)
+            took = self._took(bar.interval)
+            yield from self._call(bar, box, (f"runs {took}", took))
         for x, lost in losses(self._timeline, entity, self._scale, _LOSS_EVERY):
             yield (
-                f'<path d="M{x - 3:.2f},{y:.2f} h6 l-3,5 z" fill="{paper.WARN}">'
+                f'<path d="M{x - 3:.2f},{y:.2f} h6 l-3,5 z" fill="{draw.WARN}">'
                 f"<title>{lost} dropped</title></path>"
             )
 
-    def _pieces(self, spans: Sequence[Span]) -> Iterator[Piece[Span]]:
-        return pieces(spans, self._scale, self._timeline.end)
+    def _bars(self, spans: Sequence[Span]) -> Iterator[Bar[Span]]:
+        return bars(spans, self._scale, self._timeline.end)
 
-    def _call(self, piece: Piece[Span], box: Box, texts: tuple[str, ...]) -> Iterator[str]:
-        span = piece.interval
-        yield paper.bar(box, self._number(span), self._about(span))
-        text = paper.fitting(texts, box.width - 8)
+    def _call(self, bar: Bar[Span], box: Box, texts: tuple[str, ...]) -> Iterator[str]:
+        span = bar.interval
+        yield draw.bar(box, self._number(span), self._about(span))
+        text = draw.fitting(texts, box.width - 8)
         if text:
-            yield paper.words(box.x + 4, box.y + box.height / 2 + 4, text)
+            yield draw.words(box.x + 4, box.y + box.height / 2 + 4, text)
         if span.error:
             middle = box.y + box.height / 2 + 4
-            yield paper.words(box.x + box.width, middle, "✗", paper.WARN, anchor="middle", weight="bold")
+            yield draw.words(box.x + box.width, middle, "✗", draw.WARN, anchor="middle", weight="bold")
 
     def _wait(self, wait: Wait, box: Box) -> Iterator[str]:
         why = why_waiting(wait, self._timeline)
         took = self._took(wait)
-        yield paper.hatched(box, wait.reason, f"waits {took}: {why}")
-        text = paper.fitting((f"waits {took}: {why}", f"{took}: {why}", why, took), box.width - 8)
+        yield draw.hatched(box, wait.reason, f"waits {took}: {why}")
+        text = draw.fitting((f"waits {took}: {why}", f"{took}: {why}", why, took), box.width - 8)
         if text:
-            yield paper.words(box.x + 4, box.y + box.height / 2 + 4, text)
+            yield draw.words(box.x + 4, box.y + box.height / 2 + 4, text)
 
     def _took(self, interval: Span | Wait) -> str:
         end = self._timeline.end if interval.end is None else interval.end
         return duration(end - interval.start)
 
-    def _names(self, piece: Piece[Span]) -> tuple[str, ...]:
-        entity = self._timeline.entities.get(piece.interval.entity)
+    def _names(self, bar: Bar[Span]) -> tuple[str, ...]:
+        entity = self._timeline.entities.get(bar.interval.entity)
         if entity is None:
             return ()
         group = self._timeline.groups.get(entity.group)
@@ -191,34 +191,34 @@ class _Picture:
             x = self._scale.x(mark.at)
             if mark.kind not in ("command", "call", "reply", "notice") or x < last + 2:
                 continue
-            yield paper.line(x, top, x, bottom, paper.FAINT, 0.7)
+            yield draw.line(x, top, x, bottom, draw.FAINT, 0.7)
             if x - last > _TICK_EVERY:
                 room = min(_TICK_EVERY * 3, self._scale.right - x)
-                yield paper.words(x + 2, top + 4, paper.shortened(mark.text, room), paper.FAINT)
+                yield draw.words(x + 2, top + 4, draw.shortened(mark.text, room), draw.FAINT)
             last = x
 
     def _axis(self, top: float, bottom: float) -> tuple[list[str], float]:
-        drawn = [paper.line(self._scale.left, bottom + 5, self._scale.right, bottom + 5, paper.FAINT)]
+        drawn = [draw.line(self._scale.left, bottom + 5, self._scale.right, bottom + 5, draw.FAINT)]
         found = ticks(self._window, max(2, int((self._scale.right - self._scale.left) / _TICK_EVERY)))
         places = _places([after - before for before, after in pairwise(found)])
         for t in found:
             x = self._scale.x(t)
-            drawn.append(paper.line(x, top, x, bottom + 9))
-            drawn.append(paper.words(x, bottom + 21, f"{t / 1e9:.{places}f}", paper.FAINT, "middle"))
-        drawn.append(paper.words(LABELS, bottom + 21, "s", paper.FAINT, "end"))
+            drawn.append(draw.line(x, top, x, bottom + 9))
+            drawn.append(draw.words(x, bottom + 21, f"{t / 1e9:.{places}f}", draw.FAINT, "middle"))
+        drawn.append(draw.words(LABELS, bottom + 21, "s", draw.FAINT, "end"))
         return drawn, bottom + 24
 
     def _legend(self, y: float) -> tuple[list[str], float]:
         entries: list[tuple[str, str]] = []
         for group, number in self._numbers.items():
             known = self._timeline.groups[group]
-            entries.append((paper.bar(Box(0, 0, 18, 11), number, ""), f"{known.letter} {known.class_name}"))
+            entries.append((draw.bar(Box(0, 0, 18, 11), number, ""), f"{known.letter} {known.class_name}"))
         entries += [
-            (paper.hatched(Box(0, 0, 18, 11), reason, ""), f"waits: {reason.value}") for reason in Reason
+            (draw.hatched(Box(0, 0, 18, 11), reason, ""), f"waits: {reason.value}") for reason in Reason
         ]
-        loss = f'<path d="M6,3 h6 l-3,5 z" fill="{paper.WARN}"/>'
+        loss = f'<path d="M6,3 h6 l-3,5 z" fill="{draw.WARN}"/>'
         entries.append((loss, "message dropped"))
-        entries.append((paper.words(9, 10, "✗", paper.WARN, "middle", "bold"), "raised an exception"))
+        entries.append((draw.words(9, 10, "✗", draw.WARN, "middle", "bold"), "raised an exception"))
         return self._flowing(entries, y)
 
     def _flowing(self, entries: Sequence[tuple[str, str]], y: float) -> tuple[list[str], float]:
@@ -226,10 +226,10 @@ class _Picture:
         drawn: list[str] = []
         x = MARGIN
         for sign, text in entries:
-            room = 24 + len(text) * paper.CHARACTER + 16
+            room = 24 + len(text) * draw.CHARACTER + 16
             if x > MARGIN and x + room > self._width - MARGIN:
                 x, y = MARGIN, y + 18
-            drawn.append(f'<g transform="translate({x:.2f},{y:.2f})">{sign}{paper.words(24, 10, text)}</g>')
+            drawn.append(f'<g transform="translate({x:.2f},{y:.2f})">{sign}{draw.words(24, 10, text)}</g>')
             x += room
         return drawn, y + 18 + MARGIN
 

@@ -4,56 +4,56 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 from sim.export.flows import Flows
-from sim.export.ordering import InOrder, Parcel
-from sim.export.running import Running, Stretch
-from sim.export.sink import NO_FACTS, NO_LINKS, Facts, Links, Sink, TrackId
+from sim.export.open_calls import CallSegment, OpenCalls
+from sim.export.reorder_buffer import PayloadKind, ReorderBuffer
 from sim.export.texts import printable
+from sim.export.trace_sink import NO_ATTRIBUTES, NO_LINKS, Attributes, Links, TraceSink, TrackId
 from sim.export.track_layout import TrackLayout
 from sim.trace import events as ev
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import AnyEvent, EntityId, EntityKind, ThreadId
 from sim.trace.model import Nanoseconds, Wait
 
-_UNFINISHED: Facts = {"unfinished": "yes"}
+_UNFINISHED: Attributes = {"unfinished": "yes"}
 
 
-class Narrator:
-    """Feeds a sink from events; memory does not grow with the length of the run.
+class TraceExporter:
+    """Writes events to a trace sink; memory does not grow with the length of the run.
 
-    A thread's track holds its calls, nested where they are, and within them where a thread stands still in
-    ``Client.call``. A group's tracks hold its calls from beginning to end, suspensions included. An entity's
-    track, below its group, holds its waits with reason and culprit, and its losses. Not thread-safe.
+    A thread's track has its calls, and within them the intervals in which ``Client.call`` blocks it. A
+    group's tracks have its calls from start to end, suspensions included. An entity's track, below its group,
+    has its waits with reason and culprit, and its lost messages. Not thread-safe.
     """
 
-    def __init__(self, sink: Sink) -> None:
+    def __init__(self, sink: TraceSink) -> None:
         self._sink = sink
-        self._order = InOrder()
+        self._reordered = ReorderBuffer()
         self._layout = TrackLayout(sink)
         self._flows = Flows()
-        self._running = Running()
+        self._open_calls = OpenCalls()
         self._waiting: dict[EntityId, Nanoseconds] = {}
         self._waited: dict[EntityId, Nanoseconds] = {}
         self._blocked: dict[ThreadId, ev.CallId] = {}
-        self._tell: dict[type, Callable[[Any], object]] = self._telling()
+        self._handlers: dict[type, Callable[[Any], object]] = self._make_handlers()
 
     def take(self, events: Sequence[AnyEvent]) -> None:
-        """Write a batch in order of time; some of it may be held back."""
-        self._tell_all(self._order.take(events))
+        """Write a batch in order of time; the latest events stay in the reorder buffer."""
+        self._handle_all(self._reordered.take(events))
 
     def finish(self) -> None:
-        """Write the rest, and end slices that are still open."""
-        self._tell_all(self._order.rest())
-        self._end_all(self._order.latest)
+        """Write the rest, and end the open slices."""
+        self._handle_all(self._reordered.flush())
+        self._end_open_slices(self._reordered.latest)
         self._sink.close()
 
-    def _tell_all(self, events: Sequence[AnyEvent]) -> None:
-        tell = self._tell
+    def _handle_all(self, events: Sequence[AnyEvent]) -> None:
+        handlers = self._handlers
         for event in events:
-            known = tell.get(event.__class__)
-            if known is not None:
-                known(event)
+            handle = handlers.get(event.__class__)
+            if handle is not None:
+                handle(event)
 
-    def _telling(self) -> dict[type, Callable[[Any], object]]:
+    def _make_handlers(self) -> dict[type, Callable[[Any], object]]:
         participants = self._layout.participants
         return {
             ev.RunStarted: self._run_started,
@@ -75,7 +75,7 @@ class Narrator:
             ev.CallbackSuspended: self._callback_suspended,
             ev.CallbackResumed: self._callback_resumed,
             ev.SpinClashed: self._spin_clashed,
-            ev.CallbackFailed: self._running.fail,
+            ev.CallbackFailed: self._open_calls.fail,
             ev.Published: self._published,
             ev.QosMismatched: self._qos_mismatched,
             ev.ServiceCalled: self._service_called,
@@ -104,30 +104,30 @@ class Narrator:
         self._sink.begin_run(event.epoch)
 
     def _run_ended(self, event: ev.RunEnded) -> None:
-        self._say("notices", event.t, f"the run ended: {event.reason}", {"failed": str(event.failed)})
+        self._add_text("notices", event.t, f"the run ended: {event.reason}", {"failed": str(event.failed)})
 
     def _process_ended(self, event: ev.ProcessEnded) -> None:
         label = self._layout.participants.processes.get(event.process, "a program")
-        self._say("notices", event.t, f"{label} ended: {event.reason}", {"status": event.status})
+        self._add_text("notices", event.t, f"{label} ended: {event.reason}", {"status": event.status})
 
     def _executor_appeared(self, event: ev.ExecutorAppeared) -> None:
-        self._say("notices", event.t, event.kind, {"threads": event.threads})
+        self._add_text("notices", event.t, event.kind, {"threads": event.threads})
 
     def _group_appeared(self, event: ev.GroupAppeared) -> None:
         self._layout.participants.add_group(event)
         self._layout.add_group(event.group)
 
     def _events_lost(self, event: ev.EventsLost) -> None:
-        self._running.doubt()
-        self._say("notices", event.t, f"{event.count} events lost so far", NO_FACTS)
+        self._open_calls.mark_uncertain()
+        self._add_text("notices", event.t, f"{event.count} events lost so far", NO_ATTRIBUTES)
 
     def _contents_lost(self, event: ev.ContentsLost) -> None:
-        self._say("notices", event.t, f"contents of {event.count} messages lost so far", NO_FACTS)
+        self._add_text("notices", event.t, f"contents of {event.count} messages lost so far", NO_ATTRIBUTES)
 
     # queues and waits
 
     def _entity_ready(self, event: ev.EntityReady) -> None:
-        self._order.forget(event)
+        self._reordered.forget(event)
         left = tuple(self._flows.arrive(event.message, event.entity, event.depth))
         if left:
             self._lose(event.entity, event.t, "left the queue", left)
@@ -138,15 +138,15 @@ class Narrator:
         self._show_depth(event.entity, event.t, event.depth)
 
     def _lose(self, entity: EntityId, t: Nanoseconds, what: str, flows: tuple[int, ...]) -> None:
-        track = self._layout.waits(self._layout.actor(entity))
-        self._sink.instant(track, t, what, "queue", NO_FACTS, Links(end=flows))
+        track = self._layout.waits(self._layout.entity(entity))
+        self._sink.instant(track, t, what, "queue", NO_ATTRIBUTES, Links(end=flows))
 
     def _show_depth(self, entity: EntityId, t: Nanoseconds, depth: int) -> None:
-        actor = self._layout.actor(entity)
-        if actor.shown_depth == depth or not actor.depth:
+        shown = self._layout.entity(entity)
+        if shown.shown_depth == depth or not shown.depth:
             return
-        actor.shown_depth = depth
-        self._sink.count(self._layout.queue(actor), t, depth)
+        shown.shown_depth = depth
+        self._sink.count(self._layout.queue(shown), t, depth)
 
     def _entity_gone(self, event: ev.EntityGone) -> None:
         self._stop_waiting(event.entity, event.t)
@@ -157,17 +157,17 @@ class Narrator:
     def _wait_started(self, event: ev.WaitStarted) -> None:
         self._stop_waiting(event.entity, event.t)
         self._waiting[event.entity] = event.since
-        actor = self._layout.actor(event.entity)
+        entity = self._layout.entity(event.entity)
         wait = Wait(event.t, None, event.since, event.entity, event.reason, event.holder, event.workers_busy)
-        facts: dict[str, str | int | float] = {
+        attributes: dict[str, str | int | float] = {
             "reason": event.reason.value,
             "ready_since_s": event.since / 1e9,
             "workers_busy": "yes" if event.workers_busy else "no",
         }
         if event.holder:
-            facts["culprit"] = self._layout.actor(event.holder).name
+            attributes["culprit"] = self._layout.entity(event.holder).name
         name = printable(why_waiting(wait, self._layout.participants))
-        self._sink.begin(self._layout.waits(actor), event.t, name, "wait", facts)
+        self._sink.begin(self._layout.waits(entity), event.t, name, "wait", attributes)
 
     def _wait_ended(self, event: ev.WaitEnded) -> None:
         since = self._waiting.get(event.entity)
@@ -177,95 +177,99 @@ class Narrator:
 
     def _stop_waiting(self, entity: EntityId, t: Nanoseconds) -> None:
         if self._waiting.pop(entity, None) is not None:
-            self._sink.end(self._layout.waits(self._layout.actor(entity)), t)
+            self._sink.end(self._layout.waits(self._layout.entity(entity)), t)
 
     # calls
 
     def _callback_started(self, event: ev.CallbackStarted) -> None:
-        for stretch in self._running.outdated(event.thread):
-            self._leave(stretch, event.t)
-            self._end_call(stretch, event.t)
+        for segment in self._open_calls.ended_unseen(event.thread):
+            self._end_span(segment, event.t)
+            self._end_call(segment, event.t)
         self._unblock(event.thread, event.t)
-        stretch = self._running.start(event, self._waited.pop(event.entity, 0))
-        actor = self._layout.actor(event.entity)
-        facts = {
-            **actor.facts,
-            "late_ms" if actor.kind is EntityKind.TIMER else "message_age_ms": event.age / 1e6,
-            "waited_ms": stretch.wait / 1e6,
+        segment = self._open_calls.start(event, self._waited.pop(event.entity, 0))
+        entity = self._layout.entity(event.entity)
+        attributes = {
+            **entity.attributes,
+            "late_ms" if entity.kind is EntityKind.TIMER else "message_age_ms": event.age / 1e6,
+            "waited_ms": segment.wait / 1e6,
             "queue_depth": event.depth,
         }
-        through = self._flows.served(event.message) if actor.kind is EntityKind.SERVICE else ()
+        through = self._flows.served(event.message) if entity.kind is EntityKind.SERVICE else ()
         taken = self._flows.take(event.message, event.entity)
         links = Links((), through, taken) if through or taken else NO_LINKS
-        self._sink.begin(self._layout.thread(event.thread), event.t, actor.name, "callback", facts, links)
-        stretch.lane = self._layout.enter(actor.group)
+        self._sink.begin(
+            self._layout.thread(event.thread), event.t, entity.name, "callback", attributes, links
+        )
+        segment.lane = self._layout.enter(entity.group)
         on = {"thread": self._layout.thread_name(event.thread)}
-        self._sink.begin(self._layout.lane(actor.group, stretch.lane), event.t, actor.name, "group", on)
+        self._sink.begin(self._layout.lane(entity.group, segment.lane), event.t, entity.name, "group", on)
         self._show_depth(event.entity, event.t, event.depth)
 
     def _callback_ended(self, event: ev.CallbackEnded) -> None:
-        left = self._running.finish(event)
-        for stretch in left:
-            self._leave(stretch, event.t)
-            self._end_call(stretch, event.t)
-        suspended = None if left else self._running.finish_suspended(event.entity)
+        left = self._open_calls.finish(event)
+        for segment in left:
+            self._end_span(segment, event.t)
+            self._end_call(segment, event.t)
+        suspended = None if left else self._open_calls.finish_suspended(event.entity)
         if suspended is not None:
             self._sink.end(self._lane_of(suspended), event.t)
             self._end_call(suspended, event.t)
 
     def _callback_suspended(self, event: ev.CallbackSuspended) -> None:
-        left = self._running.suspend(event)
-        for stretch in left:
-            self._leave(stretch, event.t)
+        left = self._open_calls.suspend(event)
+        for segment in left:
+            self._end_span(segment, event.t)
         for lost in left[:-1]:
             self._end_call(lost, event.t)
         if left:
-            self._sink.begin(self._lane_of(left[-1]), event.t, "suspended", "group", NO_FACTS)
+            self._sink.begin(self._lane_of(left[-1]), event.t, "suspended", "group", NO_ATTRIBUTES)
 
     def _callback_resumed(self, event: ev.CallbackResumed) -> None:
         self._unblock(event.thread, event.t)
-        stretch, before = self._running.resume(event)
-        actor = self._layout.actor(event.entity)
+        segment, before = self._open_calls.resume(event)
+        entity = self._layout.entity(event.entity)
         if before is None:
-            stretch.lane = self._layout.enter(actor.group)
-            self._sink.begin(self._lane_of(stretch), event.t, actor.name, "group", NO_FACTS)
+            segment.lane = self._layout.enter(entity.group)
+            self._sink.begin(self._lane_of(segment), event.t, entity.name, "group", NO_ATTRIBUTES)
         else:
-            self._sink.end(self._lane_of(stretch), event.t)
-        facts = {**actor.facts, "resumed": "yes"}
-        self._sink.begin(self._layout.thread(event.thread), event.t, actor.name, "callback", facts)
+            self._sink.end(self._lane_of(segment), event.t)
+        attributes = {**entity.attributes, "resumed": "yes"}
+        self._sink.begin(self._layout.thread(event.thread), event.t, entity.name, "callback", attributes)
 
-    def _leave(self, stretch: Stretch, t: Nanoseconds, facts: Facts = NO_FACTS) -> None:
-        """A call leaves its thread."""
-        self._unblock(stretch.thread, t)
-        if stretch.error:
-            facts = {**facts, "error": printable(stretch.error)}
-        self._sink.end(self._layout.thread(stretch.thread), t, facts)
+    def _end_span(self, segment: CallSegment, t: Nanoseconds, attributes: Attributes = NO_ATTRIBUTES) -> None:
+        """End the slice of a segment on its thread."""
+        self._unblock(segment.thread, t)
+        if segment.error:
+            attributes = {**attributes, "error": printable(segment.error)}
+        self._sink.end(self._layout.thread(segment.thread), t, attributes)
 
-    def _end_call(self, stretch: Stretch, t: Nanoseconds, facts: Facts = NO_FACTS) -> None:
-        """A call lets its group go."""
-        self._sink.end(self._lane_of(stretch), t, facts)
-        self._layout.leave(self._layout.actor(stretch.entity).group, stretch.lane)
+    def _end_call(self, segment: CallSegment, t: Nanoseconds, attributes: Attributes = NO_ATTRIBUTES) -> None:
+        """End the slice of a call in its group."""
+        self._sink.end(self._lane_of(segment), t, attributes)
+        self._layout.leave(self._layout.entity(segment.entity).group, segment.lane)
 
-    def _lane_of(self, stretch: Stretch) -> TrackId:
-        return self._layout.lane(self._layout.actor(stretch.entity).group, stretch.lane)
+    def _lane_of(self, segment: CallSegment) -> TrackId:
+        return self._layout.lane(self._layout.entity(segment.entity).group, segment.lane)
 
     def _spin_clashed(self, event: ev.SpinClashed) -> None:
         text = f"{event.function}() asks to spin what is being spun"
-        self._say("notices", event.t, text, {"line": event.line})
+        self._add_text("notices", event.t, text, {"line": event.line})
 
     # messages and services
 
     def _published(self, event: ev.Published) -> None:
-        flows = self._flows.send(event.message, self._order.receivers(Parcel.MESSAGE, event.message))
-        track = self._where(event.entity)
+        flows = self._flows.send(event.message, self._reordered.receivers(PayloadKind.MESSAGE, event.message))
+        track = self._thread_track(event.entity)
         if track is None:
             track = self._layout.node(event.node)
         name = f"publish {printable(event.topic)}"
         self._sink.instant(track, event.t, name, "publish", {"message": event.message}, Links(begin=flows))
 
     def _qos_mismatched(self, event: ev.QosMismatched) -> None:
-        facts: Facts = {"topic": printable(event.topic), "policy": event.policy}
-        self._say("notices", event.t, f"{printable(event.topic)}: quality of service does not match", facts)
+        attributes: Attributes = {"topic": printable(event.topic), "policy": event.policy}
+        self._add_text(
+            "notices", event.t, f"{printable(event.topic)}: quality of service does not match", attributes
+        )
 
     def _request_lost(self, event: ev.RequestLost) -> None:
         track = self._layout.service(event.service)
@@ -273,34 +277,34 @@ class Narrator:
         self._sink.instant(track, event.t, name, "call", {"call": event.call})
 
     def _service_called(self, event: ev.ServiceCalled) -> None:
-        to_service = self._flows.send(event.call, self._order.receivers(Parcel.REQUEST, event.call))
+        to_service = self._flows.send(event.call, self._reordered.receivers(PayloadKind.REQUEST, event.call))
         flows = self._flows.call(event.call) + to_service
-        track = self._where(event.entity)
+        track = self._thread_track(event.entity)
         if track is None:
             track = self._layout.service(event.service)
-        facts: Facts = {"call": event.call, "request": printable(event.request)}
+        attributes: Attributes = {"call": event.call, "request": printable(event.request)}
         self._sink.instant(
-            track, event.t, f"call {printable(event.service)}", "call", facts, Links(begin=flows)
+            track, event.t, f"call {printable(event.service)}", "call", attributes, Links(begin=flows)
         )
 
     def _service_replied(self, event: ev.ServiceReplied) -> None:
-        to_client = self._flows.send(event.call, self._order.receivers(Parcel.REPLY, event.call))
+        to_client = self._flows.send(event.call, self._reordered.receivers(PayloadKind.REPLY, event.call))
         track = self._serving(event.service)
-        facts: Facts = {"call": event.call, "response": printable(event.response)}
+        attributes: Attributes = {"call": event.call, "response": printable(event.response)}
         links = Links(begin=to_client, end=self._flows.reply(event.call))
-        self._sink.instant(track, event.t, f"reply {printable(event.service)}", "call", facts, links)
+        self._sink.instant(track, event.t, f"reply {printable(event.service)}", "call", attributes, links)
 
     def _serving(self, service: str) -> TrackId:
-        """Where a service answers: on the thread that runs its callback, if one does."""
+        """The track of a reply: the thread that runs the service's callback, if one does."""
         for entity in self._layout.participants.entities.values():
             if entity.kind is EntityKind.SERVICE and entity.name == service:
-                track = self._where(entity.id)
+                track = self._thread_track(entity.id)
                 if track is not None:
                     return track
         return self._layout.service(service)
 
-    def _where(self, entity: EntityId) -> TrackId | None:
-        thread = self._running.thread_of(entity) if entity else None
+    def _thread_track(self, entity: EntityId) -> TrackId | None:
+        thread = self._open_calls.thread_of(entity) if entity else None
         return None if thread is None else self._layout.thread(thread)
 
     def _call_blocked(self, event: ev.CallBlocked) -> None:
@@ -317,39 +321,41 @@ class Narrator:
         if self._blocked.pop(thread, None) is not None:
             self._sink.end(self._layout.thread(thread), t)
 
-    # words and the robot
+    # texts and the robot
 
     def _logged(self, event: ev.Logged) -> None:
-        facts: dict[str, str | int | float] = {
+        attributes: dict[str, str | int | float] = {
             "severity": event.severity.value,
             "logger": printable(event.logger),
         }
         if event.thread:
-            facts["thread"] = self._layout.thread_name(event.thread)
+            attributes["thread"] = self._layout.thread_name(event.thread)
         if event.entity:
-            facts["callback"] = self._layout.actor(event.entity).name
-        self._say("log", event.t, event.text, facts)
+            attributes["callback"] = self._layout.entity(event.entity).name
+        self._add_text("log", event.t, event.text, attributes)
 
     def _printed(self, event: ev.Printed) -> None:
-        self._say("log", event.t, event.text, {"severity": "stderr" if event.error else "stdout"})
+        self._add_text("log", event.t, event.text, {"severity": "stderr" if event.error else "stdout"})
 
     def _command_given(self, event: ev.CommandGiven | ev.LineGiven | ev.TimeHalted) -> None:
-        self._say("commands", event.t, event.text, NO_FACTS)
+        self._add_text("commands", event.t, event.text, NO_ATTRIBUTES)
 
     def _typed(self, event: ev.Typed) -> None:
-        self._say("commands", event.t, f"typed {event.text!r}", NO_FACTS)
+        self._add_text("commands", event.t, f"typed {event.text!r}", NO_ATTRIBUTES)
 
     def _line_said(self, event: ev.LineSaid) -> None:
-        self._say("commands", event.t, event.text, {"line": event.line})
+        self._add_text("commands", event.t, event.text, {"line": event.line})
 
     def _noticed(self, event: ev.Notice) -> None:
-        self._say("notices", event.t, event.text, {"severity": event.severity.value})
+        self._add_text("notices", event.t, event.text, {"severity": event.severity.value})
 
-    def _say(self, track: str, t: Nanoseconds, text: str, facts: Facts) -> None:
-        self._sink.instant(self._layout.words(track), t, printable(text) or "(empty line)", track, facts)
+    def _add_text(self, track: str, t: Nanoseconds, text: str, attributes: Attributes) -> None:
+        self._sink.instant(
+            self._layout.text_lane(track), t, printable(text) or "(empty line)", track, attributes
+        )
 
     def _robot_moved(self, event: ev.RobotMoved) -> None:
-        measure = self._layout.measure
+        measure = self._layout.set_robot_counter
         measure("x", "m", event.t, event.x)
         measure("y", "m", event.t, event.y)
         measure("yaw", "rad", event.t, event.yaw)
@@ -357,20 +363,20 @@ class Narrator:
         measure("angular velocity", "rad/s", event.t, event.angular)
 
     def _velocity_commanded(self, event: ev.VelocityCommanded) -> None:
-        self._layout.measure("commanded linear velocity", "m/s", event.t, event.linear)
-        self._layout.measure("commanded angular velocity", "rad/s", event.t, event.angular)
+        self._layout.set_robot_counter("commanded linear velocity", "m/s", event.t, event.linear)
+        self._layout.set_robot_counter("commanded angular velocity", "rad/s", event.t, event.angular)
 
     # the end
 
-    def _end_all(self, t: Nanoseconds) -> None:
+    def _end_open_slices(self, t: Nanoseconds) -> None:
         for entity in list(self._waiting):
             self._stop_waiting(entity, t)
-        for stretch in self._running.left_over():
-            self._leave(stretch, t, _UNFINISHED)
-            self._end_call(stretch, t, _UNFINISHED)
-        for stretch in self._running.left_suspended():
-            self._sink.end(self._lane_of(stretch), t)
-            self._end_call(stretch, t, _UNFINISHED)
+        for segment in self._open_calls.running():
+            self._end_span(segment, t, _UNFINISHED)
+            self._end_call(segment, t, _UNFINISHED)
+        for segment in self._open_calls.suspended():
+            self._sink.end(self._lane_of(segment), t)
+            self._end_call(segment, t, _UNFINISHED)
         for thread in list(self._blocked):
             self._unblock(thread, t)
         for entity in self._flows.receivers():
@@ -379,5 +385,7 @@ class Narrator:
                 self._lose(entity, t, "still in the queue", flows)
         unanswered = self._flows.unanswered()
         if unanswered:
-            track = self._layout.words("notices")
-            self._sink.instant(track, t, "calls without a reply", "call", NO_FACTS, Links(end=unanswered))
+            track = self._layout.text_lane("notices")
+            self._sink.instant(
+                track, t, "calls without a reply", "call", NO_ATTRIBUTES, Links(end=unanswered)
+            )

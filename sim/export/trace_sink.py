@@ -1,4 +1,4 @@
-"""The interface of trace files: tracks, slices, instants, counters and arrows."""
+"""The interface of trace files: tracks, slices, instants, counters and flows."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -9,14 +9,14 @@ from sim.trace.model import Nanoseconds
 
 TrackId: TypeAlias = int
 FlowId: TypeAlias = int
-Facts: TypeAlias = Mapping[str, str | int | float]
+Attributes: TypeAlias = Mapping[str, str | int | float]
 """Named values of a slice or instant; times carry their unit in the name (``age_ms``)."""
 
-NO_FACTS: Facts = {}
+NO_ATTRIBUTES: Attributes = {}
 
 
 class TrackKind(Enum):
-    """What a track is."""
+    """The kind of a track."""
 
     PROCESS = auto()
     THREAD = auto()
@@ -28,7 +28,7 @@ class TrackKind(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Track:
-    """A row of the picture; ``parent`` is 0 at the top. ``unit`` is a counter's."""
+    """A row of the trace viewer; ``parent`` is 0 at the top level, ``unit`` a counter's."""
 
     id: TrackId
     kind: TrackKind
@@ -48,33 +48,45 @@ class Links(NamedTuple):
 NO_LINKS = Links()
 
 
-class Sink(Protocol):
-    """Takes a picture piece by piece: tracks before what lies on them, and all else in order of time.
+class TraceSink(Protocol):
+    """Writes a trace file: a track before its contents, all else in order of time.
 
     Slices of a track are nested: ``end`` ends the innermost one.
     """
 
     def begin_run(self, epoch: Nanoseconds) -> None:
-        """Time 0 of the picture is ``epoch`` nanoseconds after 1970."""
+        """Set the time of the run's start: ``epoch`` nanoseconds after 1970."""
 
     def add(self, track: Track) -> None:
-        """A track appears."""
+        """Add a track."""
 
     def begin(
-        self, track: TrackId, t: Nanoseconds, name: str, category: str, facts: Facts, links: Links = NO_LINKS
+        self,
+        track: TrackId,
+        t: Nanoseconds,
+        name: str,
+        category: str,
+        attributes: Attributes,
+        links: Links = NO_LINKS,
     ) -> None:
-        """A slice begins."""
+        """Begin a slice."""
 
-    def end(self, track: TrackId, t: Nanoseconds, facts: Facts = NO_FACTS) -> None:
-        """The innermost slice ends; ``facts`` are what was learnt since its beginning."""
+    def end(self, track: TrackId, t: Nanoseconds, attributes: Attributes = NO_ATTRIBUTES) -> None:
+        """End the innermost slice; ``attributes`` are those that became known since its start."""
 
     def instant(
-        self, track: TrackId, t: Nanoseconds, name: str, category: str, facts: Facts, links: Links = NO_LINKS
+        self,
+        track: TrackId,
+        t: Nanoseconds,
+        name: str,
+        category: str,
+        attributes: Attributes,
+        links: Links = NO_LINKS,
     ) -> None:
-        """Something happens that takes no time."""
+        """Add an event without a duration."""
 
     def count(self, track: TrackId, t: Nanoseconds, value: float) -> None:
-        """A counter has a new value."""
+        """Add a value of a counter."""
 
     def close(self) -> None:
-        """The picture is complete."""
+        """Write the rest of the file."""

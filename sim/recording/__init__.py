@@ -1,13 +1,13 @@
 """Recordings: a run's events and messages in one ``.mcap`` file, written while it goes on and read later."""
 
-from sim.recording.about import About
 from sim.recording.background import BackgroundRecorder
+from sim.recording.metadata import RecordingMetadata
 from sim.recording.recorder import Recorder
 from sim.recording.recording import RecordedMessage, Recording, RecordingError, Topic, read
 from sim.recording.snapshot import RunSnapshot
 
 __all__ = [
-    "About",
+    "RecordingMetadata",
     "BackgroundRecorder",
     "RunSnapshot",
     "RecordedMessage",

@@ -8,7 +8,7 @@ NAME = "cbtui"
 """Name of the metadata record."""
 
 
-class About(msgspec.Struct, frozen=True, kw_only=True):
+class RecordingMetadata(msgspec.Struct, frozen=True, kw_only=True):
     """The run that a recording is of. Fields that could not be read are empty.
 
     ``recorded`` is nanoseconds since 1970, ``threads`` what replaced the executors' own number (None:
@@ -25,7 +25,7 @@ class About(msgspec.Struct, frozen=True, kw_only=True):
     recorded: int = 0
 
 
-def to_metadata(about: About) -> dict[str, str]:
+def to_metadata(about: RecordingMetadata) -> dict[str, str]:
     """Encode as the texts of a metadata record."""
     fields = msgspec.structs.asdict(about)
     return {
@@ -34,14 +34,14 @@ def to_metadata(about: About) -> dict[str, str]:
     }
 
 
-def from_metadata(texts: Mapping[str, str]) -> About | None:
+def from_metadata(texts: Mapping[str, str]) -> RecordingMetadata | None:
     """Decode the texts of ``to_metadata``; None for other texts."""
     try:
         fields = {
             field.name: text if field.type is str else msgspec.json.decode(text.encode())
-            for field in msgspec.structs.fields(About)
+            for field in msgspec.structs.fields(RecordingMetadata)
             if (text := texts.get(field.name)) is not None
         }
-        return msgspec.convert(fields, About)
+        return msgspec.convert(fields, RecordingMetadata)
     except (msgspec.DecodeError, RecursionError, UnicodeEncodeError):
         return None

@@ -11,9 +11,9 @@ from typing import Any
 from mcap.writer import CompressionType, Writer
 
 from sim.recording import batch
-from sim.recording.about import NAME, About, to_metadata
 from sim.recording.growing_file import GrowingFile
-from sim.recording.sources import Sources
+from sim.recording.metadata import NAME, RecordingMetadata, to_metadata
+from sim.recording.source_files import SourceFiles
 from sim.trace.events import (
     AnyEvent,
     ArenaShown,
@@ -72,7 +72,7 @@ class Recorder:
         OSError: the file cannot be made.
     """
 
-    def __init__(self, path: Path, about: About, *, replace: bool = False) -> None:
+    def __init__(self, path: Path, about: RecordingMetadata, *, replace: bool = False) -> None:
         self.path = path
         self.failure: str | None = None
         self._epoch = 0
@@ -92,7 +92,7 @@ class Recorder:
         # Of a stream, the library wants these few methods only.
         stream: Any = self._file
         self._writer: Any = Writer(stream, chunk_size=sys.maxsize, compression=CompressionType.LZ4)
-        self._sources = Sources()
+        self._sources = SourceFiles()
         self._flusher = threading.Thread(target=self._flush_for_ever, name="recorder", daemon=True)
         self._guarded(lambda: self._begin(about))
         self._flusher.start()
@@ -136,7 +136,7 @@ class Recorder:
                 except OSError as error:
                     self.failure = error.strerror or str(error)
 
-    def _begin(self, about: About) -> None:
+    def _begin(self, about: RecordingMetadata) -> None:
         self._writer.start(profile="ros2", library=f"{LIBRARY} {_version()}")
         self._writer.add_metadata(NAME, to_metadata(about))
         self._writer.add_metadata(*_ROSBAG)

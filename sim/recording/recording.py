@@ -16,9 +16,9 @@ from mcap.opcode import Opcode
 from mcap.records import Attachment, Channel, Header, Metadata, Schema
 
 from sim.recording import batch
-from sim.recording.about import NAME, About, from_metadata
 from sim.recording.chunk import ChunkError, records_in, unpack_chunk, unpacked_most
 from sim.recording.container import Container, Record
+from sim.recording.metadata import NAME, RecordingMetadata, from_metadata
 from sim.recording.recorder import EVENTS_CHANNEL, LIBRARY
 from sim.trace.events import AnyEvent, RunStarted
 
@@ -81,7 +81,7 @@ class Recording:
 
     def __init__(self, path: Path) -> None:
         self.path = path
-        self.about = About()
+        self.about = RecordingMetadata()
         self.sources: dict[str, str] = {}
         """The text of the programs' files, by their paths."""
         self._library = ""

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 
 from sim.trace.events import CallBlocked, CallUnblocked, EntityId, ThreadId
 from sim.trace.model import Blocked, Nanoseconds, Window
-from sim.trace.storage.intervals import Answer, Intervals, Lane, Row, end_or_none
+from sim.trace.storage.intervals import Intervals, Lane, LazySequence, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
 
 
@@ -19,7 +19,7 @@ class Blocking(Intervals):
         self._services: dict[str, int] = {}
         self._by_thread: defaultdict[ThreadId, Lane] = defaultdict(lambda: Lane(self))
         self._by_entity: defaultdict[EntityId, Lane] = defaultdict(lambda: Lane(self))
-        self._standing: dict[ThreadId, Row] = {}
+        self._standing: dict[ThreadId, RowId] = {}
 
     def start(self, event: CallBlocked) -> None:
         """A thread blocks."""
@@ -44,7 +44,7 @@ class Blocking(Intervals):
 
     def on(self, thread: ThreadId, window: Window) -> Sequence[Blocked]:
         """The intervals in which a thread was blocked."""
-        return Answer(self._by_thread[thread].overlapping(window), self._blocked)
+        return LazySequence(self._by_thread[thread].overlapping(window), self._blocked)
 
     def at(self, at: Nanoseconds) -> Iterator[Blocked]:
         """The threads that are blocked at ``at``."""
@@ -56,6 +56,6 @@ class Blocking(Intervals):
         yield from self._by_entity[entity].starts_beside(at, step)
         yield from self._by_entity[entity].ends_beside(at, step)
 
-    def _blocked(self, row: Row) -> Blocked:
+    def _blocked(self, row: RowId) -> Blocked:
         start, end, thread, entity, call, service = self.table.row(row)
         return Blocked(start, end_or_none(end), thread, entity, call, list(self._services)[service])

@@ -15,7 +15,7 @@ from sim.trace.events import (
     ThreadId,
 )
 from sim.trace.model import Nanoseconds, Span, Window
-from sim.trace.storage.intervals import OPEN, Answer, Intervals, Lane, Layer, Row, end_or_none
+from sim.trace.storage.intervals import OPEN, Intervals, Lane, Layer, LazySequence, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import Table
 
@@ -43,48 +43,48 @@ class Spans(Intervals):
         message: MessageId,
         age: Nanoseconds,
         resumed: int,
-    ) -> Row:
+    ) -> RowId:
         """Begin a span."""
         return self.table.append([at, OPEN, entity, thread, message, age, 0, resumed])
 
-    def entity(self, row: Row) -> EntityId:
+    def entity(self, row: RowId) -> EntityId:
         """Whose call it is."""
         return self.table.cell(row, self.ENTITY)
 
-    def taken(self, row: Row) -> tuple[MessageId, Nanoseconds]:
+    def taken(self, row: RowId) -> tuple[MessageId, Nanoseconds]:
         """The message that was taken, and its age then."""
         return self.table.cell(row, self.MESSAGE), self.table.cell(row, self.AGE)
 
-    def was_resumed(self, row: Row) -> bool:
+    def was_resumed(self, row: RowId) -> bool:
         """Whether the span is that of a call that went on, and not of one that began."""
         return bool(self.table.cell(row, self.RESUMED))
 
-    def fail(self, row: Row, error: str) -> None:
+    def fail(self, row: RowId, error: str) -> None:
         """The call of a span raised."""
         if error not in self._error_of:
             self._error_of[error] = len(self._errors)
             self._errors.append(error)
         self.table.change(row, self.ERROR, self._error_of[error])
 
-    def span(self, row: Row) -> Span:
+    def span(self, row: RowId) -> Span:
         """One span, as a value."""
         start, end, entity, thread, message, age, error, _ = self.table.row(row)
         return Span(start, end_or_none(end), entity, thread, message, age, self._errors[error])
 
 
-class ThreadLane(Lane):
+class ThreadSpans(Lane):
     """The spans of a thread. As they only overlap by nesting, the first layer is all the time it ran any."""
 
     __slots__ = ("_busy", "_busy_before", "_latest", "stack")
 
     def __init__(self, intervals: Intervals) -> None:
         super().__init__(intervals)
-        self.stack: list[Row] = []
-        self._latest: Row | None = None
+        self.stack: list[RowId] = []
+        self._latest: RowId | None = None
         self._busy: Nanoseconds = 0
         self._busy_before = Table(intervals.spill, 1)
 
-    def add(self, row: Row) -> Layer:
+    def add(self, row: RowId) -> Layer:
         """Take in a span that begins inside those of the stack, or after all; tells where."""
         layer = super().add(row)
         self.stack.append(row)
@@ -119,12 +119,12 @@ class Execution:
     def __init__(self, spill: SpillFile) -> None:
         self._spans = Spans(spill)
         self._gaps = Intervals(spill)
-        self._threads: defaultdict[ThreadId, ThreadLane] = defaultdict(lambda: ThreadLane(self._spans))
+        self._threads: defaultdict[ThreadId, ThreadSpans] = defaultdict(lambda: ThreadSpans(self._spans))
         self._entities: defaultdict[EntityId, Lane] = defaultdict(lambda: Lane(self._spans))
         self._groups: defaultdict[GroupId, Lane] = defaultdict(lambda: Lane(self._spans))
         self._group_of: dict[EntityId, Lane] = {}
         self._suspended: defaultdict[EntityId, Lane] = defaultdict(lambda: Lane(self._gaps))
-        self._awaiting: defaultdict[EntityId, deque[tuple[Row, Row]]] = defaultdict(deque)
+        self._awaiting: defaultdict[EntityId, deque[tuple[RowId, RowId]]] = defaultdict(deque)
         self._resumed_at: defaultdict[EntityId, Table] = defaultdict(lambda: Table(spill, 1))
         self._doubtful = 0
         self._newest_taken: MessageId = -1
@@ -196,7 +196,7 @@ class Execution:
         rows = self._entities[entity].starting(window)
         if self._resumed_at[entity]:
             rows = [row for row in rows if not self._spans.was_resumed(row)]
-        return Answer(rows, self._spans.span)
+        return LazySequence(rows, self._spans.span)
 
     def inside(self, group: GroupId, window: Window) -> Sequence[Span]:
         """Spans of a group."""
@@ -257,7 +257,7 @@ class Execution:
         if entity in self._group_of:
             self._group_of[entity].add(row)
 
-    def _leave(self, entity: EntityId, thread: ThreadId) -> Row | None:
+    def _leave(self, entity: EntityId, thread: ThreadId) -> RowId | None:
         """Take the innermost call of the entity off the thread."""
         stack = self._threads[thread].stack
         for place in range(len(stack) - 1, -1, -1):
@@ -266,4 +266,4 @@ class Execution:
         return None
 
     def _made(self, lane: Lane, window: Window) -> Sequence[Span]:
-        return Answer(lane.overlapping(window), self._spans.span)
+        return LazySequence(lane.overlapping(window), self._spans.span)

@@ -202,7 +202,7 @@ class Call:
 
 
 @dataclass(frozen=True, slots=True)
-class Mark:
+class AxisMark:
     """A point in time worth a sign on the axis: a command given, a call, a reply, a notice."""
 
     at: Nanoseconds

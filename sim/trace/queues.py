@@ -6,11 +6,11 @@ from typing import TypeAlias
 
 from sim.trace.events import MessageId
 from sim.trace.model import Nanoseconds, Queue, QueuedMessage, Window
-from sim.trace.storage.intervals import Answer
+from sim.trace.storage.intervals import LazySequence
 from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import Table
 
-Born: TypeAlias = Callable[[MessageId], Nanoseconds | None]
+OriginTime: TypeAlias = Callable[[MessageId], Nanoseconds | None]
 """When a message was published or a request sent; None if that is not known."""
 
 
@@ -54,7 +54,7 @@ class QueueHistory:
         """The queue is gone with all that it held."""
         self._become(at, 0)
 
-    def queue(self, at: Nanoseconds, born: Born) -> Queue:
+    def queue(self, at: Nanoseconds, born: OriginTime) -> Queue:
         """The queue after all that happens at ``at``; what arrived without being born counts from then."""
         place = self._steps.until(at)
         depth = self._steps.cell(place - 1, 1) if place else 0
@@ -87,7 +87,7 @@ class QueueHistory:
             self._now.remove(message)
         self._left_early.add([message, at])
 
-    def _messages(self, at: Nanoseconds, depth: int, born: Born) -> Sequence[QueuedMessage]:
+    def _messages(self, at: Nanoseconds, depth: int, born: OriginTime) -> Sequence[QueuedMessage]:
         after = self._arrived.until(at)
         there = range(self._oldest(depth, after, at), after)
         arrivals, messages = (list(self._arrived.column(column, there)) for column in (0, 1))
@@ -99,7 +99,7 @@ class QueueHistory:
         places: Sequence[int] = range(len(messages))
         if len(self._left_early):
             places = [place for place in places if not self._has_left(messages[place], arrivals[place], at)]
-        return Answer(places, queued)
+        return LazySequence(places, queued)
 
     def _oldest(self, depth: int, after: int, at: Nanoseconds) -> int:
         """The place from which on ``depth`` of the arrivals before ``after`` are still there at ``at``."""

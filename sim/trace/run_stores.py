@@ -8,14 +8,14 @@ from typing import Any, TypeAlias
 from sim.trace import events as ev
 from sim.trace.activity import Activity
 from sim.trace.blocking import Blocking
-from sim.trace.calls import Calls
 from sim.trace.events import AnyEvent, EntityId, EntityKind
 from sim.trace.execution import Execution
-from sim.trace.model import Mark, Nanoseconds, Queue
+from sim.trace.model import AxisMark, Nanoseconds, Queue
 from sim.trace.participants import Participants
 from sim.trace.publications import Publications
-from sim.trace.queues import Born, QueueHistory
+from sim.trace.queues import OriginTime, QueueHistory
 from sim.trace.scans import Scans
+from sim.trace.service_calls import ServiceCalls
 from sim.trace.storage.history import History
 from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import Table
@@ -27,7 +27,7 @@ _BEFORE_ASKED = 60
 ShellEvent: TypeAlias = ev.LineGiven | ev.LineSaid | ev.LineEnded | ev.KeyboardAsked | ev.Typed | ev.Printed
 
 
-class Folded:
+class RunStores:
     """The stores of a run, one for each kind of data; ``end`` is the time of the latest event.
 
     Events may come a little late: the stores stay in order of time. They keep older data in one temporary
@@ -51,8 +51,8 @@ class Folded:
         self.queues: defaultdict[EntityId, QueueHistory] = defaultdict(lambda: QueueHistory(spill))
         self.dropped_at = Table(spill, 1)
         self.publications = Publications(spill)
-        self.calls = Calls(spill)
-        self.marks: History[Mark] = History(attrgetter("at"), Mark, spill)
+        self.calls = ServiceCalls(spill)
+        self.marks: History[AxisMark] = History(attrgetter("at"), AxisMark, spill)
         self.logs: History[ev.Logged | ev.Printed] = History(attrgetter("t"), ev.Logged | ev.Printed, spill)
         self.asked: History[ev.KeyboardAsked] = History(attrgetter("t"), ev.KeyboardAsked, spill)
         self.shell: History[ShellEvent] = History(attrgetter("t"), ShellEvent, spill)
@@ -79,7 +79,7 @@ class Folded:
         """The queue of an entity."""
         return self.queues[entity].queue(at, self._born(entity))
 
-    def _born(self, entity: EntityId) -> Born:
+    def _born(self, entity: EntityId) -> OriginTime:
         """When came to be what an entity's queue holds; messages and calls are numbered apart."""
         if self._takes_messages(entity):
             return self.publications.time_of
@@ -192,15 +192,15 @@ class Folded:
         self.execution.fail(event)
         entity = self.participants.entities.get(event.entity)
         who = entity.spoken_name if entity else "a callback"
-        self.marks.add(Mark(event.t, "error", f"{who} raised {event.error}"))
+        self.marks.add(AxisMark(event.t, "error", f"{who} raised {event.error}"))
 
     def _service_called(self, event: ev.ServiceCalled) -> None:
         self.calls.send(event)
-        self.marks.add(Mark(event.t, "call", f"{event.service} {event.request}"))
+        self.marks.add(AxisMark(event.t, "call", f"{event.service} {event.request}"))
 
     def _service_replied(self, event: ev.ServiceReplied) -> None:
         self.calls.reply(event)
-        self.marks.add(Mark(event.t, "reply", f"{event.service} {event.response}"))
+        self.marks.add(AxisMark(event.t, "reply", f"{event.service} {event.response}"))
 
     def _scanned(self, event: ev.Scanned) -> None:
         self.scans.add(event)
@@ -209,7 +209,7 @@ class Folded:
             self.scans.take(taken.start, event.message)
 
     def _command_given(self, event: ev.CommandGiven) -> None:
-        self.marks.add(Mark(event.t, "command", event.text))
+        self.marks.add(AxisMark(event.t, "command", event.text))
 
     def _printed(self, event: ev.Printed) -> None:
         self.logs.add(event)
@@ -228,14 +228,14 @@ class Folded:
 
     def _line_given(self, event: ev.LineGiven) -> None:
         self.shell.add(event)
-        self.marks.add(Mark(event.t, "command", event.text))
+        self.marks.add(AxisMark(event.t, "command", event.text))
 
     def _line_completed(self, event: ev.LineCompleted) -> None:
         self.completed = event
 
     def _noticed(self, event: ev.Notice) -> None:
         self.notices.add(event)
-        self.marks.add(Mark(event.t, "notice", event.text))
+        self.marks.add(AxisMark(event.t, "notice", event.text))
 
     def _events_lost(self, event: ev.EventsLost) -> None:
         self.lost = max(self.lost, event.count)

@@ -5,14 +5,14 @@ from collections.abc import Collection, Sequence
 from sim.trace.events import CallId, RequestLost, ServiceCalled, ServiceReplied
 from sim.trace.model import Call, Nanoseconds, Window
 from sim.trace.storage.history import History
-from sim.trace.storage.intervals import Answer, Intervals, Lane, Row, end_or_none
+from sim.trace.storage.intervals import Intervals, Lane, LazySequence, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import Table
 
 NEWEST_KEPT = 1024
 
 
-class Calls(Intervals):
+class ServiceCalls(Intervals):
     """The table of all calls; ``Call`` objects of the newest are kept, the others made for answers."""
 
     CALL, CALLER, SERVICE, LOST, RESPONSE = range(2, 7)
@@ -26,8 +26,8 @@ class Calls(Intervals):
         self._lane = Lane(self)
         self._in_order = Table(spill, 2)
         self._numbered = Table(spill, 2)
-        self._pending: dict[CallId, Row] = {}
-        self._newest: dict[Row, Call] = {}
+        self._pending: dict[CallId, RowId] = {}
+        self._newest: dict[RowId, Call] = {}
 
     def send(self, event: ServiceCalled) -> None:
         """A request leaves."""
@@ -68,7 +68,7 @@ class Calls(Intervals):
 
     def sent(self) -> Sequence[Call]:
         """All calls, in order of sending."""
-        return Answer(self._in_order.column(1, range(len(self._in_order))), self._call)
+        return LazySequence(self._in_order.column(1, range(len(self._in_order))), self._call)
 
     def sent_at(self, call: CallId) -> Nanoseconds | None:
         """When a request was sent; None for one that is not known to have been."""
@@ -79,16 +79,16 @@ class Calls(Intervals):
 
     def within(self, window: Window) -> Sequence[Call]:
         """The calls that were out at some time in the window, in order of sending."""
-        return Answer(self._lane.overlapping(window), self._call)
+        return LazySequence(self._lane.overlapping(window), self._call)
 
     def pending(self, at: Nanoseconds) -> tuple[Call, ...]:
         """The calls that had been sent and not answered at ``at``."""
         return tuple(map(self._call, self._lane.covering(at)))
 
-    def _call(self, row: Row) -> Call:
+    def _call(self, row: RowId) -> Call:
         return self._newest[row] if row in self._newest else self._made(row)
 
-    def _made(self, row: Row) -> Call:
+    def _made(self, row: RowId) -> Call:
         sent, end, call, caller, service, lost, response = self.table.row(row)
         return Call(
             call,

@@ -14,15 +14,14 @@ from sim.trace.events import (
     ProcessId,
     ThreadId,
 )
-from sim.trace.folding import Folded, ShellEvent
 from sim.trace.lazy_mapping import LazyMapping
 from sim.trace.model import (
+    AxisMark,
     Blocked,
     Call,
     Entity,
     Executor,
     Group,
-    Mark,
     Moment,
     Nanoseconds,
     Publication,
@@ -32,6 +31,7 @@ from sim.trace.model import (
     Wait,
     Window,
 )
+from sim.trace.run_stores import RunStores, ShellEvent
 
 __all__ = ["ShellEvent", "Timeline"]
 
@@ -52,7 +52,7 @@ class Timeline:
 
     def __init__(self, *, until_ending: bool = False) -> None:
         """``until_ending`` leaves out what a program does after it was told to end."""
-        self._run = Folded()
+        self._run = RunStores()
         self._counted: Callable[[Iterable[AnyEvent]], Iterable[AnyEvent]] = (
             UntilEnding().cut if until_ending else iter
         )
@@ -282,7 +282,7 @@ class Timeline:
         """What asked to spin what was being spun, in order."""
         return self._run.spin_clashes
 
-    def marks(self, window: Window) -> Sequence[Mark]:
+    def marks(self, window: Window) -> Sequence[AxisMark]:
         """Commands, calls, replies, notices and errors in the window."""
         return self._run.marks.within(window)
 

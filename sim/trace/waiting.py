@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 
 from sim.trace.events import EntityId, Reason, WaitStarted
 from sim.trace.model import Nanoseconds, Wait, Window
-from sim.trace.storage.intervals import OPEN, Answer, Intervals, Lane, Row, end_or_none
+from sim.trace.storage.intervals import OPEN, Intervals, Lane, LazySequence, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
 
 _REASONS = tuple(Reason)
@@ -19,7 +19,7 @@ class Waiting(Intervals):
     def __init__(self, spill: SpillFile) -> None:
         super().__init__(spill, more=5)
         self._lanes: defaultdict[EntityId, Lane] = defaultdict(lambda: Lane(self))
-        self._latest: dict[EntityId, Row] = {}
+        self._latest: dict[EntityId, RowId] = {}
         self._none = Lane(self)
         self._open: set[EntityId] = set()
         self._changed: Nanoseconds = 0
@@ -49,7 +49,7 @@ class Waiting(Intervals):
 
     def of(self, entity: EntityId, window: Window) -> Sequence[Wait]:
         """Waits of an entity."""
-        return Answer(self._of(entity).overlapping(window), self._wait)
+        return LazySequence(self._of(entity).overlapping(window), self._wait)
 
     def at(self, entity: EntityId, at: Nanoseconds) -> Wait | None:
         """The wait of an entity that is in progress at ``at``."""
@@ -67,9 +67,9 @@ class Waiting(Intervals):
     def _of(self, entity: EntityId) -> Lane:
         return self._lanes.get(entity, self._none)
 
-    def _goes_on(self, latest: Row, since: Nanoseconds) -> bool:
+    def _goes_on(self, latest: RowId, since: Nanoseconds) -> bool:
         return self.ended_at(latest) == OPEN or self.table.cell(latest, self.SINCE) == since
 
-    def _wait(self, row: Row) -> Wait:
+    def _wait(self, row: RowId) -> Wait:
         start, end, since, entity, holder, reason, workers_busy = self.table.row(row)
         return Wait(start, end_or_none(end), since, entity, _REASONS[reason], holder, bool(workers_busy))

@@ -7,7 +7,7 @@ from io import TextIOWrapper
 from tempfile import TemporaryFile
 from typing import IO, Protocol
 
-from sim.export import CallTable, ChromeFile, Narrator, PerfettoFile, report, svg
+from sim.export import CallTable, ChromeFile, PerfettoFile, TraceExporter, report, svg
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,
@@ -47,12 +47,12 @@ class _Export(Protocol):
 
 def perfetto(events: int) -> float:
     """The seconds of processor that a million events take into a Perfetto trace."""
-    return _through(lambda file: Narrator(PerfettoFile(file)), events)
+    return _through(lambda file: TraceExporter(PerfettoFile(file)), events)
 
 
 def chrome(events: int) -> float:
     """The seconds of processor that a million events take into Chrome's format."""
-    return _through(lambda file: Narrator(ChromeFile(file)), events)
+    return _through(lambda file: TraceExporter(ChromeFile(file)), events)
 
 
 def csv(events: int) -> float:

@@ -10,7 +10,7 @@ from rosbags.highlevel import AnyReader
 from cbtui import cli
 from cbtui.runs.recorded.recording_file import CannotRecordError, setup_of, start_recording
 from sim.engine.setup import RunSetup, TimedCall
-from sim.recording import About, read
+from sim.recording import RecordingMetadata, read
 from tests.recording.files import write
 from tests.trace.samples import FULL
 
@@ -76,7 +76,7 @@ def test_info_tells_of_losses_and_prints_no_control_characters(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "run.mcap"
-    write(path, FULL, About(title="shared\x1bgroup"))
+    write(path, FULL, RecordingMetadata(title="shared\x1bgroup"))
     assert cli.main(["info", str(path)]) == 0
     out = capsys.readouterr().out
     assert "12 events came too fast to be kept" in out

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from msgspec.structs import replace
 
-from sim.diagnosis import RULES, Diagnoses, Finding, Look, Rule, Weight, diagnose, findings_text
+from sim.diagnosis import RULES, Diagnoses, Finding, Rule, TimelineView, Weight, diagnose, findings_text
 from sim.trace.events import (
     AnyEvent,
     CallbackStarted,
@@ -98,7 +98,7 @@ def test_an_update_asks_for_no_more_than_the_last_seconds() -> None:
         def __init__(self) -> None:
             self.starts: list[int] = []
 
-        def check(self, look: Look) -> Iterator[Finding]:
+        def check(self, look: TimelineView) -> Iterator[Finding]:
             self.starts.append(look.window.start)
             return iter(())
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import perfetto.protos.perfetto.trace.perfetto_trace_pb2 as pb
 
-from sim.export import ChromeFile, Narrator, PerfettoFile
+from sim.export import ChromeFile, PerfettoFile, TraceExporter
 from sim.trace.events import AnyEvent
 
 
@@ -52,7 +52,7 @@ class Trace:
 
 def written(events: Sequence[AnyEvent], sink: type[PerfettoFile] | type[ChromeFile]) -> bytes:
     file = BytesIO()
-    narrator = Narrator(sink(file))
+    narrator = TraceExporter(sink(file))
     for start in range(0, len(events), 7):
         narrator.take(events[start : start + 7])
     narrator.finish()

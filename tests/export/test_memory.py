@@ -8,7 +8,7 @@ from typing import IO, Any, cast
 
 import pytest
 
-from sim.export import CallTable, ChromeFile, Narrator, PerfettoFile
+from sim.export import CallTable, ChromeFile, PerfettoFile, TraceExporter
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,
@@ -47,7 +47,7 @@ def second(first: int) -> list[AnyEvent]:
     return events
 
 
-def peak(make: Callable[[IO[bytes]], Narrator | CallTable], seconds: int) -> int:
+def peak(make: Callable[[IO[bytes]], TraceExporter | CallTable], seconds: int) -> int:
     tracemalloc.start()
     export = make(cast("IO[bytes]", Nowhere()))
     export.take(System().events)
@@ -62,13 +62,13 @@ def peak(make: Callable[[IO[bytes]], Narrator | CallTable], seconds: int) -> int
 @pytest.mark.parametrize(
     "make",
     [
-        lambda file: Narrator(PerfettoFile(file)),
-        lambda file: Narrator(ChromeFile(file)),
+        lambda file: TraceExporter(PerfettoFile(file)),
+        lambda file: TraceExporter(ChromeFile(file)),
         lambda file: CallTable(TextIOWrapper(file, "utf-8", newline="")),
     ],
     ids=["perfetto", "chrome", "csv"],
 )
-def test_memory_does_not_grow_with_the_run(make: Callable[[IO[bytes]], Narrator | CallTable]) -> None:
+def test_memory_does_not_grow_with_the_run(make: Callable[[IO[bytes]], TraceExporter | CallTable]) -> None:
     gc.collect()  # what others left is not to be cleared away in the midst of measuring
     peak(make, 40)  # fills what is kept once and for all
     assert peak(make, 40) < 1.2 * peak(make, 20)

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sim.export import svg
-from sim.export.lanes import ticks
+from sim.export.bars import ticks
 from sim.trace.events import AnyEvent, Reason
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline

@@ -12,7 +12,7 @@ import pytest
 from cbtui.runs.live.disk_space import DiskSpaceWatch
 from cbtui.runs.live.live_run import LiveRun
 from sim.engine.setup import RunSetup
-from sim.trace import folding
+from sim.trace import run_stores
 from sim.trace.storage import spill_file
 from sim.trace.timeline import Timeline
 from tests.support.runs import shared_group_run
@@ -34,7 +34,7 @@ def full_temporary_folder(monkeypatch: pytest.MonkeyPatch) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
     monkeypatch.setattr(spill_file, "TemporaryFile", refuse)
-    monkeypatch.setattr(folding, "SpillFile", lambda: spill_file.SpillFile(entries=2))
+    monkeypatch.setattr(run_stores, "SpillFile", lambda: spill_file.SpillFile(entries=2))
 
 
 @pytest.mark.usefixtures("full_temporary_folder")

@@ -3,12 +3,14 @@
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from sim.recording import About, Recorder
+from sim.recording import Recorder, RecordingMetadata
 from sim.trace.events import AnyEvent, MessageSent, TimePassed, TopicAppeared
 from sim.trace.timeline import Timeline
 from tests.support.runs import shared_group_run
 
-ABOUT = About(title="shared-group", clock="virtual", threads=2, programs=(__file__,), recorded=1_700_000_000)
+ABOUT = RecordingMetadata(
+    title="shared-group", clock="virtual", threads=2, programs=(__file__,), recorded=1_700_000_000
+)
 TOPICS: list[AnyEvent] = [
     TopicAppeared(0, 1, "/flag", "std_msgs/msg/Bool", "bool data\n"),
     TopicAppeared(0, 2, "/number", "std_msgs/msg/Int32", "int32 data\n"),
@@ -22,7 +24,7 @@ def message(t: int, number: int) -> MessageSent:
     return MessageSent(t, number, 2, b"\x00\x01\x00\x00" + number.to_bytes(4, "little"))
 
 
-def write(path: Path, events: Iterable[AnyEvent], about: About = ABOUT) -> None:
+def write(path: Path, events: Iterable[AnyEvent], about: RecordingMetadata = ABOUT) -> None:
     """Record a batch of events to a new file."""
     recorder = Recorder(path, about)
     recorder.take(events)

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from sim.recording import About, BackgroundRecorder, Recorder, read
+from sim.recording import BackgroundRecorder, Recorder, RecordingMetadata, read
 from sim.trace.events import AnyEvent, Notice, RunStarted, Severity, ThreadAppeared
 from tests.recording.files import ABOUT, run_in_batches, without_contents
 
@@ -35,7 +35,7 @@ class Slow(Recorder):
     """A recorder on a disk that stands until it is told to go on."""
 
     def __init__(self, path: Path) -> None:
-        super().__init__(path, About(title="slow"))
+        super().__init__(path, RecordingMetadata(title="slow"))
         self.reached = threading.Event()
         self.disk_goes_on = threading.Event()
 
@@ -79,8 +79,8 @@ FORGETFUL = """
 import sys
 from pathlib import Path
 from sim.trace.events import RunStarted
-from sim.recording import About, BackgroundRecorder, Recorder
-recorder = BackgroundRecorder(Recorder(Path(sys.argv[1]), About(title="forgotten")))
+from sim.recording import RecordingMetadata, BackgroundRecorder, Recorder
+recorder = BackgroundRecorder(Recorder(Path(sys.argv[1]), RecordingMetadata(title="forgotten")))
 recorder.take([RunStarted(0, "forgotten", "real", 0)])
 {ending}
 """

@@ -12,7 +12,7 @@ from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
 from rosbags.interfaces import ConnectionExtRosbag2
 
-from sim.recording import About, Recorder, read
+from sim.recording import Recorder, RecordingMetadata, read
 from sim.trace.events import AnyEvent, MessageSent, Printed, TimePassed, TopicAppeared
 from sim.trace.model import Window
 from tests.recording.files import (
@@ -192,5 +192,5 @@ def test_sources_that_are_no_short_text_files_stay_behind(tmp_path: Path) -> Non
         (tmp_path / name).write_bytes(content)
     names = ("long.py", "binary.py", "good.py", "none.py", ".")
     path = tmp_path / "run.mcap"
-    Recorder(path, About(programs=tuple(str(tmp_path / name) for name in names))).close()
+    Recorder(path, RecordingMetadata(programs=tuple(str(tmp_path / name) for name in names))).close()
     assert read(path).sources == {str(tmp_path / "good.py"): "x = 1\n"}

@@ -9,7 +9,7 @@ from mcap.writer import CompressionType, Writer
 
 from cbtui.runs.recorded.reading_progress import ReadingProgress
 from sim.recording import batch, chunk, read
-from sim.recording.about import NAME, About, to_metadata
+from sim.recording.metadata import NAME, RecordingMetadata, to_metadata
 from sim.trace.events import AnyEvent, Notice, RunStarted, Severity
 
 START: list[AnyEvent] = [RunStarted(0, "x", "virtual", 0)]
@@ -23,7 +23,7 @@ def write(path: Path, chunks: list[list[bytes]], compression: CompressionType = 
     with path.open("wb") as file:
         writer: Any = Writer(file, chunk_size=10**12, compression=compression)
         writer.start(profile="ros2", library="cbtui 1")
-        writer.add_metadata(NAME, to_metadata(About(title="swollen", clock="virtual")))
+        writer.add_metadata(NAME, to_metadata(RecordingMetadata(title="swollen", clock="virtual")))
         schema = writer.register_schema(batch.TYPE, "ros2msg", batch.DEFINITION.encode())
         writer.register_channel(batch.TOPIC, "cdr", schema)
         for packed in chunks:

@@ -3,7 +3,8 @@
 from collections.abc import Iterator, Sequence
 
 from cbtui.runs.live.findings import FindingsMonitor, problem_count_text
-from sim.diagnosis import Diagnoses, Explanation, Finding, Look, Rule, Weight
+from sim.diagnosis import Diagnoses, Explanation, Finding, Rule, Weight
+from sim.diagnosis.timeline_view import TimelineView
 from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
 from tests.support.runs import shared_group_run, split_groups_run
@@ -20,7 +21,7 @@ class Counting(Rule):
         self._clock = clock
         self._takes = takes
 
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         self.asked += 1
         self._clock.now += self._takes
         yield Finding(self, 1, look.end + 2, size=self.asked)
@@ -76,7 +77,7 @@ def test_what_is_read_of_a_recording_between_two_frames_is_looked_at_before_it_i
     clock, starts = Clock(), []
 
     class Noting(Counting):
-        def check(self, look: Look) -> Iterator[Finding]:
+        def check(self, look: TimelineView) -> Iterator[Finding]:
             starts.append(look.window.length)
             return iter(())
 

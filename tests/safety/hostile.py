@@ -7,7 +7,7 @@ from pathlib import Path
 
 import msgspec
 
-from sim.recording import About, Recorder
+from sim.recording import Recorder, RecordingMetadata
 from sim.trace.events import AnyEvent
 from tests.export.examples import small_run
 from tests.trace.samples import FULL
@@ -51,7 +51,7 @@ def _hostile(event: AnyEvent) -> AnyEvent:
 
 def recording(path: Path, told: Iterable[AnyEvent] | None = None) -> Path:
     """A recording with something hostile wherever it has text, paths out of its folder among it."""
-    about = About(
+    about = RecordingMetadata(
         title=f"../../title{HOSTILE}",
         clock=f"virtual{HOSTILE}",
         programs=(f"../../../x{HOSTILE}.py",),

@@ -20,7 +20,7 @@ from cbtui.widgets.diagnosis_line import DiagnosisLine
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.rows import MemberLane
 from sim.diagnosis import Diagnoses, Finding
-from sim.recording import About, read
+from sim.recording import RecordingMetadata, read
 from sim.trace.events import AnyEvent
 from sim.trace.timeline import Timeline
 from tests.recording.files import write
@@ -175,7 +175,11 @@ async def test_the_rules_look_at_most_once_a_second_whatever_is_drawn(
 @pytest.mark.slow
 async def test_a_recording_has_its_diagnoses_too(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
-    write(path, run_lesson("shared-group", TURNED).events, About(title="shared-group", clock="virtual"))
+    write(
+        path,
+        run_lesson("shared-group", TURNED).events,
+        RecordingMetadata(title="shared-group", clock="virtual"),
+    )
     app = CbtuiApp(start_recording=read(path))
     app.animation_level = "none"
     async with app.run_test(size=WIDE) as pilot:

@@ -14,7 +14,7 @@ from cbtui.runs.recorded.recording_file import about
 from cbtui.screens.replay import ReplayScreen
 from cbtui.widgets.shell import Prompt
 from sim.engine.setup import ProgramSetup, RunSetup
-from sim.recording import About, Recording, read
+from sim.recording import Recording, RecordingMetadata, read
 from sim.trace.events import AnyEvent, RunEnded
 from tests.recording.files import timeline_of, write, write_in_chunks
 from tests.support.builder import ns
@@ -26,10 +26,10 @@ from tests.support.runs import shared_group_run
 PROGRAM = "/no/such/place/shared.py"
 
 
-def recording(folder: Path, told: About | None = None) -> Recording:
+def recording(folder: Path, told: RecordingMetadata | None = None) -> Recording:
     """A recording of a lesson's run that lasts about 20 s."""
     path = folder / "run.mcap"
-    write(path, shared_group_run().events, told or About(title="shared-group", clock="virtual"))
+    write(path, shared_group_run().events, told or RecordingMetadata(title="shared-group", clock="virtual"))
     return read(path)
 
 
@@ -169,14 +169,14 @@ def test_the_code_is_that_which_was_recorded_although_the_file_has_changed(tmp_p
 
 
 def test_a_program_that_neither_was_recorded_nor_is_here_is_said_to_be_missing(tmp_path: Path) -> None:
-    subject = of_recording(recording(tmp_path, About(title="away", programs=(PROGRAM,))))
+    subject = of_recording(recording(tmp_path, RecordingMetadata(title="away", programs=(PROGRAM,))))
     assert subject.node_path == Path(PROGRAM)
     assert subject.source is not None
     assert "holds no source" in subject.source
 
 
 def test_recorded_texts_are_shown_as_texts(tmp_path: Path) -> None:
-    told = About(title="[x](y)\x1b[31m", programs=("/a\0b",), recorded=10**30 % 2**63)
+    told = RecordingMetadata(title="[x](y)\x1b[31m", programs=("/a\0b",), recorded=10**30 % 2**63)
     subject = of_recording(recording(tmp_path, told))
     assert "\x1b" not in subject.heading + subject.guide
     assert r"\[x\]\(y\)" in subject.guide

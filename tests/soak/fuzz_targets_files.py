@@ -19,7 +19,7 @@ from sim.interfaces.folder import DefinitionFolder
 from sim.interfaces.jazzy import JazzyMessages
 from sim.interfaces.registry import Registry
 from sim.packages import PackageError, find_packages
-from sim.recording.about import About, from_metadata, to_metadata
+from sim.recording.metadata import RecordingMetadata, from_metadata, to_metadata
 from sim.ros.parameters.yaml_files import ParameterYamlError, read_nodes, read_value
 from sim.shell.messages import Outgoing, given_values
 from sim.shell.session import Failed
@@ -97,7 +97,9 @@ def setup() -> Target:
         lines=(TimedLine(6, "ros2 node list"),),
         inputs=(TimedInput(7, '{"type":"stop"}'),),
     )
-    about = About(title="run", threads=2, programs=("../../x",), setup=msgspec.json.encode(whole).decode())
+    about = RecordingMetadata(
+        title="run", threads=2, programs=("../../x",), setup=msgspec.json.encode(whole).decode()
+    )
     samples = (msgspec.json.encode(to_metadata(about)), msgspec.json.encode(whole))
     words = (
         b'"setup"',
@@ -113,7 +115,7 @@ def setup() -> Target:
 
 
 def _read_setup(data: bytes, _: Path) -> None:
-    setup_of(About(setup=text_of(data)))
+    setup_of(RecordingMetadata(setup=text_of(data)))
     try:
         texts = msgspec.json.decode(data, type=dict[str, str])
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):

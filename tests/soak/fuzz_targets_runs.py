@@ -21,7 +21,7 @@ from sim.engine.commands import (
 )
 from sim.engine.commands import decode as decode_command
 from sim.engine.commands import encode as encode_command
-from sim.export import CallTable, ChromeFile, Narrator, PerfettoFile, report, svg
+from sim.export import CallTable, ChromeFile, PerfettoFile, TraceExporter, report, svg
 from sim.export.jsonl import JsonLines
 from sim.recording import RecordingError, batch, read
 from sim.trace import events as ev
@@ -105,8 +105,8 @@ def _look_at_run(data: bytes, _: Path) -> None:
     timeline.moment(timeline.end // 2)
     table, chrome, perfetto = (
         CallTable(StringIO()),
-        Narrator(ChromeFile(BytesIO())),
-        Narrator(PerfettoFile(BytesIO())),
+        TraceExporter(ChromeFile(BytesIO())),
+        TraceExporter(PerfettoFile(BytesIO())),
     )
     for writer in (table, chrome, perfetto):
         writer.take(told)

@@ -7,8 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim.trace import folding
-from sim.trace.calls import NEWEST_KEPT
+from sim.trace import run_stores
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,
@@ -30,6 +29,7 @@ from sim.trace.events import (
     WaitStarted,
 )
 from sim.trace.model import Window
+from sim.trace.service_calls import NEWEST_KEPT
 from sim.trace.storage.spill_file import SpillFile
 from sim.trace.timeline import Timeline
 from tests.support.daily import first_daily
@@ -51,7 +51,7 @@ ALWAYS = Window(0, 10**15)
 def spilling(entries: int) -> Timeline:
     """A timeline of blocks of so many entries, of which a few are at hand."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(folding, "SpillFile", partial(SpillFile, cache_size=300, entries=entries))
+        patch.setattr(run_stores, "SpillFile", partial(SpillFile, cache_size=300, entries=entries))
         return Timeline()
 
 

@@ -16,7 +16,7 @@ from cbtui.runs.setup.own_files import PROGRAMS
 from cbtui.runs.setup.shown_program import ShownProgram
 from sim.engine.setup import RunSetup
 from sim.foreign_file import read_text
-from sim.recording import About, Recording, RecordingError, read
+from sim.recording import Recording, RecordingError, RecordingMetadata, read
 from sim.trace.events import AnyEvent
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
@@ -235,7 +235,7 @@ def _facts(recording: Recording) -> list[str]:
     return facts
 
 
-def _threads(about: About) -> str:
+def _threads(about: RecordingMetadata) -> str:
     return "the program's own number" if about.threads is None else str(about.threads)
 
 

@@ -14,7 +14,7 @@ from sim.units import SECOND, nearest_ns
 from sim.whole_file import whole_file
 
 if TYPE_CHECKING:
-    from sim.export import CallTable, Narrator
+    from sim.export import CallTable, TraceExporter
     from sim.trace.events import AnyEvent
     from sim.trace.model import Nanoseconds, Window
     from sim.trace.timeline import Timeline
@@ -99,7 +99,7 @@ class _ExportFile:
     def __init__(self, name: str, path: Path, replace: bool) -> None:
         self._name = name
         self._path = path
-        self._writer: Narrator | CallTable | None = None
+        self._writer: TraceExporter | CallTable | None = None
         self._whole = whole_file(path, replace=replace)
         with self._trouble():
             self._file = self._whole.__enter__()
@@ -116,13 +116,13 @@ class _ExportFile:
 
     def begin(self) -> None:
         """Write what comes before any event, if the format is written as events go by."""
-        from sim.export import CallTable, ChromeFile, Narrator, PerfettoFile
+        from sim.export import CallTable, ChromeFile, PerfettoFile, TraceExporter
 
         with self._trouble():
             if self._name == "perfetto":
-                self._writer = Narrator(PerfettoFile(self._file))
+                self._writer = TraceExporter(PerfettoFile(self._file))
             elif self._name == "chrome":
-                self._writer = Narrator(ChromeFile(self._file))
+                self._writer = TraceExporter(ChromeFile(self._file))
             elif self._name == "csv":
                 self._writer = CallTable(self._text)
 

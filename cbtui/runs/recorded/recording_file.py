@@ -7,7 +7,7 @@ from pathlib import Path
 import msgspec
 
 from sim.engine.setup import RunSetup
-from sim.recording import About, Recorder
+from sim.recording import Recorder, RecordingMetadata
 
 
 class CannotRecordError(Exception):
@@ -43,9 +43,9 @@ def start_recording(path: Path, setup: RunSetup, *, replace: bool = False) -> Re
     return recorder
 
 
-def about(setup: RunSetup) -> About:
+def about(setup: RunSetup) -> RecordingMetadata:
     """What a recording tells of the run."""
-    return About(
+    return RecordingMetadata(
         title=setup.title,
         clock=setup.clock,
         threads=setup.threads,
@@ -57,7 +57,7 @@ def about(setup: RunSetup) -> About:
     )
 
 
-def setup_of(recorded: About) -> RunSetup | None:
+def setup_of(recorded: RecordingMetadata) -> RunSetup | None:
     """The set-up that a recording was made with; None if it holds none that this version knows."""
     try:
         return msgspec.json.decode(recorded.setup.encode(), type=RunSetup)

@@ -5,14 +5,14 @@ from collections.abc import Iterable
 from cbtui.looks.theme import GLYPHS, Ink, Role
 from cbtui.text.cells import CellRow
 from cbtui.widgets.lanes.scale import TimeScale, labels
-from sim.trace.model import Mark
+from sim.trace.model import AxisMark
 
 _FAINT = Ink(Role.FAINT)
 _NOW = Ink(Role.NOW)
 _MARK = Ink(Role.MARK)
 
 
-def draw_axis(row: CellRow, scale: TimeScale, cursor: int, commands: Iterable[Mark]) -> None:
+def draw_axis(row: CellRow, scale: TimeScale, cursor: int, commands: Iterable[AxisMark]) -> None:
     """Draw an axis; ``cursor`` is the cursor's column, in the picture or beside it."""
     _draw_cursor(row, cursor)
     _draw_commands(row, scale, commands)
@@ -35,7 +35,7 @@ def _draw_cursor(row: CellRow, column: int) -> None:
         row.write(column, f"{glyphs.now}now ", _NOW)
 
 
-def _draw_commands(row: CellRow, scale: TimeScale, commands: Iterable[Mark]) -> None:
+def _draw_commands(row: CellRow, scale: TimeScale, commands: Iterable[AxisMark]) -> None:
     """Mark what the person did, in words where there is room for them."""
     up = GLYPHS[row.charset].up
     marks = {scale.column_of(mark.at): mark for mark in commands}

@@ -30,7 +30,7 @@ from cbtui.widgets.lanes.service_calls import LatestCalls, draw_calls
 from cbtui.widgets.lanes.status import LaneStatus
 from sim.durations import duration
 from sim.trace.events import EntityId, EntityKind, ThreadId
-from sim.trace.model import Blocked, Entity, Group, Mark, Moment, Nanoseconds, Span, Wait, Window
+from sim.trace.model import AxisMark, Blocked, Entity, Group, Moment, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
 FAINT = Ink(Role.FAINT)
@@ -306,7 +306,7 @@ class _LaneFrame:
         shown = columns[: max(0, self._now_column + 1)]
         return next((column.top for column in reversed(shown) if column is not None), None)
 
-    def _commands(self) -> list[Mark]:
+    def _commands(self) -> list[AxisMark]:
         """What the person did, but for the calls that a service's lane shows."""
         shown = {self._scale.column_of(call.sent) for call in self._calls.latest}
         marks = self._timeline.marks(self._scale.window)

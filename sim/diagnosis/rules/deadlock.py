@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator, Sequence
 
-from sim.diagnosis.look import Look
 from sim.diagnosis.rule import Explanation, Finding, Rule, place_of
-from sim.diagnosis.standstill import Standstill, Stuck
+from sim.diagnosis.timeline_view import TimelineView
+from sim.diagnosis.wait_for_graph import Stuck, WaitForGraph
 from sim.diagnosis.words import listed, often, threads_for, who, with_threads
 from sim.trace.events import EntityKind, Reason
 from sim.trace.model import Blocked, Nanoseconds
@@ -24,7 +24,7 @@ class SelfMadeDeadlock(Rule):
     id = "self-made-deadlock"
     summary = "a callback waits for a reply that it keeps from coming"
 
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         """Yield each circle."""
         return (_found(self, knot, until) for knot, until in _knots(look) if not _lacks_worker(knot))
 
@@ -55,7 +55,7 @@ class NeedsOneMoreWorker(Rule):
     id = "needs-one-more-worker"
     summary = "all threads stand still in calls whose answers need a thread"
 
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         """Yield each set of callbacks that keep all threads of an executor."""
         return (_found(self, knot, until) for knot, until in _knots(look) if _lacks_worker(knot))
 
@@ -71,18 +71,18 @@ class NeedsOneMoreWorker(Rule):
         )
 
 
-def _knots(look: Look) -> Iterator[tuple[Sequence[Stuck], Nanoseconds]]:
+def _knots(look: TimelineView) -> Iterator[tuple[Sequence[Stuck], Nanoseconds]]:
     """The sets of callbacks that wait for each other, and until when they did."""
     told: set[tuple[Nanoseconds, ...]] = set()
     for moment, until in _moments(look):
-        for knot in Standstill(look.timeline, moment).knots():
+        for knot in WaitForGraph(look.timeline, moment).knots():
             key = tuple(each.since for each in knot)
             if key not in told:
                 told.add(key)
                 yield knot, until
 
 
-def _moments(look: Look) -> Iterator[tuple[Nanoseconds, Nanoseconds]]:
+def _moments(look: TimelineView) -> Iterator[tuple[Nanoseconds, Nanoseconds]]:
     """When to look for circles: now, and just before a thread gave up waiting; with the end of that.
 
     The latest comes first, as that is until when a circle has lasted.
@@ -97,7 +97,7 @@ def _is_long(blocked: Blocked, until: Nanoseconds) -> bool:
     return until - blocked.start >= _SETTLES
 
 
-def _call_is_held_up(look: Look) -> bool:
+def _call_is_held_up(look: TimelineView) -> bool:
     """Whether a request or reply waits for a group, as it does behind a callback that awaits it there."""
     for entity in look.entities(EntityKind.CLIENT, EntityKind.SERVICE):
         for wait in look.waits(entity.id)[-1:]:

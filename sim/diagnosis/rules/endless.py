@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from sim.diagnosis.look import Look
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, place_of
+from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import often, who
 from sim.trace.events import Notice, NoticeKind, Severity
 from sim.trace.model import Window
@@ -23,7 +23,7 @@ class EndlessWait(Rule):
     id = "endless-wait"
     summary = "a callback waits for a lock or an event that does not come"
 
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         """Yield each wait that the engine tells of."""
         for notice in look.timeline.notices:
             if notice.entity:
@@ -57,7 +57,7 @@ def _is_deadlock(notice: Notice) -> bool:
     return notice.kind is NoticeKind.DEADLOCK or notice.severity is Severity.ERROR
 
 
-def _until(notice: Notice, look: Look) -> int:
+def _until(notice: Notice, look: TimelineView) -> int:
     """When the call ended that a notice is about, or until now."""
     spans = look.timeline.spans_of(notice.entity, Window(notice.t, notice.t + 1))
     return max((look.end if span.end is None else span.end for span in spans), default=look.end)

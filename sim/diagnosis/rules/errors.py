@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from sim.diagnosis.look import Look, is_worker, pool_of
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, place_of
+from sim.diagnosis.timeline_view import TimelineView, is_worker, pool_of
 from sim.diagnosis.words import often, who
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
@@ -20,7 +20,7 @@ class ExceptionSwallowed(Rule):
     summary = "a callback raises and nobody hears of it"
     threshold: Nanoseconds = 500_000_000
 
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         """Yield each call that raised on a worker; whether it came out is weighed later."""
         if not any(mark.kind == "error" for mark in look.timeline.marks(look.window)):
             return

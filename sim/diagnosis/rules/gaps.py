@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from sim.diagnosis.look import Look
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight
+from sim.diagnosis.timeline_view import TimelineView
 from sim.trace.timeline import Timeline
 
 
@@ -14,7 +14,7 @@ class GapsInTrace(Rule):
     summary = "events are missing, and other findings may be wrong"
     weight = Weight.REMARK
 
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         """Tell how many are missing so far."""
         if look.timeline.lost:
             yield Finding(self, 0, look.end, size=look.timeline.lost)

@@ -6,8 +6,8 @@ from itertools import groupby
 from operator import attrgetter
 
 from sim.diagnosis.cures import cure_for_waits
-from sim.diagnosis.look import LongWait, Look
-from sim.diagnosis.rule import Explanation, Finding, Place, Rule, Weight, entity_of, place_of
+from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight, entity_of, place_of
+from sim.diagnosis.timeline_view import LongWait, TimelineView
 from sim.diagnosis.words import often, who
 from sim.durations import duration
 from sim.trace.descriptions import why_waiting
@@ -27,7 +27,7 @@ class DroppedMessages(Rule):
     id = "dropped-messages"
     summary = "messages are lost because a callback does not take them in time"
 
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         """Yield the losses of each second as one."""
         for entity in look.entities():
             losses = look.timeline.losses_of(entity.id, look.window)
@@ -66,7 +66,7 @@ class StaleData(Rule):
     summary = "a timer decides on old data while newer messages wait"
     threshold: Nanoseconds = 200_000_000
 
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         """Yield each call of a timer that knew less than had come for so long."""
         worst: dict[tuple[EntityId, Nanoseconds], Finding] = {}
         for sensor in look.entities(EntityKind.SUBSCRIPTION):
@@ -77,7 +77,7 @@ class StaleData(Rule):
                     worst[found.subject, found.at] = found
         yield from worst.values()
 
-    def _of(self, sensor: EntityId, timers: Sequence[EntityId], look: Look) -> Iterator[Finding]:
+    def _of(self, sensor: EntityId, timers: Sequence[EntityId], look: TimelineView) -> Iterator[Finding]:
         for wait in look.waits(sensor):
             is_long = wait.until - wait.since >= self.threshold
             if is_long and look.timeline.calls_of(sensor, Window(0, wait.since + 1)):
@@ -86,7 +86,7 @@ class StaleData(Rule):
                         age = span.start - wait.since
                         yield Finding(self, span.start, span.start, timer, sensor, size=age)
 
-    def _misled(self, look: Look, timer: EntityId, wait: LongWait) -> Iterator[Span]:
+    def _misled(self, look: TimelineView, timer: EntityId, wait: LongWait) -> Iterator[Span]:
         spans = look.spans(timer)
         first = bisect_left(spans, wait.since + self.threshold, key=attrgetter("start"))
         for span in spans[first:]:
@@ -117,7 +117,7 @@ class QosMismatch(Rule):
     id = "qos-mismatch"
     summary = "a subscription hears nothing because the quality of service does not match"
 
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         """Yield each pair that does not match."""
         for each in reversed(look.timeline.mismatches):
             if each.t <= look.window.start:
@@ -152,9 +152,9 @@ class QosMismatch(Rule):
 _ENDS = ("publisher", "subscription")
 
 
-def _made_at(end: tuple[str, int]) -> Place | None:
+def _made_at(end: tuple[str, int]) -> CodeLocation | None:
     file, line = end
-    return Place(file, line, line) if file else None
+    return CodeLocation(file, line, line) if file else None
 
 
 _PROMISES = {
@@ -163,7 +163,7 @@ _PROMISES = {
 }
 
 
-def _is_before_the_first_of(wait: LongWait, timer: Span, look: Look) -> bool:
+def _is_before_the_first_of(wait: LongWait, timer: Span, look: TimelineView) -> bool:
     """Whether a timer's call of the very moment at which a wait ended came before the call waited for."""
     following = [each for each in look.spans(wait.entity) if each.start == wait.until]
     if not following or following[0].thread != timer.thread:

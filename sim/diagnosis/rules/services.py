@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from sim.diagnosis.look import Look
 from sim.diagnosis.rule import Explanation, Finding, Rule, entity_of, place_of
+from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import often, who
 from sim.trace.events import EntityKind
 from sim.trace.model import Span
@@ -19,7 +19,7 @@ class UnreturnedResponse(Rule):
     id = "unreturned-response"
     summary = "a service's callback ends without an answer"
 
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         """Yield each call of a service's callback that ended and left its caller waiting."""
         for entity in look.entities(EntityKind.SERVICE):
             for span in look.spans(entity.id):
@@ -27,7 +27,7 @@ class UnreturnedResponse(Rule):
                     assert span.end is not None
                     yield Finding(self, span.start, span.end, entity.id, entity.id, detail=span.error)
 
-    def _is_over(self, span: Span, look: Look) -> bool:
+    def _is_over(self, span: Span, look: TimelineView) -> bool:
         if span.end is None:
             return False
         ended = look.timeline.ended
@@ -59,7 +59,7 @@ class NobodyOffers(Rule):
     id = "nobody-offers"
     summary = "a service is called that nobody offers"
 
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         """Yield each request that was lost."""
         for call in look.calls():
             if call.lost:

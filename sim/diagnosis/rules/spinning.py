@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from sim.diagnosis.look import Look
-from sim.diagnosis.rule import Explanation, Finding, Place, Rule
+from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule
+from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import often, threads_for, who, with_threads
 from sim.trace.events import SpinClashed
 from sim.trace.timeline import Timeline
@@ -19,7 +19,7 @@ class NestedSpin(Rule):
     id = "nested-spin"
     summary = "a callback spins the executor that runs it"
 
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         """Yield each attempt."""
         for clash in reversed(look.timeline.spin_clashes):
             if clash.t <= look.window.start:
@@ -47,7 +47,7 @@ class NestedSpin(Rule):
                 f"{subject} spins {runner}, by {clash.function}(): RuntimeError: Executor is already spinning"
             )
             why = "an executor is spun once at a time; rclpy before Jazzy 7.1.9 tells nobody, and may hang"
-        place = Place(clash.file, clash.line, clash.line) if clash.file else None
+        place = CodeLocation(clash.file, clash.line, clash.line) if clash.file else None
         return Explanation(f"{what}{often(found.count)}", why, _cure(clash, subject, timeline), place)
 
 

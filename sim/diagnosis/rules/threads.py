@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 from itertools import islice
 
-from sim.diagnosis.look import Look
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, place_of
+from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, thread_count
 from sim.trace.events import EntityKind, GroupKind, NodeId
 from sim.trace.model import Entity, Executor, Group, Nanoseconds
@@ -22,7 +22,7 @@ class ThreadsNeverUsed(Rule):
     summary = "fewer threads would have done"
     weight = Weight.REMARK
 
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         """Compare the most that were needed with those there are."""
         threads = sum(each.threads for each in _with_workers(look.timeline))
         needed = look.threads_needed
@@ -46,8 +46,8 @@ class GroupsChangeNothing(Rule):
     summary = "groups or threads make no difference"
     weight = Weight.REMARK
 
-    def check(self, look: Look) -> Iterator[Finding]:
-        """Look for groups with one thread, and for threads with one group."""
+    def check(self, look: TimelineView) -> Iterator[Finding]:
+        """TimelineView for groups with one thread, and for threads with one group."""
         if look.end < _WARMED_UP or not look.threads_needed:
             return
         only = _one_for_all(look.timeline)

@@ -3,8 +3,8 @@
 from collections.abc import Iterator
 
 from sim.diagnosis.cures import cure_for_waits
-from sim.diagnosis.look import Look
 from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, entity_of, place_of
+from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import group_of, listed, often, threads_for, who, with_threads
 from sim.durations import duration
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
@@ -25,7 +25,7 @@ class OverlappingCallback(Rule):
     id = "overlapping-callback"
     summary = "a callback runs several times at once"
 
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         """Yield each call that began while another one ran."""
         for entity in look.entities():
             if entity.kind is EntityKind.CLIENT or _kind_of_group(entity, look) is GroupKind.EXCLUSIVE:
@@ -69,7 +69,7 @@ class OverrunTimer(Rule):
     id = "overrun-timer"
     summary = "a timer's callback takes longer than its period"
 
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         """Yield each call that was too long, unless the next one began beside it."""
         for entity in look.entities(EntityKind.TIMER):
             if entity.period == 0:
@@ -117,7 +117,7 @@ class LongCallbackAmongSensors(Rule):
     summary = "a callback sleeps or works long in a group of subscriptions"
     threshold: Nanoseconds = 500_000_000
 
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         """Yield each call that kept subscriptions of its group waiting for so long."""
         told: set[tuple[EntityId, Nanoseconds]] = set()
         for sensor in look.entities(EntityKind.SUBSCRIPTION):
@@ -130,7 +130,7 @@ class LongCallbackAmongSensors(Rule):
                             size = end - span.start
                             yield Finding(self, span.start, end, span.entity, span.entity, size=size)
 
-    def _spans_behind(self, part: Wait, until: Nanoseconds, look: Look) -> Iterator[Span]:
+    def _spans_behind(self, part: Wait, until: Nanoseconds, look: TimelineView) -> Iterator[Span]:
         holder = look.timeline.entities.get(part.holder)
         if until - part.start < self.threshold or holder is None or holder.id in look.nested_spinners:
             return
@@ -162,6 +162,6 @@ class LongCallbackAmongSensors(Rule):
         )
 
 
-def _kind_of_group(entity: Entity, look: Look) -> GroupKind | None:
+def _kind_of_group(entity: Entity, look: TimelineView) -> GroupKind | None:
     group = look.timeline.groups.get(entity.group)
     return None if group is None else group.kind

@@ -4,8 +4,8 @@ from collections import defaultdict
 from collections.abc import Iterator
 
 from sim.diagnosis.cures import cure_for_waits
-from sim.diagnosis.look import LongWait, Look
 from sim.diagnosis.rule import Explanation, Finding, Rule, place_of
+from sim.diagnosis.timeline_view import LongWait, TimelineView
 from sim.diagnosis.words import group_of, often, threads_for, who
 from sim.durations import duration
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
@@ -26,7 +26,7 @@ class GroupStarvation(Rule):
     summary = "a callback waits long because its group is held"
     threshold = HALF_A_SECOND
 
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         """Yield the waits in which others held the group for so long in all."""
         yield from _kept_waiting(self, look, Reason.GROUP_HELD, self.threshold)
 
@@ -49,7 +49,7 @@ class NoFreeWorker(Rule):
     summary = "a callback waits long because all threads are busy"
     threshold = HALF_A_SECOND
 
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         """Yield the waits in which all threads were with others for so long in all."""
         yield from _kept_waiting(self, look, Reason.NO_FREE_WORKER, self.threshold)
 
@@ -84,7 +84,7 @@ class NodeNeverSpins(Rule):
     summary = "callbacks are ready and nobody spins their node"
     threshold = SECOND
 
-    def check(self, look: Look) -> Iterator[Finding]:
+    def check(self, look: TimelineView) -> Iterator[Finding]:
         """Yield for each node the callback that has waited longest."""
         taken = {clash.node for clash in look.timeline.spin_clashes}
         longest: dict[int, LongWait] = {}
@@ -128,7 +128,7 @@ class NodeNeverSpins(Rule):
 
 
 def _kept_waiting(
-    rule: GroupStarvation | NoFreeWorker, look: Look, reason: Reason, threshold: Nanoseconds
+    rule: GroupStarvation | NoFreeWorker, look: TimelineView, reason: Reason, threshold: Nanoseconds
 ) -> Iterator[Finding]:
     for entity in look.entities():
         for wait in look.waits(entity.id):
@@ -145,7 +145,7 @@ def _kept_waiting(
             yield Finding(rule, wait.since, wait.until, entity.id, culprit, size=waited)
 
 
-def _is_callers_own(entity: Entity, wait: LongWait, look: Look) -> bool:
+def _is_callers_own(entity: Entity, wait: LongWait, look: TimelineView) -> bool:
     """Whether a request or reply may wait for the very callback that waits for it: other rules tell that."""
     if entity.kind is EntityKind.CLIENT and wait.is_open:
         return True

@@ -11,11 +11,11 @@ from typing import Annotated, Any, NamedTuple, Protocol, TypeAlias, TypeVar
 
 T = TypeVar("T")
 
-Line: TypeAlias = dict[str, object]
+JsonObject: TypeAlias = dict[str, object]
 """The fields of a line of JSON, by their names."""
 
 
-class Names(Protocol):
+class IdNames(Protocol):
     """What the ids of a run stand for, as far as its events have told; None or nothing for an unknown one."""
 
     def process(self, process: int) -> str | None:
@@ -33,10 +33,10 @@ class Names(Protocol):
     def callback(self, entity: int) -> str | None:
         """The spoken name of an entity."""
 
-    def entity(self, entity: int) -> Line:
+    def entity(self, entity: int) -> JsonObject:
         """The fields of an entity."""
 
-    def group(self, group: int) -> Line:
+    def group(self, group: int) -> JsonObject:
         """The fields of a callback group."""
 
 
@@ -49,7 +49,7 @@ class JsonForm(NamedTuple):
     """
 
     names: str = ""
-    look_up: Callable[[Names, Any], object] | None = None
+    look_up: Callable[[IdNames, Any], object] | None = None
     convert: Callable[[Any], object] | None = None
     unit: str = ""
 
@@ -76,7 +76,7 @@ def _size(data: bytes | None) -> int | None:
     return None if data is None else len(data)
 
 
-def _scan(ranges: bytes) -> Line:
+def _scan(ranges: bytes) -> JsonObject:
     """Of a scan only the range straight ahead: all of them would outweigh the rest of the file."""
     beams = len(ranges) // 2
     ahead = int.from_bytes(ranges[beams : beams + 2], "little")
@@ -141,7 +141,7 @@ CallId: TypeAlias = Annotated[int, JsonForm("call")]
 LineId: TypeAlias = Annotated[int, JsonForm("line")]
 """Number of the ``ros2`` line."""
 
-# Names and texts.
+# IdNames and texts.
 
 TopicName: TypeAlias = Annotated[str, JsonForm("entity")]
 """Name of the topic or service."""

@@ -28,7 +28,7 @@ class WaitFigures:
 
 
 @dataclass(frozen=True, slots=True)
-class Side:
+class CallbackInRun:
     """What one of the runs says of a callback; ``waits`` None: it ran as soon as it was ready."""
 
     figures: CallbackStatistics
@@ -47,12 +47,12 @@ class Side:
 
 
 @dataclass(frozen=True, slots=True)
-class Pair:
+class CallbackPair:
     """A callback in both runs; None where a run has no such callback."""
 
     name: str
-    first: Side | None
-    second: Side | None
+    first: CallbackInRun | None
+    second: CallbackInRun | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +81,7 @@ class Comparison:
     window: Window
     first: RunFigures
     second: RunFigures
-    callbacks: tuple[Pair, ...]
+    callbacks: tuple[CallbackPair, ...]
 
 
 def compare(first: Timeline, second: Timeline, window: Window) -> Comparison:
@@ -98,7 +98,7 @@ def compare_incrementally(first: Timeline, second: Timeline, window: Window) -> 
     of_first = yield from _sides(first, window)
     of_second = yield from _sides(second, window)
     partners = _partners(of_first, of_second)
-    pairs: list[tuple[Key, Side | None, Side | None]] = [
+    pairs: list[tuple[Key, CallbackInRun | None, CallbackInRun | None]] = [
         (key, side, of_second.get(partners.get(key, key))) for key, side in of_first.items()
     ]
     taken = {*of_first, *partners.values()}
@@ -110,7 +110,7 @@ def compare_incrementally(first: Timeline, second: Timeline, window: Window) -> 
         (yield from _run_figures(first, window)),
         (yield from _run_figures(second, window)),
         tuple(
-            Pair(_short_name(key) if short[_short_name(key)] == 1 else _long_name(key), one, other)
+            CallbackPair(_short_name(key) if short[_short_name(key)] == 1 else _long_name(key), one, other)
             for key, one, other in used
         ),
     )
@@ -135,15 +135,15 @@ def _long_name(key: Key) -> str:
     return f"{_short_name(key)} ({place}{f' #{number}' if number > 1 else ''})"
 
 
-def _sides(timeline: Timeline, window: Window) -> Incremental[dict[Key, Side]]:
+def _sides(timeline: Timeline, window: Window) -> Incremental[dict[Key, CallbackInRun]]:
     equals: Counter[tuple[str, str, str, str]] = Counter()
-    sides: dict[Key, Side] = {}
+    sides: dict[Key, CallbackInRun] = {}
     for entity in tuple(timeline.entities.values()):
         alike = _description(entity, timeline)
         equals[alike] += 1
         waits = yield from _wait_figures(timeline.waits_of(entity.id, window), timeline, window)
         figures = yield from statistics_incrementally(timeline, entity.id, window)
-        sides[*alike, equals[alike]] = Side(figures, waits)
+        sides[*alike, equals[alike]] = CallbackInRun(figures, waits)
     return sides
 
 

@@ -7,7 +7,7 @@ from enum import Enum, auto
 from typing import NamedTuple, TypeAlias, TypeVar
 
 from sim.durations import duration
-from sim.trace.figures.comparison import Comparison, Pair, RunFigures, Side
+from sim.trace.figures.comparison import CallbackInRun, CallbackPair, Comparison, RunFigures
 from sim.trace.figures.statistics import Distribution
 from sim.trace.figures.summary import RobotFigures
 from sim.trace.model import Window
@@ -181,7 +181,7 @@ def _of_both(write: Callable[[_Told], str], first: _Told | None, second: _Told |
     )
 
 
-def _section(pair: Pair) -> Section:
+def _section(pair: CallbackPair) -> Section:
     first, second = pair.first, pair.second
     title = pair.name
     if first is None or second is None:
@@ -194,7 +194,7 @@ def _section(pair: Pair) -> Section:
     return Section(title, tuple(_rows(first, second)), tuple(notes))
 
 
-def _rows(first: Side | None, second: Side | None) -> Iterator[ComparisonRow]:
+def _rows(first: CallbackInRun | None, second: CallbackInRun | None) -> Iterator[ComparisonRow]:
     for label, figure, words in _FIGURES:
         one, other = _asked(figure, first), _asked(figure, second)
         if one is not None or other is not None:
@@ -212,7 +212,7 @@ def _asked(question: Callable[[_Asked], _Told | None], asked: _Asked | None) -> 
     return None if asked is None else question(asked)
 
 
-def _waited(side: Side) -> _Spread | None:
+def _waited(side: CallbackInRun) -> _Spread | None:
     waits = side.figures.wait
     if waits is None and not side.longest_wait:
         return None
@@ -223,12 +223,12 @@ def _spread(values: Distribution | None) -> _Spread | None:
     return None if values is None else _Spread(values.median, values.most)
 
 
-_FIGURES: tuple[tuple[str, Callable[[Side], Figure], _Words], ...] = (
+_FIGURES: tuple[tuple[str, Callable[[CallbackInRun], Figure], _Words], ...] = (
     ("calls", lambda side: side.figures.calls, _COUNTS),
     ("errors", lambda side: side.figures.errors or None, _LOSSES),
     ("drops", lambda side: side.figures.drops if side.figures.entity.depth else None, _LOSSES),
 )
-_SPREADS: tuple[tuple[str, Callable[[Side], _Spread | None], _Words], ...] = (
+_SPREADS: tuple[tuple[str, Callable[[CallbackInRun], _Spread | None], _Words], ...] = (
     ("wait med/max", _waited, _WAITS),
     ("age med/max", lambda side: _spread(side.figures.age), _AGES),
     ("late med/max", lambda side: _spread(side.figures.late), _LATENESS),

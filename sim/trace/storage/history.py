@@ -7,7 +7,7 @@ from typing import Any, Generic, TypeVar, overload
 import msgspec
 
 from sim.trace.model import Nanoseconds, Window
-from sim.trace.storage.intervals import Answer
+from sim.trace.storage.intervals import LazySequence
 from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.spilled_blocks import SpilledBlocks
 
@@ -93,7 +93,11 @@ class History(Sequence[Item], Generic[Item]):
     def __getitem__(self, place: slice) -> Sequence[Item]: ...
     def __getitem__(self, place: int | slice) -> Item | Sequence[Item]:
         numbers = range(len(self))
-        return Answer(numbers[place], self._item) if isinstance(place, slice) else self._item(numbers[place])
+        return (
+            LazySequence(numbers[place], self._item)
+            if isinstance(place, slice)
+            else self._item(numbers[place])
+        )
 
     def __iter__(self) -> Iterator[Item]:
         for start in range(0, self._spilled, self._items_in_block):

@@ -7,14 +7,14 @@ from sim.trace.model import Nanoseconds, Window
 from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import Table
 
-Row: TypeAlias = int
+RowId: TypeAlias = int
 T = TypeVar("T")
 
 OPEN: Nanoseconds = 2**63 - 1
 """The end of an interval that still lasts: later than any other."""
 
 
-class Answer(Sequence[T]):
+class LazySequence(Sequence[T]):
     """The intervals of an answer, each made into a value when it is looked at.
 
     A picture of an hour asks for a hundred thousand calls and looks at a few hundred.
@@ -22,7 +22,7 @@ class Answer(Sequence[T]):
 
     __slots__ = ("_make", "_rows")
 
-    def __init__(self, rows: Sequence[Row], make: Callable[[Row], T]) -> None:
+    def __init__(self, rows: Sequence[RowId], make: Callable[[RowId], T]) -> None:
         self._rows = rows
         self._make = make
 
@@ -35,7 +35,7 @@ class Answer(Sequence[T]):
     def __getitem__(self, place: slice) -> Sequence[T]: ...
     def __getitem__(self, place: int | slice) -> T | Sequence[T]:
         if isinstance(place, slice):
-            return Answer(self._rows[place], self._make)
+            return LazySequence(self._rows[place], self._make)
         return self._make(self._rows[place])
 
     def __iter__(self) -> Iterator[T]:
@@ -67,19 +67,19 @@ class Intervals:
     def __len__(self) -> int:
         return len(self.table)
 
-    def open(self, start: Nanoseconds, *more: int) -> Row:
+    def open(self, start: Nanoseconds, *more: int) -> RowId:
         """Begin an interval; ``more`` are the cells behind start and end."""
         return self.table.append([start, OPEN, *more])
 
-    def close(self, row: Row, end: Nanoseconds) -> None:
+    def close(self, row: RowId, end: Nanoseconds) -> None:
         """End an interval, at its start if ``end`` lies before that."""
         self.table.change(row, self.END, max(end, self.started_at(row)))
 
-    def started_at(self, row: Row) -> Nanoseconds:
+    def started_at(self, row: RowId) -> Nanoseconds:
         """When an interval began."""
         return self.table.cell(row, self.START)
 
-    def ended_at(self, row: Row) -> Nanoseconds:
+    def ended_at(self, row: RowId) -> Nanoseconds:
         """When an interval ended; ``OPEN`` while it lasts."""
         return self.table.cell(row, self.END)
 
@@ -103,11 +103,11 @@ class Layer(Table):
         """When the interval at a place begins."""
         return self.cell(place, self.START)
 
-    def interval(self, place: int) -> Row:
+    def interval(self, place: int) -> RowId:
         """The row of the interval at a place."""
         return self.cell(place, self.ROW)
 
-    def intervals(self, places: range) -> Sequence[Row]:
+    def intervals(self, places: range) -> Sequence[RowId]:
         """The rows of the intervals at places that follow each other."""
         return self.column(self.ROW, places)
 
@@ -126,7 +126,7 @@ class Lane:
         self._intervals = intervals
         self._layers: list[Layer] = []
 
-    def add(self, row: Row) -> Layer:
+    def add(self, row: RowId) -> Layer:
         """Take in a row; tells where it went.
 
         In order of start there are no more layers than needed; any order is right.
@@ -147,11 +147,11 @@ class Lane:
         """The layers, the one of the outermost intervals first."""
         return self._layers
 
-    def overlapping(self, window: Window) -> Sequence[Row]:
+    def overlapping(self, window: Window) -> Sequence[RowId]:
         """Rows that share time with the window, in order of start; instants count if they lie in it."""
         return self._in_order([layer.intervals(self._places(layer, window)) for layer in self._layers])
 
-    def starting(self, window: Window) -> Sequence[Row]:
+    def starting(self, window: Window) -> Sequence[RowId]:
         """Rows that start in the window, in order of start."""
         return self._in_order(
             [
@@ -160,9 +160,9 @@ class Lane:
             ]
         )
 
-    def covering(self, at: Nanoseconds) -> list[Row]:
+    def covering(self, at: Nanoseconds) -> list[RowId]:
         """Rows that have begun and not ended when everything that happens at ``at`` has happened."""
-        found: list[Row] = []
+        found: list[RowId] = []
         for layer in self._layers:
             after = layer.until(at)
             if after:
@@ -202,12 +202,12 @@ class Lane:
                 first -= 1
         return range(first, max(first, after))
 
-    def _in_order(self, found: list[Sequence[Row]]) -> Sequence[Row]:
+    def _in_order(self, found: list[Sequence[RowId]]) -> Sequence[RowId]:
         if len(found) == 1:
             return found[0]
         rows = [row for rows in found for row in rows]
         rows.sort(key=self._order)
         return rows
 
-    def _order(self, row: Row) -> tuple[Nanoseconds, Row]:
+    def _order(self, row: RowId) -> tuple[Nanoseconds, RowId]:
         return self._intervals.started_at(row), row

@@ -120,9 +120,9 @@ class Table:
         count = min(count, self._rows_in_block) * self._width
         return self._tail[max(0, len(self._tail) - count) + column :: self._width]
 
-    def column(self, column: int, rows: range) -> "Column":
+    def column(self, column: int, rows: range) -> "TableColumn":
         """The cells of a column in some rows, read on access."""
-        return Column(self, column, rows)
+        return TableColumn(self, column, rows)
 
     def chunks(self, column: int, rows: range) -> Iterator["array[int]"]:
         """The cells of a column in consecutive rows, block by block."""
@@ -151,7 +151,7 @@ class Table:
         self._spilled += self._rows_in_block
 
 
-class Column(Sequence[int]):
+class TableColumn(Sequence[int]):
     """One column of some rows of a table."""
 
     __slots__ = ("_column", "_rows", "_table")
@@ -167,10 +167,10 @@ class Column(Sequence[int]):
     @overload
     def __getitem__(self, place: int) -> int: ...
     @overload
-    def __getitem__(self, place: slice) -> "Column": ...
-    def __getitem__(self, place: int | slice) -> "int | Column":
+    def __getitem__(self, place: slice) -> "TableColumn": ...
+    def __getitem__(self, place: int | slice) -> "int | TableColumn":
         if isinstance(place, slice):
-            return Column(self._table, self._column, self._rows[place])
+            return TableColumn(self._table, self._column, self._rows[place])
         return self._table.cell(self._rows[place], self._column)
 
     def __iter__(self) -> Iterator[int]:

@@ -23,7 +23,7 @@ from cbtui.screens.export import CHOICES, ExportScreen
 from cbtui.screens.parts import exporting
 from cbtui.screens.replay import ReplayScreen
 from sim.export import CallTable
-from sim.recording import About, read
+from sim.recording import RecordingMetadata, read
 from sim.trace.events import AnyEvent
 from sim.trace.storage.event_store import EventStore
 from tests.recording.files import write
@@ -290,7 +290,7 @@ async def test_one_that_is_not_is_given_up_and_leaves_no_file(
 
 async def test_a_recording_is_exported_whole(folder: Path) -> None:
     source = folder / "run.mcap"
-    write(source, EVENTS, About(title="shared-group", clock="virtual"))
+    write(source, EVENTS, RecordingMetadata(title="shared-group", clock="virtual"))
     app = CbtuiApp(start_recording=read(source))
     app.animation_level = "none"
     async with app.run_test(size=WIDE, notifications=True) as pilot:

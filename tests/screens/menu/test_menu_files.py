@@ -94,7 +94,7 @@ async def test_a_file_that_is_gone_is_said_to_be_and_can_be_taken_off_the_list(p
 
 async def test_a_recording_is_shown_and_nothing_in_it_is_run(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
-    write(path, shared_group_run().events, recording.About(title="run.mcap", clock="virtual"))
+    write(path, shared_group_run().events, recording.RecordingMetadata(title="run.mcap", clock="virtual"))
     RecentList().note(RecentEntry(RecentKind.RECORDING, str(path), 100))
     engines = FakeEngines([], 0)
     app = CbtuiApp(open_session=engines)
@@ -123,7 +123,7 @@ async def test_o_opens_a_program_whose_path_is_typed(program: Path, monkeypatch:
 
 async def test_o_shows_a_recording(tmp_path: Path) -> None:
     path = tmp_path / "run.mcap"
-    write(path, shared_group_run().events, recording.About(title="run.mcap", clock="virtual"))
+    write(path, shared_group_run().events, recording.RecordingMetadata(title="run.mcap", clock="virtual"))
     app = menu()
     async with app.run_test(size=NARROW) as pilot:
         await pilot.press("o")

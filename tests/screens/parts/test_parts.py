@@ -15,7 +15,7 @@ from cbtui.screens.lesson import LessonScreen
 from cbtui.screens.parts.part import ScreenPart, ScreenParts
 from cbtui.screens.replay import ReplayScreen
 from lessons.catalogue import find, lessons
-from sim.recording import About, read
+from sim.recording import RecordingMetadata, read
 from sim.trace.timeline import Timeline
 from tests.recording.files import write
 from tests.support.fake_session import FakeEngines
@@ -77,7 +77,7 @@ def exercise() -> ExerciseScreen:
 
 def replay(folder: Path) -> ReplayScreen:
     path = folder / "run.mcap"
-    write(path, shared_group_run().events, About(title="x", clock="virtual"))
+    write(path, shared_group_run().events, RecordingMetadata(title="x", clock="virtual"))
     return ReplayScreen(read(path), Charset.BRAILLE)
 
 
