@@ -17,7 +17,7 @@ class FunctionMark:
         self._codes: set[CodeType] = set()
 
     def __call__(self, function: FunctionT) -> FunctionT:
-        """FunctionMark a function."""
+        """Mark a function."""
         self._codes.add(function.__code__)
         return function
 

@@ -1,4 +1,4 @@
-"""Rules over a timeline that tell why callbacks do not run as meant, and what to do about it."""
+"""Rules that find out from a timeline why callbacks do not run as intended, and what to do about it."""
 
 from sim.diagnosis.diagnoses import Diagnoses, diagnose
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight

@@ -1,4 +1,4 @@
-"""What lets callbacks run that waited: a callback group, more threads, or both."""
+"""Advice for callbacks that wait: a callback group of their own, more threads, or both."""
 
 from collections.abc import Iterator, Sequence
 from itertools import islice
@@ -10,34 +10,34 @@ from sim.trace.timeline import Timeline
 
 _LONG: Nanoseconds = 200_000_000
 _LOOKED_AT = 100
-"""How many calls of a callback are looked at to tell whether it is a long one."""
+"""Calls of a callback that are checked for a long one."""
 
 
 def cure_for_waits(waited: Sequence[EntityId], mover: EntityId, window: Window, timeline: Timeline) -> str:
-    """What to do for callbacks that waited in a window, as half a sentence; "" where neither would help.
+    """Advice for callbacks that waited in a window, as a clause; empty where neither would help.
 
-    A group of its own helps, for ``mover``, where another callback held the group; more threads where none
-    was free meanwhile, as with one thread none ever is.
+    A group of its own for ``mover`` helps where another callback held the group; more threads help where no
+    worker was free meanwhile, which with one thread is always so.
     """
     waits = [wait for each in waited for wait in _waits(each, window, timeline)]
-    told = []
+    advice = []
     if any(wait.reason is Reason.GROUP_HELD for wait in waits):
-        told.append(f"give {who(mover, timeline)} a callback group of its own")
+        advice.append(f"give {who(mover, timeline)} a callback group of its own")
     crowded = [wait for wait in waits if wait.workers_busy]
     if _length(crowded, window) >= min(_LONG, _length(waits, window) / 2) > 0:
-        told.append(f"spin with {with_threads(_threads_needed(crowded, window, timeline))}")
-    return ", and ".join(told)
+        advice.append(f"spin with {with_threads(_threads_needed(crowded, window, timeline))}")
+    return ", and ".join(advice)
 
 
 def _waits(entity: EntityId, window: Window, timeline: Timeline) -> Iterator[Wait]:
-    """The waits of an entity for others."""
+    """The waits of an entity that another entity caused."""
     for wait in timeline.waits_of(entity, window):
         if wait.holder != entity and wait.reason is not Reason.NOBODY_SPINS:
             yield wait
 
 
 def _length(waits: Sequence[Wait], window: Window) -> Nanoseconds:
-    """How long waits lasted in a window, together."""
+    """The total length of waits within a window."""
     return sum(
         (window.end if wait.end is None else min(wait.end, window.end)) - max(wait.start, window.start)
         for wait in waits
@@ -45,9 +45,9 @@ def _length(waits: Sequence[Wait], window: Window) -> Nanoseconds:
 
 
 def _threads_needed(crowded: Sequence[Wait], window: Window, timeline: Timeline) -> int:
-    """One more than there are, or than there were groups with something long to do, if these are more."""
+    """One more than the executor has, or than there are groups with long calls, whichever is more."""
     waited = {wait.entity for wait in crowded}
-    there = threads_for([*(wait.holder for wait in crowded), *waited], window.end, timeline)
+    available = threads_for([*(wait.holder for wait in crowded), *waited], window.end, timeline)
     occupied = {
         each.group
         for each in timeline.entities.values()
@@ -55,7 +55,7 @@ def _threads_needed(crowded: Sequence[Wait], window: Window, timeline: Timeline)
         and (timeline.spans_of(each.id, window) or timeline.waits_of(each.id, window))
         and _is_long(each.id, timeline)
     }
-    return max(there, len(occupied)) + 1
+    return max(available, len(occupied)) + 1
 
 
 def _is_long(entity: EntityId, timeline: Timeline) -> bool:

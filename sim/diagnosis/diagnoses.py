@@ -1,4 +1,4 @@
-"""What all rules found in a run so far, kept up to date without looking at everything again."""
+"""The findings of all rules in a run, updated incrementally as the run goes on."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -13,10 +13,10 @@ from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 from sim.units import SECOND
 
-_LATE: Nanoseconds = SECOND
-"""How long threads of a real-clock run may report out of order; what is younger is looked at again."""
+_OUT_OF_ORDER: Nanoseconds = SECOND
+"""How far threads of a real-clock run may report out of order; younger events are checked again."""
 
-_BEFORE_ALL: Nanoseconds = -1
+_BEFORE_START: Nanoseconds = -1
 
 _Key: TypeAlias = tuple[str, EntityId, str]
 
@@ -24,59 +24,59 @@ _Key: TypeAlias = tuple[str, EntityId, str]
 class Diagnoses:
     """The findings of a run, one for each rule, subject and topic or service, problems first.
 
-    ``update`` looks at what is new, at what lasts still and at the last second or two again: what was found
-    there is forgotten if it no longer holds. Not thread-safe, as the timeline.
+    ``update`` checks what is new, what is still going on, and the last one or two seconds again: findings
+    there are dropped if they no longer hold. Not thread-safe, like the timeline.
     """
 
     def __init__(self, rules: Iterable[Rule] = RULES) -> None:
         self.findings: tuple[Finding, ...] = ()
-        """What was found until the last update."""
+        """The findings of the last update."""
         self._rules = tuple(rules)
         self._timeline: Timeline | None = None
-        self._from = _BEFORE_ALL
+        self._from = _BEFORE_START
         self._settled: dict[_Key, Finding] = {}
 
     def update(self, timeline: Timeline) -> tuple[Finding, ...]:
-        """TimelineView at what a timeline has learnt since the last update; another timeline begins anew."""
+        """Check what is new in a timeline since the last update; with another timeline, start over."""
         if timeline is not self._timeline:
-            self._begin(timeline)
+            self._start_over(timeline)
         window = Window(self._from, timeline.end + 1)
-        look = TimelineView(timeline, window, self._concurrency)
-        self._from = max(self._from, (timeline.end - _LATE) // SECOND * SECOND)
+        view = TimelineView(timeline, window, self._concurrency)
+        self._from = max(self._from, (timeline.end - _OUT_OF_ORDER) // SECOND * SECOND)
         merged = dict(self._settled)
         for rule in self._rules:
-            for found in rule.check(look):
+            for found in rule.check(view):
                 if found.until > window.start:
                     _merge(merged, found)
                     if found.until <= self._from:
                         _merge(self._settled, found)
-        self.findings = self._told(merged.values(), timeline)
+        self.findings = self._ordered(merged.values(), timeline)
         return self.findings
 
-    def _begin(self, timeline: Timeline) -> None:
+    def _start_over(self, timeline: Timeline) -> None:
         self._timeline = timeline
         self._concurrency = Concurrency(timeline)
-        self._from = _BEFORE_ALL
+        self._from = _BEFORE_START
         self._settled = {}
 
-    def _told(self, found: Iterable[Finding], timeline: Timeline) -> tuple[Finding, ...]:
-        """Those that matter: problems before remarks, then by rule, the earliest first."""
+    def _ordered(self, found: Iterable[Finding], timeline: Timeline) -> tuple[Finding, ...]:
+        """The findings that matter: problems before remarks, then by rule, the earliest first."""
         weighed = [(each.rule.weigh(each, timeline), each) for each in found]
-        telling = [(weight, each) for weight, each in weighed if weight is not None]
-        telling.sort(key=lambda pair: (pair[0] is Weight.REMARK, *self._place(pair[1])))
-        return tuple(each for _, each in telling)
+        relevant = [(weight, each) for weight, each in weighed if weight is not None]
+        relevant.sort(key=lambda pair: (pair[0] is Weight.REMARK, *self._rank(pair[1])))
+        return tuple(each for _, each in relevant)
 
-    def _place(self, found: Finding) -> tuple[int, Nanoseconds, EntityId, str]:
+    def _rank(self, found: Finding) -> tuple[int, Nanoseconds, EntityId, str]:
         return self._rules.index(found.rule), found.at, found.subject, found.about
 
 
 def diagnose(timeline: Timeline) -> tuple[Finding, ...]:
-    """Return what the rules find in all that a timeline knows."""
+    """Return what the rules find in a whole timeline."""
     return Diagnoses().update(timeline)
 
 
 def _merge(into: dict[_Key, Finding], found: Finding) -> None:
-    """Take in an occurrence: the worst gives the times, of equal ones the earliest."""
+    """Add an occurrence: the worst one gives the times; of equal ones, the earliest."""
     key = (found.rule.id, found.subject, found.about)
     known = into.get(key)
     if known is None:

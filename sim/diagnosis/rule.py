@@ -1,4 +1,4 @@
-"""What a rule is, what it finds, and how that is told."""
+"""The interface of a rule, its findings and their explanations."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
@@ -15,7 +15,7 @@ from sim.trace.timeline import Timeline
 
 
 class Weight(Enum):
-    """How much a finding matters: something goes wrong, or it is only worth knowing."""
+    """How much a finding matters: something goes wrong, or it is merely worth knowing."""
 
     PROBLEM = "problem"
     REMARK = "remark"
@@ -37,10 +37,10 @@ class CodeLocation:
 class Finding:
     """What a rule found: one occurrence, or ``count`` of them with the times of the worst.
 
-    ``subject`` is the callback that it happened to, ``culprit`` the one that is to blame (0: none or
-    unknown); ``about`` is the topic, service or node in question. Occurrences of one rule, subject and
-    ``about`` are one finding. ``size`` tells which of them is the worst, in a unit of the rule's; ``detail``
-    is what the rule needs besides to explain it, and ``thread`` where it happened, if the rule asks for that.
+    ``subject`` is the affected callback, ``culprit`` the one to blame (0: none or unknown); ``about`` is the
+    topic, service or node in question. Occurrences of one rule, subject and ``about`` are one finding.
+    ``size`` ranks them, the worst highest, in a unit of the rule; ``detail`` and ``thread`` are what the rule
+    needs to explain it.
     """
 
     rule: "Rule"
@@ -64,8 +64,8 @@ class Finding:
 class Explanation:
     """A finding in words: ``what`` happened (a line without a full stop), ``why``, and what to do.
 
-    ``place`` is where the learner wrote what it is about; None where that is not known. ``for_ever`` tells
-    that callbacks wait which can never go on.
+    ``place`` is the learner's code in question; None if it is unknown. ``for_ever``: callbacks wait that can
+    never go on.
     """
 
     what: str
@@ -84,25 +84,25 @@ class Rule(ABC):
     weight: ClassVar[Weight] = Weight.PROBLEM
 
     @abstractmethod
-    def check(self, look: TimelineView) -> Iterator[Finding]:
-        """Yield every occurrence that lasted into the window of the look, each whole."""
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield every occurrence that reaches into the view's window, uncut."""
 
     @abstractmethod
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Put a finding into words."""
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
-        """Tell how much all occurrences together matter; None if they do not."""
+        """How much all occurrences together matter; None if they do not."""
         return self.weight
 
 
-_OURS = str(Path(sim.__file__).parent)
+_MODEL_FOLDER = str(Path(sim.__file__).parent)
 
 
 def place_of(entity: EntityId, timeline: Timeline) -> CodeLocation | None:
-    """Where an entity's callback is written, None where the model itself wrote it, as a rate's tick."""
+    """The code of an entity's callback; None if it is the model's own, such as a rate's timer."""
     known = timeline.entities.get(entity)
-    if known is None or not known.file or known.file.startswith(_OURS):
+    if known is None or not known.file or known.file.startswith(_MODEL_FOLDER):
         return None
     return CodeLocation(known.file, known.first_line, known.last_line)
 

@@ -1,4 +1,4 @@
-"""Findings as plain text for a terminal, 79 wide where names allow."""
+"""Findings as plain text for a terminal, 79 columns wide where names allow."""
 
 from collections.abc import Iterator, Sequence
 from textwrap import TextWrapper
@@ -26,23 +26,23 @@ def findings_text(findings: Sequence[Finding], timeline: Timeline) -> str:
 
 def _lines(found: Finding, timeline: Timeline) -> Iterator[str]:
     weight = found.rule.weigh(found, timeline) or found.rule.weight
-    told = found.rule.explain(found, timeline)
-    yield from _wrapped(f"  {SIGNS[weight]} ", f"{told.what}.")
-    yield from _wrapped("    ", sentence(told.why))
-    yield from _wrapped("    → ", f"{told.cure}.")
-    where = whereabouts(found, told)
+    explanation = found.rule.explain(found, timeline)
+    yield from _wrapped(f"  {SIGNS[weight]} ", f"{explanation.what}.")
+    yield from _wrapped("    ", sentence(explanation.why))
+    yield from _wrapped("    → ", f"{explanation.cure}.")
+    where = whereabouts(found, explanation)
     if where:
         yield f"      {where}"
 
 
 def sentence(text: str) -> str:
-    """A text as a sentence of its own."""
+    """A clause as a sentence."""
     return f"{text[:1].upper()}{text[1:]}."
 
 
-def whereabouts(found: Finding, told: Explanation) -> str:
-    """Where in the code and when in the run a finding is: ``node.py:58, at 4.006 s``."""
-    place = [] if told.place is None else [str(told.place)]
+def whereabouts(found: Finding, explanation: Explanation) -> str:
+    """The source line and time of a finding: ``node.py:58, at 4.006 s``."""
+    place = [] if explanation.place is None else [str(explanation.place)]
     time = [f"at {timestamp(found.at)}"] if found.at else []
     return ", ".join([*place, *time])
 

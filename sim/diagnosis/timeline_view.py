@@ -1,4 +1,4 @@
-"""A look at the latest part of a run: what all rules ask of it, put together once."""
+"""A view of the latest part of a run: what several rules query is computed once."""
 
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
@@ -15,7 +15,7 @@ from sim.trace.timeline import Timeline
 
 @dataclass(frozen=True, slots=True)
 class LongWait:
-    """From when a callback was ready until it ran, or until now (``is_open``), for changing reasons."""
+    """The time from a callback's readiness to its call, or to now (``is_open``), in parts by reason."""
 
     entity: EntityId
     since: Nanoseconds
@@ -24,16 +24,16 @@ class LongWait:
     parts: tuple[Wait, ...]
 
     def length(self, part: Wait) -> Nanoseconds:
-        """How long one of the reasons stood."""
+        """The length of a part, in nanoseconds."""
         return (self.until if part.end is None else part.end) - part.start
 
     def because(self, reason: Reason) -> tuple[Wait, ...]:
-        """The parts for a reason in which it was another callback that was in the way."""
+        """The parts with a reason that another callback caused."""
         return tuple(part for part in self.parts if part.reason is reason and part.holder != part.entity)
 
 
 class TimelineView:
-    """A timeline from the start of ``window`` to its end, with what lasts into that from before."""
+    """A timeline from the start of ``window`` to its end, including intervals that reach into it."""
 
     def __init__(self, timeline: Timeline, window: Window, concurrency: Concurrency) -> None:
         self.timeline = timeline
@@ -59,7 +59,7 @@ class TimelineView:
         return self._concurrency.peak(self.end)
 
     def end_of_program(self, entity: Entity) -> Nanoseconds | None:
-        """When the program ended that ran an entity's node; None while it runs, and where none ran it."""
+        """When the program of an entity's node ended; None while it runs, or if it is unknown."""
         ended = self.timeline.processes_ended
         if not ended:
             return None
@@ -82,9 +82,9 @@ class TimelineView:
         return frozenset(call.id for call in self.now.pending_calls)
 
     def entities(self, *kinds: EntityKind) -> Iterator[Entity]:
-        """The entities of some kinds, of all if none is named, that did anything in the window, or still do.
+        """The entities that were or are active in the window, of some kinds (none given: of all).
 
-        What nothing happened to breaks no rule: a look costs nothing for it.
+        Idle entities break no rule, and cost nothing.
         """
         return (each for each in self._active if not kinds or each.kind in kinds)
 
@@ -94,13 +94,13 @@ class TimelineView:
         return [entities[each] for each in sorted(active)]
 
     def spans(self, entity: EntityId) -> tuple[Span, ...]:
-        """The calls of an entity that lasted into the window, in order of start."""
+        """The calls of an entity that reach into the window, in order of start."""
         if entity not in self._spans:
             self._spans[entity] = tuple(self.timeline.spans_of(entity, self.window))
         return self._spans[entity]
 
     def waits(self, entity: EntityId) -> tuple[LongWait, ...]:
-        """The waits of an entity that lasted into the window, whole, in order of start."""
+        """The waits of an entity that reach into the window, uncut, in order of start."""
         if entity not in self._waits:
             self._waits[entity] = tuple(self._long_waits(entity))
         return self._waits[entity]
@@ -112,16 +112,16 @@ class TimelineView:
 
     @cached_property
     def blocked(self) -> tuple[Blocked, ...]:
-        """The stretches that lasted into the window in which threads stood still in a call."""
+        """The intervals that reach into the window in which threads were blocked in a call."""
         return tuple(self._blocked_in(self.window))
 
     @cached_property
     def nested_spinners(self) -> frozenset[EntityId]:
-        """The callbacks that spun what was being spun, and may hang in that; rules on waits skip them."""
+        """The callbacks that spun their own executor and may hang in that; rules on waits skip them."""
         return frozenset(each.entity for each in self.timeline.spin_clashes if each.entity)
 
     def stood_in_call(self, entity: EntityId, start: Nanoseconds, end: Nanoseconds) -> bool:
-        """Whether a callback stood still in a call between two times."""
+        """Whether a callback was blocked in a call between two times."""
         return any(each.entity == entity for each in self._blocked_in(Window(start, end)))
 
     def _blocked_in(self, window: Window) -> Iterator[Blocked]:
@@ -141,7 +141,7 @@ class TimelineView:
 
 
 def pool_of(thread: ThreadId, timeline: Timeline) -> tuple[ThreadId, ...]:
-    """The worker threads of the same executor; a thread that is no worker is alone."""
+    """The worker threads of the same executor; only the thread itself if it is not a worker."""
     if not is_worker(thread, timeline):
         return (thread,)
     executor = timeline.threads[thread].executor

@@ -1,4 +1,4 @@
-"""How rules name callbacks, groups and executors in their sentences."""
+"""Names of callbacks, groups and executors for the sentences of rules."""
 
 from collections.abc import Iterable
 
@@ -9,7 +9,7 @@ from sim.trace.timeline import Timeline
 
 
 def who(entity: EntityId, timeline: Timeline) -> str:
-    """A callback by its name; a client by what it waits for."""
+    """The name of a callback; of a client, the reply that it waits for."""
     known = timeline.entities.get(entity)
     if known is not None and known.kind is EntityKind.CLIENT:
         return f"the reply of {known.name}"
@@ -24,25 +24,25 @@ def group_of(entity: EntityId, timeline: Timeline) -> str:
 
 
 def listed(names: Iterable[str]) -> str:
-    """Several names as one would say them: ``a, b and c``."""
+    """Names as an enumeration: ``a, b and c``."""
     *others, last = dict.fromkeys(names)
     return f"{', '.join(others)} and {last}" if others else last
 
 
 def often(count: int, what: str = "times in all") -> str:
-    """How often, in brackets; nothing for once."""
+    """A number of occurrences in brackets; empty for one."""
     return f" ({count} {what})" if count > 1 else ""
 
 
 def thread_count(timeline: Timeline) -> int:
-    """How many callbacks the executors of a run can run at once."""
+    """The total number of threads of a run's executors."""
     return sum(executor.threads for executor in timeline.executors.values())
 
 
 def threads_for(entities: Iterable[EntityId], at: Nanoseconds, timeline: Timeline) -> int:
-    """How many callbacks the executor can run at once that ran the first of some entities last by ``at``.
+    """The number of threads of the executor that ran the first known one of some entities, by ``at``.
 
-    An executor without workers of its own runs all on the one thread that spins it; so does an unknown one.
+    1 for an executor without workers, which runs callbacks on the spinning thread, and for an unknown one.
     """
     for entity in entities:
         for span in timeline.spans_of(entity, Window(0, at + 1))[-1:]:
@@ -53,5 +53,5 @@ def threads_for(entities: Iterable[EntityId], at: Nanoseconds, timeline: Timelin
 
 
 def with_threads(threads: int) -> str:
-    """The executor with so many threads, as code would make it."""
+    """The executor with so many threads, as code."""
     return f"MultiThreadedExecutor(num_threads={threads})"

@@ -1,4 +1,4 @@
-"""All rules, in the order in which their findings are told: what stops a program first."""
+"""All rules, in the order in which their findings are listed: what stops a program comes first."""
 
 from sim.diagnosis.rule import Rule
 from sim.diagnosis.rules.deadlock import NeedsOneMoreWorker, SelfMadeDeadlock

@@ -1,4 +1,4 @@
-"""Rules on callbacks that wait for replies which cannot come as long as they wait."""
+"""Rules on callbacks that wait for replies which cannot come while they wait."""
 
 from collections.abc import Iterator, Sequence
 
@@ -15,7 +15,7 @@ _SETTLES: Nanoseconds = 100_000_000
 
 
 class SelfMadeDeadlock(Rule):
-    """Callbacks wait for each other in a circle, often one for itself.
+    """Callbacks wait for each other in a cycle, often one for itself.
 
     The usual case is ``Client.call`` inside a callback of the client's own exclusive group, or with the only
     thread there is. Source: the ROS 2 how-to guide "Synchronous vs. asynchronous service clients".
@@ -24,12 +24,16 @@ class SelfMadeDeadlock(Rule):
     id = "self-made-deadlock"
     summary = "a callback waits for a reply that it keeps from coming"
 
-    def check(self, look: TimelineView) -> Iterator[Finding]:
-        """Yield each circle."""
-        return (_found(self, knot, until) for knot, until in _knots(look) if not _lacks_worker(knot))
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each cycle."""
+        return (
+            _found(self, deadlock, until)
+            for deadlock, until in _deadlocks(view)
+            if not _lacks_worker(deadlock)
+        )
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Spell the circle out."""
+        """Name the callbacks of the cycle."""
         subject = who(found.subject, timeline)
         cure = (
             f"use call_async() and return from {subject}, "
@@ -47,7 +51,7 @@ class SelfMadeDeadlock(Rule):
 
 
 class NeedsOneMoreWorker(Rule):
-    """Every worker of an executor stands still in a call, and the answer needs one more.
+    """Every worker of an executor is blocked in a call, and the reply needs one more.
 
     With K callbacks in ``Client.call`` at once, an executor needs at least K + 1 threads.
     """
@@ -55,12 +59,14 @@ class NeedsOneMoreWorker(Rule):
     id = "needs-one-more-worker"
     summary = "all threads stand still in calls whose answers need a thread"
 
-    def check(self, look: TimelineView) -> Iterator[Finding]:
-        """Yield each set of callbacks that keep all threads of an executor."""
-        return (_found(self, knot, until) for knot, until in _knots(look) if _lacks_worker(knot))
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each set of callbacks that block all threads of an executor."""
+        return (
+            _found(self, deadlock, until) for deadlock, until in _deadlocks(view) if _lacks_worker(deadlock)
+        )
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Tell how many threads would do."""
+        """Name the number of threads that would do."""
         subject = who(found.subject, timeline)
         return Explanation(
             f"{subject} {_waiting(found, timeline)}: {found.detail}{often(found.count)}",
@@ -71,25 +77,27 @@ class NeedsOneMoreWorker(Rule):
         )
 
 
-def _knots(look: TimelineView) -> Iterator[tuple[Sequence[Stuck], Nanoseconds]]:
-    """The sets of callbacks that wait for each other, and until when they did."""
-    told: set[tuple[Nanoseconds, ...]] = set()
-    for moment, until in _moments(look):
-        for knot in WaitForGraph(look.timeline, moment).knots():
-            key = tuple(each.since for each in knot)
-            if key not in told:
-                told.add(key)
-                yield knot, until
+def _deadlocks(view: TimelineView) -> Iterator[tuple[Sequence[Stuck], Nanoseconds]]:
+    """The sets of callbacks that wait for each other, and the end of their waiting."""
+    seen: set[tuple[Nanoseconds, ...]] = set()
+    for moment, until in _moments(view):
+        for deadlock in WaitForGraph(view.timeline, moment).deadlocks():
+            key = tuple(each.since for each in deadlock)
+            if key not in seen:
+                seen.add(key)
+                yield deadlock, until
 
 
-def _moments(look: TimelineView) -> Iterator[tuple[Nanoseconds, Nanoseconds]]:
-    """When to look for circles: now, and just before a thread gave up waiting; with the end of that.
+def _moments(view: TimelineView) -> Iterator[tuple[Nanoseconds, Nanoseconds]]:
+    """The moments to check: now, and just before a blocked call ended; each with the end of the wait.
 
-    The latest comes first, as that is until when a circle has lasted.
+    The latest comes first, since it tells how long a cycle lasted.
     """
-    if any(each.end is None and _is_long(each, look.end) for each in look.blocked) or _call_is_held_up(look):
-        yield look.end, look.end
-    ended = {each.end for each in look.blocked if each.end is not None and _is_long(each, each.end)}
+    if any(each.end is None and _is_long(each, view.end) for each in view.blocked) or _call_waits_for_group(
+        view
+    ):
+        yield view.end, view.end
+    ended = {each.end for each in view.blocked if each.end is not None and _is_long(each, each.end)}
     yield from ((end - 1, end) for end in sorted(ended, reverse=True))
 
 
@@ -97,28 +105,28 @@ def _is_long(blocked: Blocked, until: Nanoseconds) -> bool:
     return until - blocked.start >= _SETTLES
 
 
-def _call_is_held_up(look: TimelineView) -> bool:
-    """Whether a request or reply waits for a group, as it does behind a callback that awaits it there."""
-    for entity in look.entities(EntityKind.CLIENT, EntityKind.SERVICE):
-        for wait in look.waits(entity.id)[-1:]:
+def _call_waits_for_group(view: TimelineView) -> bool:
+    """Whether a request or reply waits for a group, as behind a callback of that group that awaits it."""
+    for entity in view.entities(EntityKind.CLIENT, EntityKind.SERVICE):
+        for wait in view.waits(entity.id)[-1:]:
             held = wait.parts[-1].reason is Reason.GROUP_HELD
             if wait.is_open and held and wait.until - wait.since >= _SETTLES:
                 return True
     return False
 
 
-def _lacks_worker(knot: Sequence[Stuck]) -> bool:
-    return any(each.obstacle.needs_worker and len(each.obstacle.by) > 1 for each in knot)
+def _lacks_worker(deadlock: Sequence[Stuck]) -> bool:
+    return any(each.obstacle.needs_worker and len(each.obstacle.by) > 1 for each in deadlock)
 
 
-def _found(rule: Rule, knot: Sequence[Stuck], until: Nanoseconds) -> Finding:
-    closing = knot[0]
-    detail = "; ".join(dict.fromkeys(each.obstacle.text for each in knot))
-    others = [each.entity for each in knot if each.entity != closing.entity]
+def _found(rule: Rule, deadlock: Sequence[Stuck], until: Nanoseconds) -> Finding:
+    closing = deadlock[0]
+    detail = "; ".join(dict.fromkeys(each.obstacle.text for each in deadlock))
+    others = [each.entity for each in deadlock if each.entity != closing.entity]
     culprit = others[0] if others else closing.entity
-    about = listed(each.obstacle.service for each in knot)
+    about = listed(each.obstacle.service for each in deadlock)
     return Finding(
-        rule, closing.since, until, closing.entity, culprit, about=about, size=len(knot), detail=detail
+        rule, closing.since, until, closing.entity, culprit, about=about, size=len(deadlock), detail=detail
     )
 
 

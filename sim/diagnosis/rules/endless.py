@@ -1,4 +1,4 @@
-"""The rule on callbacks that wait for a lock, an event or the like that nobody lets go of or sets."""
+"""The rule on callbacks that wait for a lock that is not released or an event that is not set."""
 
 from collections.abc import Iterator
 
@@ -10,28 +10,28 @@ from sim.trace.model import Window
 from sim.trace.timeline import Timeline
 
 _ADVICE = "wait with a timeout, and see that something ends the wait"
-"""For recordings whose notices have none."""
+"""For recordings whose notices have no advice."""
 
 
 class EndlessWait(Rule):
     """A callback waits without a timeout, and what it waits for does not come.
 
-    The engine tells of it on virtual time, where it sees what all threads of a program wait for. Where it is
-    a deadlock, that is sure; else it is told of as long as the callback has not come back.
+    The engine reports it on virtual time, where it sees what all threads of a program wait for. A deadlock is
+    final; any other wait is reported until the callback returns.
     """
 
     id = "endless-wait"
     summary = "a callback waits for a lock or an event that does not come"
 
-    def check(self, look: TimelineView) -> Iterator[Finding]:
-        """Yield each wait that the engine tells of."""
-        for notice in look.timeline.notices:
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each wait that the engine reported."""
+        for notice in view.timeline.notices:
             if notice.entity:
-                until = _until(notice, look)
+                until = _until(notice, view)
                 yield Finding(self, notice.t, until, notice.entity, detail=notice.text)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Say it as the engine does."""
+        """Repeat the engine's notice."""
         notice = _notice_of(found, timeline)
         how = "is in a deadlock" if _is_deadlock(notice) else "stands still"
         what = f" {how}: {notice.problem}" if notice.problem else f": {notice.text}"
@@ -43,7 +43,7 @@ class EndlessWait(Rule):
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
-        """Nothing, if it came to an end after all."""
+        """Irrelevant if the wait ended after all."""
         over = found.until < timeline.end and not _is_deadlock(_notice_of(found, timeline))
         return None if over else Weight.PROBLEM
 
@@ -53,11 +53,11 @@ def _notice_of(found: Finding, timeline: Timeline) -> Notice:
 
 
 def _is_deadlock(notice: Notice) -> bool:
-    """Whether it is sure; recordings without kinds tell of deadlocks, and of nothing else, as errors."""
+    """Whether the notice reports a deadlock; in recordings without kinds only these are errors."""
     return notice.kind is NoticeKind.DEADLOCK or notice.severity is Severity.ERROR
 
 
-def _until(notice: Notice, look: TimelineView) -> int:
-    """When the call ended that a notice is about, or until now."""
-    spans = look.timeline.spans_of(notice.entity, Window(notice.t, notice.t + 1))
-    return max((look.end if span.end is None else span.end for span in spans), default=look.end)
+def _until(notice: Notice, view: TimelineView) -> int:
+    """The end of the call that a notice is about; now if it lasts."""
+    spans = view.timeline.spans_of(notice.entity, Window(notice.t, notice.t + 1))
+    return max((view.end if span.end is None else span.end for span in spans), default=view.end)

@@ -1,4 +1,4 @@
-"""Rules on exceptions that nobody hears of."""
+"""Rules on exceptions that go unnoticed."""
 
 from collections.abc import Iterator
 
@@ -10,7 +10,7 @@ from sim.trace.timeline import Timeline
 
 
 class ExceptionSwallowed(Rule):
-    """A callback raised on a worker thread, and its exception has not come out of ``spin``.
+    """A callback raised on a worker thread, and ``spin`` has not raised its exception.
 
     A MultiThreadedExecutor keeps the exceptions of callbacks, and raises the oldest when it next hands a
     callback to a worker; the others are lost.
@@ -20,13 +20,13 @@ class ExceptionSwallowed(Rule):
     summary = "a callback raises and nobody hears of it"
     threshold: Nanoseconds = 500_000_000
 
-    def check(self, look: TimelineView) -> Iterator[Finding]:
-        """Yield each call that raised on a worker; whether it came out is weighed later."""
-        if not any(mark.kind == "error" for mark in look.timeline.marks(look.window)):
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each call that raised on a worker; ``weigh`` drops those that surfaced."""
+        if not any(mark.kind == "error" for mark in view.timeline.marks(view.window)):
             return
-        for entity in look.entities():
-            for span in look.spans(entity.id):
-                if span.error and span.end is not None and is_worker(span.thread, look.timeline):
+        for entity in view.entities():
+            for span in view.spans(entity.id):
+                if span.error and span.end is not None and is_worker(span.thread, view.timeline):
                     yield Finding(
                         self,
                         span.start,
@@ -48,7 +48,7 @@ class ExceptionSwallowed(Rule):
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
-        """Nothing, if the exception ended the run or another callback was started since."""
+        """Irrelevant if the exception ended the run or another callback started since."""
         ended = timeline.ended
         if ended is not None and ended.failed:
             return None if ended.error in (None, found.detail) else Weight.PROBLEM

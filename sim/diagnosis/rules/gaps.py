@@ -1,4 +1,4 @@
-"""The rule on what the trace itself lacks."""
+"""The rule on events that are missing from the trace."""
 
 from collections.abc import Iterator
 
@@ -8,19 +8,19 @@ from sim.trace.timeline import Timeline
 
 
 class GapsInTrace(Rule):
-    """Events were thrown away, so other rules may have missed a start, an end or a reply."""
+    """Events were dropped, so other rules may have missed a start, an end or a reply."""
 
     id = "gaps-in-trace"
     summary = "events are missing, and other findings may be wrong"
     weight = Weight.REMARK
 
-    def check(self, look: TimelineView) -> Iterator[Finding]:
-        """Tell how many are missing so far."""
-        if look.timeline.lost:
-            yield Finding(self, 0, look.end, size=look.timeline.lost)
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield the number of missing events."""
+        if view.timeline.lost:
+            yield Finding(self, 0, view.end, size=view.timeline.lost)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Tell what to make of the other findings."""
+        """Say what it means for the other findings."""
         missing = "1 event is" if found.size == 1 else f"{found.size:,} events are"
         return Explanation(
             f"{missing} missing from the trace: what is found about calls, waits and queues may be wrong",

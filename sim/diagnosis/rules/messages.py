@@ -1,4 +1,4 @@
-"""Rules on messages that are lost, that are old when used, or that never come."""
+"""Rules on messages that are lost, stale when used, or never delivered."""
 
 from bisect import bisect_left
 from collections.abc import Iterator, Sequence
@@ -18,20 +18,20 @@ from sim.units import SECOND
 
 
 class DroppedMessages(Rule):
-    """A queue was full, or messages stayed in it longer than they live, and some were lost.
+    """Messages were lost because a queue was full or they exceeded their lifespan.
 
-    A queue of one is usually meant to keep the newest only, hence a remark; so is what an action loses, whose
-    queues are not the program's own.
+    A queue of one usually keeps the newest message on purpose, so its losses are a remark; so are losses of
+    actions, whose queues are not the program's own.
     """
 
     id = "dropped-messages"
     summary = "messages are lost because a callback does not take them in time"
 
-    def check(self, look: TimelineView) -> Iterator[Finding]:
+    def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield the losses of each second as one."""
-        for entity in look.entities():
-            losses = look.timeline.losses_of(entity.id, look.window)
-            if losses and (over := look.end_of_program(entity)) is not None:
+        for entity in view.entities():
+            losses = view.timeline.losses_of(entity.id, view.window)
+            if losses and (over := view.end_of_program(entity)) is not None:
                 losses = [at for at in losses if at <= over]
             for _, each in groupby(losses, key=lambda at: at // SECOND):
                 times = list(each)
@@ -39,7 +39,7 @@ class DroppedMessages(Rule):
                 yield Finding(self, times[0], times[-1], entity.id, size=count, count=count)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Tell what the callback waited for while its queue ran over."""
+        """Say what the callback waited for while its queue overflowed."""
         entity = entity_of(found, timeline)
         subject = who(found.subject, timeline)
         waits = timeline.waits_of(entity.id, Window(found.at, found.at + 1))
@@ -55,48 +55,48 @@ class DroppedMessages(Rule):
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight:
-        """Whoever asks for the newest message only gets it."""
+        """A remark for queues of one."""
         return Weight.REMARK if entity_of(found, timeline).depth <= 1 else Weight.PROBLEM
 
 
 class StaleData(Rule):
-    """A timer's callback began while a newer message than its node had seen waited for long already."""
+    """A timer's callback ran while a newer message than its node had seen had been waiting for long."""
 
     id = "stale-data"
     summary = "a timer decides on old data while newer messages wait"
     threshold: Nanoseconds = 200_000_000
 
-    def check(self, look: TimelineView) -> Iterator[Finding]:
-        """Yield each call of a timer that knew less than had come for so long."""
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each timer call that ran while messages had waited longer than the threshold."""
         worst: dict[tuple[EntityId, Nanoseconds], Finding] = {}
-        for sensor in look.entities(EntityKind.SUBSCRIPTION):
-            timers = (each.id for each in look.entities(EntityKind.TIMER) if each.node == sensor.node)
-            for found in self._of(sensor.id, tuple(timers), look):
+        for sensor in view.entities(EntityKind.SUBSCRIPTION):
+            timers = (each.id for each in view.entities(EntityKind.TIMER) if each.node == sensor.node)
+            for found in self._of(sensor.id, tuple(timers), view):
                 known = worst.get((found.subject, found.at))
                 if known is None or known.size < found.size:
                     worst[found.subject, found.at] = found
         yield from worst.values()
 
-    def _of(self, sensor: EntityId, timers: Sequence[EntityId], look: TimelineView) -> Iterator[Finding]:
-        for wait in look.waits(sensor):
+    def _of(self, sensor: EntityId, timers: Sequence[EntityId], view: TimelineView) -> Iterator[Finding]:
+        for wait in view.waits(sensor):
             is_long = wait.until - wait.since >= self.threshold
-            if is_long and look.timeline.calls_of(sensor, Window(0, wait.since + 1)):
+            if is_long and view.timeline.calls_of(sensor, Window(0, wait.since + 1)):
                 for timer in timers:
-                    for span in self._misled(look, timer, wait):
+                    for span in self._uninformed_calls(view, timer, wait):
                         age = span.start - wait.since
                         yield Finding(self, span.start, span.start, timer, sensor, size=age)
 
-    def _misled(self, look: TimelineView, timer: EntityId, wait: LongWait) -> Iterator[Span]:
-        spans = look.spans(timer)
+    def _uninformed_calls(self, view: TimelineView, timer: EntityId, wait: LongWait) -> Iterator[Span]:
+        spans = view.spans(timer)
         first = bisect_left(spans, wait.since + self.threshold, key=attrgetter("start"))
         for span in spans[first:]:
             if span.start > wait.until:
                 return
-            if wait.is_open or span.start < wait.until or _is_before_the_first_of(wait, span, look):
+            if wait.is_open or span.start < wait.until or _is_before_the_first_of(wait, span, view):
                 yield span
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Tell how old the data was at least."""
+        """Name the least age of the data."""
         subject, sensor = who(found.subject, timeline), who(found.culprit, timeline)
         return Explanation(
             f"{subject} decided on data at least {duration(found.size)} old: "
@@ -109,7 +109,7 @@ class StaleData(Rule):
 
 
 class QosMismatch(Rule):
-    """A publisher and a subscription of one topic do not match, so nothing is ever delivered.
+    """A publisher and a subscription of one topic are incompatible, so nothing is ever delivered.
 
     Source: the ROS 2 documentation, "Quality of Service settings".
     """
@@ -117,17 +117,17 @@ class QosMismatch(Rule):
     id = "qos-mismatch"
     summary = "a subscription hears nothing because the quality of service does not match"
 
-    def check(self, look: TimelineView) -> Iterator[Finding]:
-        """Yield each pair that does not match."""
-        for each in reversed(look.timeline.mismatches):
-            if each.t <= look.window.start:
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each incompatible pair."""
+        for each in reversed(view.timeline.mismatches):
+            if each.t <= view.window.start:
                 return
             yield Finding(self, each.t, each.t, each.entity, about=each.topic, detail=each.policy)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name the policy, and both ends with their lines."""
+        """Name the policy and the source lines of both endpoints."""
         publisher, subscription = next(
-            (_made_at(each.publisher), _made_at(each.subscription))
+            (_location(each.publisher), _location(each.subscription))
             for each in timeline.mismatches
             if (each.t, each.entity, each.topic) == (found.at, found.subject, found.about)
         )
@@ -136,38 +136,38 @@ class QosMismatch(Rule):
         outside = "" if publisher else " outside the program"
         ends = [
             f"the {name} of {place}"
-            for name, place in zip(_ENDS, (publisher, subscription), strict=True)
+            for name, place in zip(_ENDPOINTS, (publisher, subscription), strict=True)
             if place
         ]
         cure = f"give both ends of {found.about} the same QoSProfile"
         return Explanation(
             f"{subject} hears nothing from a publisher of {found.about}{outside}: "
             f"{found.detail} does not match",
-            _PROMISES.get(found.detail, "a publisher has to offer at least what a subscription requests"),
+            _POLICY_RULES.get(found.detail, "a publisher has to offer at least what a subscription requests"),
             f"{cure}: {' and '.join(ends)}" if ends else cure,
             subscription or publisher or place_of(found.subject, timeline),
         )
 
 
-_ENDS = ("publisher", "subscription")
+_ENDPOINTS = ("publisher", "subscription")
 
 
-def _made_at(end: tuple[str, int]) -> CodeLocation | None:
+def _location(end: tuple[str, int]) -> CodeLocation | None:
     file, line = end
     return CodeLocation(file, line, line) if file else None
 
 
-_PROMISES = {
+_POLICY_RULES = {
     "RELIABILITY": "a reliable subscription takes nothing from a best-effort publisher",
     "DURABILITY": "a transient-local subscription takes nothing from a volatile publisher",
 }
 
 
-def _is_before_the_first_of(wait: LongWait, timer: Span, look: TimelineView) -> bool:
-    """Whether a timer's call of the very moment at which a wait ended came before the call waited for."""
-    following = [each for each in look.spans(wait.entity) if each.start == wait.until]
+def _is_before_the_first_of(wait: LongWait, timer: Span, view: TimelineView) -> bool:
+    """Whether a timer call at the very end of a wait came before the call that had waited."""
+    following = [each for each in view.spans(wait.entity) if each.start == wait.until]
     if not following or following[0].thread != timer.thread:
         return False
-    lane = look.timeline.spans_on(timer.thread, Window(wait.until, wait.until + 1))
+    lane = view.timeline.spans_on(timer.thread, Window(wait.until, wait.until + 1))
     entities = [span.entity for span in lane if span.start == wait.until]
     return entities.index(timer.entity) < entities.index(wait.entity)

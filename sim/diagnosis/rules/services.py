@@ -10,34 +10,34 @@ from sim.trace.model import Span
 from sim.trace.timeline import Timeline
 
 _REFUSED = "TypeError: Expected "
-"""How the error begins that a service raises when its callback returned something else than a response."""
+"""Start of the error that a service raises when its callback did not return a response."""
 
 
 class UnreturnedResponse(Rule):
-    """A service's callback ended, and its caller got no answer: it raised, or returned no response."""
+    """A service's callback raised, or returned no response, so its caller gets no reply."""
 
     id = "unreturned-response"
     summary = "a service's callback ends without an answer"
 
-    def check(self, look: TimelineView) -> Iterator[Finding]:
-        """Yield each call of a service's callback that ended and left its caller waiting."""
-        for entity in look.entities(EntityKind.SERVICE):
-            for span in look.spans(entity.id):
-                if span.message in look.unanswered and self._is_over(span, look):
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each finished call of a service's callback without a reply."""
+        for entity in view.entities(EntityKind.SERVICE):
+            for span in view.spans(entity.id):
+                if span.message in view.unanswered and self._is_over(span, view):
                     assert span.end is not None
                     yield Finding(self, span.start, span.end, entity.id, entity.id, detail=span.error)
 
-    def _is_over(self, span: Span, look: TimelineView) -> bool:
+    def _is_over(self, span: Span, view: TimelineView) -> bool:
         if span.end is None:
             return False
-        ended = look.timeline.ended
+        ended = view.timeline.ended
         if ended is not None and span.end >= ended.t and not span.error:
             return False  # the end of the run cut it short
-        group = look.timeline.entities[span.entity].group
-        return bool(span.error) or span.entity not in look.now.holders.get(group, ())
+        group = view.timeline.entities[span.entity].group
+        return bool(span.error) or span.entity not in view.now.holders.get(group, ())
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Tell whether it raised or returned nothing."""
+        """Say whether it raised or returned nothing."""
         subject, service = who(found.subject, timeline), entity_of(found, timeline).name
         if found.detail and not found.detail.startswith(_REFUSED):
             what = f"{subject} raised {found.detail}"
@@ -59,14 +59,14 @@ class NobodyOffers(Rule):
     id = "nobody-offers"
     summary = "a service is called that nobody offers"
 
-    def check(self, look: TimelineView) -> Iterator[Finding]:
-        """Yield each request that was lost."""
-        for call in look.calls():
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each lost request."""
+        for call in view.calls():
             if call.lost:
                 yield Finding(self, call.sent, call.sent, call.caller, about=call.service)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Tell whether there is such a service at other times."""
+        """Say whether there is such a service at other times."""
         caller = f"{who(found.subject, timeline)} called" if found.subject else "somebody called"
         known = [each for each in timeline.entities.values() if each.kind is EntityKind.SERVICE]
         if any(each.name == found.about for each in known):

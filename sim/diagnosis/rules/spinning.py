@@ -1,4 +1,4 @@
-"""The rule on spinning what is being spun already."""
+"""The rule on spinning an executor that is already being spun."""
 
 from collections.abc import Iterator
 
@@ -10,7 +10,7 @@ from sim.trace.timeline import Timeline
 
 
 class NestedSpin(Rule):
-    """A callback spins the executor that runs it, or takes its node from that; or two threads do so.
+    """A callback spins its own executor, or takes its node away from it; or two threads spin one executor.
 
     Since Jazzy 7.1.9 the executor raises. ``rclpy.spin_until_future_complete(node, future)`` and its like use
     the global executor: a node that another one spins is moved there, and is in none afterwards.
@@ -19,15 +19,15 @@ class NestedSpin(Rule):
     id = "nested-spin"
     summary = "a callback spins the executor that runs it"
 
-    def check(self, look: TimelineView) -> Iterator[Finding]:
+    def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield each attempt."""
-        for clash in reversed(look.timeline.spin_clashes):
-            if clash.t <= look.window.start:
+        for clash in reversed(view.timeline.spin_clashes):
+            if clash.t <= view.window.start:
                 return
             yield Finding(self, clash.t, clash.t, clash.entity, clash.entity, about=clash.function)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Tell what came of it, and how to get on without."""
+        """Say what it led to, and how to do without it."""
         clash = next(
             each for each in timeline.spin_clashes if (each.t, each.entity) == (found.at, found.subject)
         )

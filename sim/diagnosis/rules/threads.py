@@ -12,7 +12,7 @@ from sim.trace.timeline import Timeline
 from sim.units import SECOND
 
 _WARMED_UP: Nanoseconds = SECOND
-"""Before that a run has hardly begun, and its nodes may still be in the making."""
+"""Shorter runs are not judged: their nodes may not be complete."""
 
 
 class ThreadsNeverUsed(Rule):
@@ -22,12 +22,12 @@ class ThreadsNeverUsed(Rule):
     summary = "fewer threads would have done"
     weight = Weight.REMARK
 
-    def check(self, look: TimelineView) -> Iterator[Finding]:
-        """Compare the most that were needed with those there are."""
-        threads = sum(each.threads for each in _with_workers(look.timeline))
-        needed = look.threads_needed
-        if look.end >= _WARMED_UP and 0 < needed < threads and _one_for_all(look.timeline) is None:
-            yield Finding(self, 0, look.end, size=needed, detail=str(threads))
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Compare the threads needed with those available."""
+        threads = sum(each.threads for each in _with_workers(view.timeline))
+        needed = view.threads_needed
+        if view.end >= _WARMED_UP and 0 < needed < threads and _only_group(view.timeline) is None:
+            yield Finding(self, 0, view.end, size=needed, detail=str(threads))
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Name both numbers."""
@@ -46,20 +46,20 @@ class GroupsChangeNothing(Rule):
     summary = "groups or threads make no difference"
     weight = Weight.REMARK
 
-    def check(self, look: TimelineView) -> Iterator[Finding]:
-        """TimelineView for groups with one thread, and for threads with one group."""
-        if look.end < _WARMED_UP or not look.threads_needed:
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Find several groups with one thread, or several threads with one group."""
+        if view.end < _WARMED_UP or not view.threads_needed:
             return
-        only = _one_for_all(look.timeline)
+        only = _only_group(view.timeline)
         if only is not None:
-            first = look.timeline.group_members(only.id)[0]
-            yield Finding(self, 0, look.end, first.id, detail=_THREADS)
-        node = _node_with_groups(look.timeline)
-        if node is not None and thread_count(look.timeline) == 1:
-            yield Finding(self, 0, look.end, node.id, detail=_GROUPS)
+            first = view.timeline.group_members(only.id)[0]
+            yield Finding(self, 0, view.end, first.id, detail=_THREADS)
+        node = _node_with_groups(view.timeline)
+        if node is not None and thread_count(view.timeline) == 1:
+            yield Finding(self, 0, view.end, node.id, detail=_GROUPS)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Tell which of the two is without the other."""
+        """Say which of the two lacks the other."""
         subject = timeline.entities[found.subject]
         if found.detail == _THREADS:
             letter = timeline.groups[subject.group].letter
@@ -71,7 +71,7 @@ class GroupsChangeNothing(Rule):
             )
         groups = [each for each in timeline.groups.values() if each.node == subject.node]
         plural = len(groups) > 1
-        named = listed(_named([each.letter for each in groups]))
+        named = listed(_abbreviated([each.letter for each in groups]))
         return Explanation(
             f"group{'s' if plural else ''} {named} change{'' if plural else 's'} nothing: "
             "there is only one thread",
@@ -86,8 +86,8 @@ _THREADS = "threads"
 _GROUPS = "groups"
 
 
-def _named(letters: list[str]) -> list[str]:
-    """The letters of so many groups as a sentence can bear; the others are counted."""
+def _abbreviated(letters: list[str]) -> list[str]:
+    """The first letters; a number stands for the others."""
     if len(letters) <= _MOST_LETTERS:
         return letters
     shown = letters[: _MOST_LETTERS - 1]
@@ -98,8 +98,8 @@ def _with_workers(timeline: Timeline) -> list[Executor]:
     return [each for each in timeline.executors.values() if each.threads > 1]
 
 
-def _one_for_all(timeline: Timeline) -> Group | None:
-    """The exclusive group that all callbacks share though there is more than one thread."""
+def _only_group(timeline: Timeline) -> Group | None:
+    """The exclusive group that all callbacks share despite several threads."""
     if not _with_workers(timeline):
         return None
     groups = list(islice((each for each in timeline.groups.values() if _callbacks(timeline, each)), 2))
@@ -109,7 +109,7 @@ def _one_for_all(timeline: Timeline) -> Group | None:
 
 
 def _node_with_groups(timeline: Timeline) -> Entity | None:
-    """A callback of a node that has several groups, or a reentrant one; a lone default group is nobody's."""
+    """A callback of a node that has several groups or a reentrant one."""
     first: dict[NodeId, Entity] = {}
     for group in timeline.groups.values():
         for callback in _callbacks(timeline, group)[:1]:
@@ -120,6 +120,6 @@ def _node_with_groups(timeline: Timeline) -> Entity | None:
 
 
 def _callbacks(timeline: Timeline, group: Group) -> list[Entity]:
-    """The first two entities of a group that a program calls its own: with a callback, or clients."""
+    """The first two entities of a group that a program made: those with a callback, and clients."""
     members = timeline.group_members(group.id)
     return list(islice((each for each in members if each.callback or each.kind is EntityKind.CLIENT), 2))

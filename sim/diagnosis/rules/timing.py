@@ -1,4 +1,4 @@
-"""Rules on how long callbacks take, and what that does to others and to themselves."""
+"""Rules on the duration of callbacks and its effects."""
 
 from collections.abc import Iterator
 
@@ -12,34 +12,34 @@ from sim.trace.model import Entity, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
 _HABIT = 3
-"""From how many overruns on a timer is judged by how often it overruns."""
+"""The number of overruns from which on their share counts."""
 
 
 class OverlappingCallback(Rule):
-    """A callback began again while an earlier call of it still ran, as a reentrant group allows.
+    """A callback started while an earlier call of it was running, which a reentrant group allows.
 
-    What both calls read, change and write back can be lost, unless a lock guards that, which the trace does
-    not tell. For services this is what reentrant groups are made for, hence a remark.
+    Without a lock, which the trace does not show, both calls can overwrite each other's changes. Services are
+    what reentrant groups are made for, so their overlaps are a remark.
     """
 
     id = "overlapping-callback"
     summary = "a callback runs several times at once"
 
-    def check(self, look: TimelineView) -> Iterator[Finding]:
-        """Yield each call that began while another one ran."""
-        for entity in look.entities():
-            if entity.kind is EntityKind.CLIENT or _kind_of_group(entity, look) is GroupKind.EXCLUSIVE:
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each call that started while another one was running."""
+        for entity in view.entities():
+            if entity.kind is EntityKind.CLIENT or _kind_of_group(entity, view) is GroupKind.EXCLUSIVE:
                 continue
             latest = -1
-            for span in look.spans(entity.id):
-                end = span.end_at(look.end)
+            for span in view.spans(entity.id):
+                end = span.end_at(view.end)
                 shared = min(latest, end)
                 if span.start < shared:
                     yield Finding(self, span.start, shared, entity.id, entity.id, size=shared - span.start)
                 latest = max(latest, end)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name the danger."""
+        """Name the race condition."""
         subject = who(found.subject, timeline)
         cure = (
             f"give {subject} a MutuallyExclusiveCallbackGroup, or see that a lock guards what its calls share"
@@ -55,35 +55,35 @@ class OverlappingCallback(Rule):
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight:
-        """Timers and subscriptions are hardly meant to overlap."""
+        """A problem for timers and subscriptions, which are hardly meant to overlap."""
         meant = entity_of(found, timeline).kind not in (EntityKind.TIMER, EntityKind.SUBSCRIPTION)
         return Weight.REMARK if meant else Weight.PROBLEM
 
 
 class OverrunTimer(Rule):
-    """A timer's callback took longer than its period, and ticks were missed meanwhile.
+    """A timer's callback took longer than its period, so ticks were missed.
 
-    Source: rcl skips the periods that are past when a timer is called late; they are never made up for.
+    Source: rcl skips the periods that have passed when a timer is called late.
     """
 
     id = "overrun-timer"
     summary = "a timer's callback takes longer than its period"
 
-    def check(self, look: TimelineView) -> Iterator[Finding]:
-        """Yield each call that was too long, unless the next one began beside it."""
-        for entity in look.entities(EntityKind.TIMER):
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each call longer than the period, unless the next one overlaps it."""
+        for entity in view.entities(EntityKind.TIMER):
             if entity.period == 0:
                 continue
-            spans = look.spans(entity.id)
+            spans = view.spans(entity.id)
             for place, span in enumerate(spans):
-                end = span.end_at(look.end)
+                end = span.end_at(view.end)
                 beside = spans[place + 1 : place + 2]
                 if end - span.start > entity.period and not (beside and beside[0].start < end):
                     length = end - span.start
                     yield Finding(self, span.start, end, entity.id, entity.id, size=length)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Tell how many ticks the longest call cost."""
+        """Count the ticks that the longest call missed."""
         entity = entity_of(found, timeline)
         alone = threads_for([found.subject], found.until, timeline) == 1
         threads = f", with {with_threads(2)}" if alone else ""
@@ -100,9 +100,9 @@ class OverrunTimer(Rule):
         )
 
     def weigh(self, found: Finding, timeline: Timeline) -> Weight | None:
-        """A timer that overruns now and then has a rate still; one that does mostly has none.
+        """A problem if most calls overrun, else a remark.
 
-        One that was called once has missed nothing: it may be cancelled by its callback.
+        A timer that was called once has missed nothing: its callback may cancel it.
         """
         calls = timeline.calls_of(found.subject, Window(0, timeline.end + 1))
         if calls < 2:
@@ -117,28 +117,28 @@ class LongCallbackAmongSensors(Rule):
     summary = "a callback sleeps or works long in a group of subscriptions"
     threshold: Nanoseconds = 500_000_000
 
-    def check(self, look: TimelineView) -> Iterator[Finding]:
-        """Yield each call that kept subscriptions of its group waiting for so long."""
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield each call that kept subscriptions of its group waiting longer than the threshold."""
         told: set[tuple[EntityId, Nanoseconds]] = set()
-        for sensor in look.entities(EntityKind.SUBSCRIPTION):
-            for wait in look.waits(sensor.id):
+        for sensor in view.entities(EntityKind.SUBSCRIPTION):
+            for wait in view.waits(sensor.id):
                 for part in wait.because(Reason.GROUP_HELD):
-                    for span in self._spans_behind(part, part.start + wait.length(part), look):
+                    for span in self._spans_behind(part, part.start + wait.length(part), view):
                         if (span.entity, span.start) not in told:
                             told.add((span.entity, span.start))
-                            end = span.end_at(look.end)
+                            end = span.end_at(view.end)
                             size = end - span.start
                             yield Finding(self, span.start, end, span.entity, span.entity, size=size)
 
-    def _spans_behind(self, part: Wait, until: Nanoseconds, look: TimelineView) -> Iterator[Span]:
-        holder = look.timeline.entities.get(part.holder)
-        if until - part.start < self.threshold or holder is None or holder.id in look.nested_spinners:
+    def _spans_behind(self, part: Wait, until: Nanoseconds, view: TimelineView) -> Iterator[Span]:
+        holder = view.timeline.entities.get(part.holder)
+        if until - part.start < self.threshold or holder is None or holder.id in view.nested_spinners:
             return
-        if _kind_of_group(holder, look) is GroupKind.EXCLUSIVE:
-            for span in look.spans(holder.id):
-                end = span.end_at(look.end)
+        if _kind_of_group(holder, view) is GroupKind.EXCLUSIVE:
+            for span in view.spans(holder.id):
+                end = span.end_at(view.end)
                 is_long = min(end, until) - max(span.start, part.start) >= self.threshold
-                if is_long and not look.stood_in_call(holder.id, span.start, end):
+                if is_long and not view.stood_in_call(holder.id, span.start, end):
                     yield span
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
@@ -162,6 +162,6 @@ class LongCallbackAmongSensors(Rule):
         )
 
 
-def _kind_of_group(entity: Entity, look: TimelineView) -> GroupKind | None:
-    group = look.timeline.groups.get(entity.group)
+def _kind_of_group(entity: Entity, view: TimelineView) -> GroupKind | None:
+    group = view.timeline.groups.get(entity.group)
     return None if group is None else group.kind

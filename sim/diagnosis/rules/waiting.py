@@ -17,7 +17,7 @@ HALF_A_SECOND = SECOND // 2
 
 
 class GroupStarvation(Rule):
-    """A callback was ready, but its mutually exclusive group had let another one in.
+    """A callback was ready, but another one held its mutually exclusive group.
 
     Source: the ROS 2 how-to guide "Using callback groups".
     """
@@ -26,35 +26,35 @@ class GroupStarvation(Rule):
     summary = "a callback waits long because its group is held"
     threshold = HALF_A_SECOND
 
-    def check(self, look: TimelineView) -> Iterator[Finding]:
-        """Yield the waits in which others held the group for so long in all."""
-        yield from _kept_waiting(self, look, Reason.GROUP_HELD, self.threshold)
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield the waits in which others held the group longer than the threshold in total."""
+        yield from _kept_waiting(self, view, Reason.GROUP_HELD, self.threshold)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name who held the group."""
+        """Name the holder of the group."""
         subject, culprit = who(found.subject, timeline), who(found.culprit, timeline)
         group = group_of(found.subject, timeline)
         return Explanation(
             f"{subject} waited {duration(found.lasted)}: {group} was held by {culprit}{often(found.count)}",
-            f"{_admits(found.subject, timeline)}, however many threads are free",
+            f"{_admission(found.subject, timeline)}, however many threads are free",
             cure_for_waits([found.subject], found.subject, Window(found.at, found.until), timeline),
             place_of(found.culprit, timeline) or place_of(found.subject, timeline),
         )
 
 
 class NoFreeWorker(Rule):
-    """A callback's group would have let it in, but every thread of its executor was running another one."""
+    """A callback's group was free, but every thread of its executor was busy."""
 
     id = "no-free-worker"
     summary = "a callback waits long because all threads are busy"
     threshold = HALF_A_SECOND
 
-    def check(self, look: TimelineView) -> Iterator[Finding]:
-        """Yield the waits in which all threads were with others for so long in all."""
-        yield from _kept_waiting(self, look, Reason.NO_FREE_WORKER, self.threshold)
+    def check(self, view: TimelineView) -> Iterator[Finding]:
+        """Yield the waits in which all threads were busy longer than the threshold in total."""
+        yield from _kept_waiting(self, view, Reason.NO_FREE_WORKER, self.threshold)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Name who kept the threads."""
+        """Name the callback that occupied a thread."""
         subject, culprit = who(found.subject, timeline), who(found.culprit, timeline)
         beside_itself = len(timeline.spans_of(found.culprit, Window(found.at, found.at + 1)))
         room = cure_for_waits([found.subject], found.subject, Window(found.at, found.until), timeline)
@@ -78,34 +78,34 @@ class NoFreeWorker(Rule):
 
 
 class NodeNeverSpins(Rule):
-    """Something of a node is ready, and no executor spins the node."""
+    """A callback of a node is ready, and no executor spins the node."""
 
     id = "node-never-spins"
     summary = "callbacks are ready and nobody spins their node"
     threshold = SECOND
 
-    def check(self, look: TimelineView) -> Iterator[Finding]:
+    def check(self, view: TimelineView) -> Iterator[Finding]:
         """Yield for each node the callback that has waited longest."""
-        taken = {clash.node for clash in look.timeline.spin_clashes}
+        taken = {clash.node for clash in view.timeline.spin_clashes}
         longest: dict[int, LongWait] = {}
-        for entity in look.entities():
-            wait = next(reversed(look.waits(entity.id)), None)
+        for entity in view.entities():
+            wait = next(reversed(view.waits(entity.id)), None)
             if wait is None or not wait.is_open or wait.parts[-1].reason is not Reason.NOBODY_SPINS:
                 continue
             since = wait.parts[-1].start
             if entity.node in taken:
                 continue
-            if look.end - since >= self.threshold and look.end_of_program(entity) is None:
+            if view.end - since >= self.threshold and view.end_of_program(entity) is None:
                 known = longest.get(entity.node)
                 if known is None or since < known.parts[-1].start:
                     longest[entity.node] = wait
         for node, wait in longest.items():
-            name = look.timeline.nodes.get(node, "")
+            name = view.timeline.nodes.get(node, "")
             since = wait.parts[-1].start
-            yield Finding(self, since, look.end, wait.entity, about=name, size=look.end - since)
+            yield Finding(self, since, view.end, wait.entity, about=name, size=view.end - since)
 
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
-        """Tell whether it ever was spun, and whether there is an executor that could."""
+        """Say whether the node was ever spun, and whether there is an executor for it."""
         subject = who(found.subject, timeline)
         node = timeline.entities[found.subject].node
         ever = any(
@@ -128,34 +128,34 @@ class NodeNeverSpins(Rule):
 
 
 def _kept_waiting(
-    rule: GroupStarvation | NoFreeWorker, look: TimelineView, reason: Reason, threshold: Nanoseconds
+    rule: GroupStarvation | NoFreeWorker, view: TimelineView, reason: Reason, threshold: Nanoseconds
 ) -> Iterator[Finding]:
-    for entity in look.entities():
-        for wait in look.waits(entity.id):
+    for entity in view.entities():
+        for wait in view.waits(entity.id):
             parts = wait.because(reason)
             waited = sum(map(wait.length, parts))
-            if waited < threshold or _is_callers_own(entity, wait, look):
+            if waited < threshold or _may_wait_for_its_caller(entity, wait, view):
                 continue
             shares: defaultdict[EntityId, Nanoseconds] = defaultdict(int)
             for part in parts:
                 shares[part.holder] += wait.length(part)
             culprit = max(shares, key=shares.__getitem__)
-            if culprit in look.nested_spinners:
+            if culprit in view.nested_spinners:
                 continue
             yield Finding(rule, wait.since, wait.until, entity.id, culprit, size=waited)
 
 
-def _is_callers_own(entity: Entity, wait: LongWait, look: TimelineView) -> bool:
-    """Whether a request or reply may wait for the very callback that waits for it: other rules tell that."""
+def _may_wait_for_its_caller(entity: Entity, wait: LongWait, view: TimelineView) -> bool:
+    """Whether a request or reply may wait for its own caller, which other rules cover."""
     if entity.kind is EntityKind.CLIENT and wait.is_open:
         return True
     holders = {part.holder for part in wait.parts}
     return entity.kind in (EntityKind.CLIENT, EntityKind.SERVICE) and any(
-        look.stood_in_call(holder, wait.since, wait.until) for holder in holders
+        view.stood_in_call(holder, wait.since, wait.until) for holder in holders
     )
 
 
-def _admits(entity: EntityId, timeline: Timeline) -> str:
+def _admission(entity: EntityId, timeline: Timeline) -> str:
     group = timeline.groups.get(timeline.entities[entity].group)
     if group is None or group.kind is GroupKind.EXCLUSIVE:
         return "a mutually exclusive group lets one callback in at a time"
