@@ -120,9 +120,9 @@ class CbtuiApp(EndingApp):
 
     def search_themes(self) -> None:
         """Open a palette of the themes."""
-        from cbtui.terminal.textual_internals import LeavablePalette
+        from cbtui.terminal.textual_internals import SafeCommandPalette
 
-        self.push_screen(LeavablePalette(providers=[ThemeProvider], placeholder="Search for themes…"))
+        self.push_screen(SafeCommandPalette(providers=[ThemeProvider], placeholder="Search for themes…"))
 
     def get_driver_class(self) -> "type[Driver]":
         """Return the driver that reads keys and draws."""
@@ -135,10 +135,10 @@ class CbtuiApp(EndingApp):
 
     def action_command_palette(self) -> None:
         """Open the command palette, unless it is open."""
-        from cbtui.terminal.textual_internals import LeavablePalette
+        from cbtui.terminal.textual_internals import SafeCommandPalette
 
-        if not isinstance(self.screen, LeavablePalette):
-            self.push_screen(LeavablePalette(id="--command-palette"))
+        if not isinstance(self.screen, SafeCommandPalette):
+            self.push_screen(SafeCommandPalette(id="--command-palette"))
 
     def tell_saved(self, sentence: str) -> None:
         """Report what was saved as a screen closed: in a notification, and on the terminal at exit."""

@@ -1,10 +1,10 @@
-"""Which version of cbtui this is."""
+"""The version of cbtui."""
 
 from importlib.metadata import PackageNotFoundError, version
 
 
 def own_version() -> str:
-    """The version that is installed, or that none is."""
+    """Return the installed version, or a note that cbtui is not installed."""
     try:
         return version("cbtui")
     except PackageNotFoundError:

@@ -52,14 +52,13 @@ def ros(environment: Mapping[str, str]) -> Iterator[Examination]:
         spec = None
     if spec is not None:
         place = Path(spec.origin).parent if spec.origin else "this Python's path"
-        yield note(
-            "ROS 2",
-            f"a real rclpy lies in {place}; programs that cbtui runs get its model instead",
-            "use python3 or ros2 run for the real one; nothing passes between the two",
-        )
+        yield well("ROS 2", f"a real rclpy lies in {place}; --on ros2 runs programs on it")
     elif distribution:
         yield well(
-            "ROS 2", f"{distribution} is set up here, for another Python; nothing passes to or from it"
+            "ROS 2",
+            f"{distribution} is set up here, for another Python: name that with --on ros2 --python EXE",
         )
     else:
-        yield well("ROS 2", "none here, and none needed")
+        yield well(
+            "ROS 2", f"none here, and none needed; {install_command('cbtui[ros]')} brings one for --on ros2"
+        )

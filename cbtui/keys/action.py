@@ -1,4 +1,4 @@
-"""What an action is: something a person can do, by a key, on a screen or a pane."""
+"""The type of an action: something the user can do with a key on a screen or pane."""
 
 import re
 from collections.abc import Iterable
@@ -44,7 +44,7 @@ class Scope(StrEnum):
 
 
 class Action(NamedTuple):
-    """Something a person can do. ``key`` is Textual's name of a key, ``help`` one sentence.
+    """Something the user can do. ``key`` is Textual's name of a key, ``help`` one sentence.
 
     Neighbours with the same ``label`` share a place in the footer; those with the same ``series`` share a
     line of the help, which says that instead.
@@ -59,22 +59,22 @@ class Action(NamedTuple):
 
     @property
     def line(self) -> str:
-        """What the help says."""
+        """The text in the help."""
         return self.series or self.help
 
 
 def key_id(action: Action) -> str:
-    """Return the name by which an action's keys are chosen: ``lesson.pause``, ``lesson.show_pane_guide``."""
+    """Return an action's name in the configuration: ``lesson.pause``, ``lesson.show_pane_guide``."""
     words = re.findall(r"\w+", action.id)
     return f"{action.scope.name.lower()}.{'_'.join(words)}"
 
 
 def method_of(action: Action) -> tuple[str, tuple[object, ...]]:
-    """Return the name and the arguments with which a screen is asked whether an action works now."""
+    """Return the name and arguments that ``check_action`` gets for an action."""
     _, name, arguments = parse(action.id)
     return name, arguments
 
 
 def group_by(actions: Iterable[Action], field: str) -> list[tuple[Action, ...]]:
-    """Put neighbours together that agree in a field."""
+    """Group neighbouring actions by the value of a field."""
     return [tuple(group) for _, group in groupby(actions, key=attrgetter(field))]

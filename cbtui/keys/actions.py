@@ -1,7 +1,7 @@
-"""The one registry of what a person can do: keys, footer, palette and help all read it.
+"""The registry of all actions: keys, footer, palette and help are generated from it.
 
-A screen only implements ``action_<id>`` for the actions of its scope, and says in ``check_action`` which of
-them have a meaning now.
+A screen implements ``action_<id>`` for the actions of its scope, and ``check_action``, which tells whether an
+action is available now.
 """
 
 from cbtui.keys.action import CHECKS, PANES, Action, Scope
@@ -380,7 +380,7 @@ ACTIONS = (
 def actions_of(scope: Scope) -> tuple[Action, ...]:
     """Return the actions that work in a scope, on a pane also those of its lesson.
 
-    Outside of lines that are typed and of windows those of everywhere work too.
+    Actions of ``EVERYWHERE`` are left out in windows and while text is typed.
     """
     if scope in _ON_A_PANE:
         scopes: tuple[Scope, ...] = (scope, Scope.LESSON, Scope.EVERYWHERE)

@@ -1,4 +1,4 @@
-"""Actions as Textual has them: bindings, and where each is carried out."""
+"""Actions as Textual bindings, and the node that performs each of them."""
 
 from typing import TYPE_CHECKING, Any
 
@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from textual.app import App
 
 _KEYS_THAT_WIDGETS_WANT = {"left", "right", "tab", "ctrl+c"}
-"""Panes scroll with the arrows and pass the focus on with tab: the screen has to be asked first."""
+"""Keys that panes bind to scrolling and focus: the screen's bindings need priority."""
 
 _PLACES = {
     Scope.EVERYWHERE: "app",
@@ -23,7 +23,7 @@ _PLACES = {
     Scope.PROMPT: "focused",
     Scope.KEYBOARD: "focused",
 }
-"""What implements the actions of a scope, where it is not the screen."""
+"""The node that implements the actions of a scope, if it is not the screen."""
 
 
 def bindings_of(*scopes: Scope) -> list[Binding]:
@@ -32,7 +32,7 @@ def bindings_of(*scopes: Scope) -> list[Binding]:
 
 
 async def perform(app: "App[Any]", action: Action) -> None:
-    """Do an action for a click or the palette; one of the widget with the keys not, if none has them."""
+    """Perform an action for a click or the palette; one of the widget with the focus only if there is one."""
     place = _PLACES.get(action.scope, "screen")
     if place != "focused" or app.focused is not None:
         await app.run_action(f"{place}.{action.id}")

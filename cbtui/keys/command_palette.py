@@ -1,4 +1,4 @@
-"""The command palette, and the registry's actions in it."""
+"""The registry's actions in the command palette."""
 
 from collections.abc import Coroutine, Iterator
 from functools import partial
@@ -15,7 +15,7 @@ from cbtui.looks.theme import Charset
 
 
 class ActionsProvider(Provider):
-    """Offers the actions that work on the screen below the palette."""
+    """Offers the actions that are available on the screen below the palette."""
 
     async def discover(self) -> Hits:
         """Offer all of them."""
@@ -23,7 +23,7 @@ class ActionsProvider(Provider):
             yield DiscoveryHit(action.help, self._run(action))
 
     async def search(self, query: str) -> Hits:
-        """Offer those whose help or label fits."""
+        """Offer those whose help or label matches."""
         matcher = self.matcher(query)
         for action in self._actions():
             score = max(matcher.match(action.help), matcher.match(action.label))

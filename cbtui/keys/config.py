@@ -1,4 +1,4 @@
-"""The configuration file: keys and how the screen looks; what is wrong in it is told with its line."""
+"""The configuration file: keys and appearance; faults are reported with their lines."""
 
 import re
 import tomllib
@@ -27,7 +27,7 @@ _CHOICES = {
 
 @dataclass(frozen=True)
 class Config:
-    """What a person has chosen; None where the console chooses."""
+    """The user's settings; None stands for the console's default."""
 
     theme: str | None = None
     charset: str | None = None
@@ -35,14 +35,14 @@ class Config:
 
 
 class ParsedConfig(NamedTuple):
-    """A configuration, without the entries that ``complaints`` is about, a sentence for each."""
+    """A configuration without its faulty entries; ``complaints`` has a sentence for each of those."""
 
     config: Config
     complaints: list[str]
 
 
 def standard_path() -> Path:
-    """Where a person's own configuration lies."""
+    """The path of the user's configuration."""
     return config_folder() / "config.toml"
 
 
@@ -58,12 +58,12 @@ def read_file(path: Path) -> ParsedConfig:
 
 
 def read_text(text: str, name: str) -> ParsedConfig:
-    """Read a configuration; ``name`` is what its complaints call it."""
+    """Parse a configuration; ``name`` is the file name in complaints."""
     try:
         document = plain_toml.load(text)
     except tomllib.TOMLDecodeError as error:
         return ParsedConfig(Config(), [f"{name}:{_fault(error, text)}"])
-    except ValueError as error:  # numbers that Python does not read
+    except ValueError as error:  # a number that Python cannot convert
         return ParsedConfig(Config(), [f"{name}: {error}"])
     complaints: list[tuple[int, str]] = []
     lines = _lines_of(text)
@@ -134,7 +134,7 @@ def _flat(table: Mapping[str, object], above: str = "") -> Iterator[tuple[str, o
             yield f"{above}{name}", value
 
 
-# lines, which tomllib does not tell
+# line numbers, which tomllib does not provide
 
 
 def _lines_of(text: str) -> dict[str, int]:
@@ -155,14 +155,14 @@ def _plain(dotted: str) -> str:
 
 
 def _line(lines: Mapping[str, int], entry: str) -> int:
-    """The line of an entry, or of the nearest one that it lies in: an inline table has one line for all."""
+    """The line of an entry, or of the nearest table around it: entries of an inline table share a line."""
     while entry and entry not in lines:
         entry = entry.rpartition(".")[0]
     return lines.get(entry, 1)
 
 
 def _fault(error: tomllib.TOMLDecodeError, text: str) -> str:
-    """The line of what is not TOML, and what it is."""
+    """The line and the message of a TOML syntax error."""
     found = re.fullmatch(r"(.*) \(at (?:line (\d+), column \d+|end of document)\)", str(error))
     if found is None:
         return f" {error}"

@@ -1,4 +1,4 @@
-"""The ``[keys]`` of a configuration: what is wrong with them, and the keymap that the right ones make."""
+"""The ``[keys]`` table of a configuration: its validation, and the keymap of the valid entries."""
 
 from collections.abc import Callable, Iterator, Mapping
 from difflib import get_close_matches
@@ -11,24 +11,24 @@ from cbtui.keys.actions import ACTIONS, actions_of
 from cbtui.keys.keymap import Keymap, canonical, is_typed, keys_of
 
 Complain = Callable[[str, str], None]
-"""Takes a key id and what is wrong with it."""
+"""Receives a key id and what is wrong with its entry."""
 
 _NEVER_COME = {"ctrl+i": "tab", "ctrl+m": "enter", "ctrl+h": "backspace", "ctrl+j": "enter", "ctrl+s": "stop"}
-"""Keys that terminals send as others, or keep for themselves."""
+"""Keys that terminals send as other keys, or never send."""
 _UNREAL = {"return", "ctrl-at", "ctrl+@"}
 _NAMES = {key.value for key in Keys if not key.value.startswith("<")} - _UNREAL
 _OF_WIDGETS = {
     *("left", "right", "up", "down", "home", "end", "pageup", "pagedown"),
     *("tab", "shift+tab", "enter", "ctrl+c"),
 }
-"""Keys that panes scroll with and pass the focus on with."""
+"""Keys that panes use for scrolling and focus."""
 _QUIT = "ctrl+q"
 
 _BY_ID = {key_id(action): action for action in ACTIONS}
 
 
 def read_keys(table: Mapping[str, object], complain: Complain) -> Keymap:
-    """Return the keymap of the entries (by key id) that are right; ``complain`` is told of the others."""
+    """Return the keymap of the valid entries (by key id); ``complain`` is called for the others."""
     chosen = {}
     for name, value in table.items():
         try:

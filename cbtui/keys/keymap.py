@@ -1,4 +1,4 @@
-"""Which keys do what: the registry's own, but for those that a person has chosen otherwise."""
+"""The key map: the registry's keys, and those that the user has remapped."""
 
 from collections.abc import Iterable, Mapping
 from types import MappingProxyType
@@ -13,7 +13,7 @@ from cbtui.looks.theme import Charset
 
 
 class Keymap:
-    """The keys in force; ``chosen`` has, by an action's key id, the keys that it has instead of its own.
+    """The keys in force; ``chosen`` has remapped keys by the key id of their action.
 
     Keys are Textual's names, or characters.
     """
@@ -22,7 +22,7 @@ class Keymap:
         self._chosen = dict(chosen)
 
     def of(self, actions: Iterable[Action]) -> list[Action]:
-        """Return the actions with the keys that they have."""
+        """Return the actions with their keys in force."""
         return [self._with_its_keys(action) for action in actions]
 
     def sign(self, scope: Scope, action_id: str, charset: Charset) -> str:
@@ -32,10 +32,10 @@ class Keymap:
         )
 
     def for_textual(self) -> dict[str, str]:
-        """Return what ``App.set_keymap`` has to be told.
+        """Return the argument for ``App.set_keymap``.
 
-        Textual takes a key away from every action that has it when it takes it away from one, so those that
-        share a key with an action that has another now are told to keep theirs.
+        Remapping one action removes its old key from all actions in Textual, so the actions that share that
+        key are listed with it.
         """
         moved = {
             (action.scope, key)
@@ -59,27 +59,27 @@ STANDARD = Keymap()
 
 
 def keymap_of(app: App[Any]) -> Keymap:
-    """Return the keys in force in an app; one that knows of none has the registry's."""
+    """Return the keys in force in an app: its ``keys`` attribute, or the registry's keys."""
     keymap = getattr(app, "keys", STANDARD)
     assert isinstance(keymap, Keymap)
     return keymap
 
 
 def keys_of(action: Action) -> tuple[str, ...]:
-    """Return an action's keys, each in the form that ``canonical`` gives it."""
+    """Return an action's keys in canonical form."""
     return tuple(canonical(key) for key in action.key.split(","))
 
 
 def canonical(key: str) -> str:
-    """Return the one form of a key that can be written in two: ``?`` for ``question_mark``."""
+    """Return the canonical form of a key: ``?`` for ``question_mark``."""
     return character_of(key) or key
 
 
 def is_typed(key: str) -> bool:
-    """Tell whether a key puts something into a line of text, or moves about in it."""
+    """Tell whether a key edits a line of text or moves its cursor."""
     return len(key) == 1 or key in {"space", "backspace", "delete", "left", "right", "home", "end"}
 
 
 def _name(key: str) -> str:
-    """A key as it can stand between commas."""
+    """A key's name without commas."""
     return "comma" if key == "," else key

@@ -1,4 +1,4 @@
-"""Texts that name keys, shown with the keys that the person has: in files they name those of the registry."""
+"""Replaces the registry's keys in texts by the keys in force."""
 
 import re
 
@@ -13,17 +13,17 @@ _NAMED = re.compile(r"(?<![`\\])`([^`\s]+)`(?!`)")
 
 
 def key_in_force(key: str, keymap: Keymap) -> str:
-    """Return what a lesson's key is now, in words where it types nothing; what is no such key stays.
+    """Return the key in force for a key of the lesson's actions; other text is returned unchanged.
 
-    A key of several actions that have different ones now is ``x or y``.
+    For a key of several actions that are now on different keys the result is ``x or y``.
     """
     return " or ".join(_in_force(key, keymap)) or key
 
 
 def with_keys_in_force(markdown: str, keymap: Keymap) -> str:
-    """Return a text in which the lesson's keys, each alone in backticks, are those in force.
+    """Return a Markdown text with the lesson's keys, each alone in backticks, replaced by those in force.
 
-    What stands in blocks of code, and whatever else is in backticks, stays.
+    Code blocks and other text in backticks stay.
     """
     shown, fence = [], ""
     for line in markdown.splitlines(keepends=True):

@@ -1,4 +1,4 @@
-"""Keys as people write them."""
+"""Keys as they are displayed."""
 
 from collections.abc import Iterable
 
@@ -28,7 +28,7 @@ _PLAIN_SIGNS = _SIGNS | {
 
 
 def signs_of(actions: Iterable[Action], charset: Charset) -> str:
-    """Return the keys of some actions as people write them."""
+    """Return the keys of some actions for display."""
     keys = [action.key.partition(",")[0] for action in actions]
     digits = [key for key in keys if key.isdigit()]
     if len(digits) > 2 and "".join(digits) in "0123456789":
@@ -37,12 +37,12 @@ def signs_of(actions: Iterable[Action], charset: Charset) -> str:
 
 
 def character_of(key: str) -> str | None:
-    """Return what a key types, such as ``?`` for ``question_mark``; None for space and what types nothing."""
+    """Return the character of a key, ``?`` for ``question_mark``; None for space and for keys without one."""
     if len(key) == 1:
         return key
     character = key_to_character(key)
     if character is None and len(format_key(key)) == 1 and format_key(key).isascii():
-        character = format_key(key)  # minus, slash and others that Textual has own names for
+        character = format_key(key)  # minus, slash and other keys that Textual renames
     return character if character is not None and character.isprintable() and character != " " else None
 
 

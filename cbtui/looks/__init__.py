@@ -1,1 +1,1 @@
-"""Palettes, colour themes, contrast and glyphs: what everything on the screen is drawn with."""
+"""Palettes, colour themes, contrast and glyphs of everything on the screen."""

@@ -1,4 +1,4 @@
-"""The console's own colour themes for Textual, and the palette that pictures have under each theme."""
+"""The console's colour themes for Textual, and the picture palette of each theme."""
 
 from dataclasses import replace
 
@@ -12,7 +12,7 @@ _SOLID = {"text": "auto 100%", "text-muted": "auto 85%", "text-disabled": "auto 
 
 
 def _cursor(behind: str, text: str) -> dict[str, str]:
-    """The highlighted entry of a list, on which the accents of the theme are readable too."""
+    """Colours of the highlighted list entry, on which the theme's accents are readable."""
     return {
         "block-cursor-background": behind,
         "block-cursor-foreground": text,
@@ -92,5 +92,5 @@ _PALETTES = {"high-contrast": HIGH_CONTRAST, "high-contrast-light": HIGH_CONTRAS
 
 
 def palette_of(theme: Theme) -> Palette:
-    """Return the palette for a theme, the console's own or another of Textual's."""
+    """Return the palette for a theme of the console or of Textual."""
     return _PALETTES.get(theme.name, DARK if theme.dark else LIGHT)

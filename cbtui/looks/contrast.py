@@ -1,4 +1,4 @@
-"""Contrast by WCAG 2: how well a colour is told from what is behind it, and how to make it better."""
+"""Contrast ratios by WCAG 2, and colours that reach a given contrast."""
 
 from rich.color import blend_rgb
 from rich.color_triplet import ColorTriplet
@@ -15,12 +15,12 @@ def contrast(one: ColorTriplet, other: ColorTriplet) -> float:
 
 
 def readable_on(ground: ColorTriplet) -> ColorTriplet:
-    """Return black or white, whichever contrasts more; that is never less than 4.5."""
+    """Return black or white, whichever has more contrast, which is at least 4.5."""
     return max(BLACK, WHITE, key=lambda colour: contrast(colour, ground))
 
 
 def legible(colour: ColorTriplet, ground: ColorTriplet, least: float) -> ColorTriplet:
-    """Return the colour, moved towards black or white as far as the ``least`` contrast asks for."""
+    """Return the colour, blended with black or white until it reaches the ``least`` contrast."""
     towards = readable_on(ground)
     for step in range(_STEPS):
         moved = blend_rgb(colour, towards, step / _STEPS)

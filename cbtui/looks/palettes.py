@@ -1,14 +1,15 @@
-"""The colours of the pictures: callback groups and all else that is drawn, one palette for each theme."""
+"""The colours of pictures: callback groups and all other roles, one palette per theme."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, eq=False)
 class Palette:
-    """Colours for one background. Groups beyond ``groups`` get ``other`` and are told by their letter.
+    """Colours for one background. Groups beyond ``groups`` share ``other``.
 
-    ``words`` and ``shapes`` are the contrasts (WCAG 2, 1 to 21) that text and drawn things have with what is
-    behind them at least; ``textures`` is that of a group's texture with its colour: quieter than its label.
+    ``words`` and ``shapes`` are the least contrasts (WCAG 2, 1 to 21) of text and of shapes with their
+    background; ``textures`` is the contrast of a group's texture with its colour, less than that of its
+    label.
     """
 
     groups: tuple[str, ...]

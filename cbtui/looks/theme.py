@@ -1,4 +1,4 @@
-"""What things look like: colours of callback groups, textures of waits, and the glyphs of each charset."""
+"""Styles of drawn things by their role, and the glyphs of each charset."""
 
 from dataclasses import dataclass
 from enum import Enum, StrEnum, auto
@@ -15,7 +15,7 @@ from sim.trace.events import Reason
 
 
 class Charset(StrEnum):
-    """Which glyphs the terminal can show."""
+    """The glyphs that a terminal can show."""
 
     BRAILLE = "braille"
     BLOCK = "block"
@@ -23,7 +23,7 @@ class Charset(StrEnum):
 
 
 class Role(Enum):
-    """What a piece of a picture stands for; the palette decides how it looks."""
+    """What a piece of a picture represents; the palette gives its colour."""
 
     TEXT = auto()
     FAINT = auto()
@@ -46,10 +46,10 @@ class Role(Enum):
 
 
 class Ink(NamedTuple):
-    """How a run of text is to look.
+    """A semantic style, which ``style_of`` resolves for a palette and background.
 
     ``number`` is the place of a callback group (0 for A) for the roles that show one, and the age step
-    for ``TRAIL`` (0 the oldest). ``later`` marks what lies after the cursor, ``selected`` what the person
+    for ``TRAIL`` (0 the oldest). ``later`` marks what is after the cursor, ``selected`` what the user
     has selected.
     """
 
@@ -67,15 +67,14 @@ class TextRun(NamedTuple):
 
 
 TRAIL_STEPS = 4
-"""Into how many ages the robot's trail is divided."""
+"""The number of age steps of the robot's trail."""
 
 
 @dataclass(frozen=True)
 class Glyphs:
-    """The signs of one charset. ``left`` and ``right`` are a column filled from that side, by eighths.
+    """The glyphs of one charset. ``left`` and ``right`` fill a column from that side, by eighths.
 
-    ``textures`` are what whole columns of callback groups are filled with, A's first; they are drawn in the
-    role ``textured``, which may lay them on the group's colour.
+    ``textures`` fill whole columns of callback groups, A's first; they are drawn in the role ``textured``.
     """
 
     left: str
@@ -152,9 +151,9 @@ GLYPHS = {Charset.BRAILLE: _BLOCKS, Charset.BLOCK: _BLOCKS, Charset.ASCII: _PLAI
 
 
 def texture_of(number: int, glyphs: Glyphs) -> TextRun:
-    """Return what fills a column of the group at a place in the order of letters (0 for A).
+    """Return the texture of the group at a place in the order of letters (0 for A), for one column.
 
-    Neighbours differ; groups beyond the textures begin them again.
+    Neighbours differ; the textures repeat after the last one.
     """
     glyph = glyphs.textures[number % len(glyphs.textures)]
     return TextRun(glyph, Ink(Role.BAR if glyph == glyphs.left[8] else glyphs.textured, number))
@@ -167,7 +166,7 @@ def group_colour(number: int, palette: Palette) -> str:
 
 @lru_cache(maxsize=2048)
 def style_of(ink: Ink, palette: Palette, background: str) -> Style:
-    """Return the Rich style of an ink on a background (``#RRGGBB``), as contrasting as the palette asks."""
+    """Return the Rich style of an ink on a background (``#RRGGBB``), with the palette's least contrast."""
     ground = _triplet(background)
     least = palette.shapes if ink.role in _SHAPES else palette.words
     colour = legible(_triplet(_colour(ink, palette)), ground, least)
@@ -194,7 +193,7 @@ def style_of(ink: Ink, palette: Palette, background: str) -> Style:
 
 
 _LATER = 2 / 3
-"""How much of their contrast words keep at least that lie after the cursor."""
+"""The share of the least contrast that text after the cursor keeps."""
 
 _BOLD = {Role.STRONG, Role.LETTER, Role.WARN, Role.MARK, Role.NOW, Role.ROBOT}
 _OF_A_GROUP = {Role.LETTER, Role.BAR, Role.TEXTURE, Role.LABEL, Role.LINE, Role.HATCH}
@@ -209,7 +208,7 @@ _SHAPES = {
     Role.TRUE_SCAN,
     Role.SEEN_SCAN,
 }
-"""What is drawn rather than written; a label's and a texture's own contrast is with their bar."""
+"""Roles of shapes; the text of labels and textures contrasts with their bar instead."""
 
 
 def _colour(ink: Ink, palette: Palette) -> str:

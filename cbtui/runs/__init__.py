@@ -1,1 +1,1 @@
-"""One run seen from the console: set up, live, recorded, judged, compared or without a screen."""
+"""One run as the console sees it: set up, live, recorded, judged, compared or headless."""

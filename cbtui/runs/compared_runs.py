@@ -1,4 +1,4 @@
-"""Two runs that are compared, each a recording, a lesson or a file: read or run, until both are there."""
+"""Two runs to compare, each a recording, a lesson or a file: they are read or run to their end."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -22,16 +22,16 @@ from sim.trace.timeline import Timeline
 from sim.units import SECOND, nearest_ns
 
 LENGTH = 60 * SECOND
-"""How long runs are that nothing gives a length: nanoseconds."""
+"""Default length of runs in nanoseconds."""
 
 
 class CannotCompareError(Exception):
-    """Something that cannot be compared; the text is a sentence."""
+    """Two runs cannot be compared; the text is a sentence."""
 
 
 @dataclass(frozen=True)
 class ComparedRun:
-    """One of two runs: a recording's path, or what is to be run."""
+    """One of two runs: a recording's path, or a run request."""
 
     name: str
     what: Path | RunRequest
@@ -45,11 +45,11 @@ class ComparedRun:
 
 @dataclass(frozen=True)
 class ComparisonTerms:
-    """What is compared, and what is given to those that are run.
+    """The window of a comparison, and the inputs of the runs that are made for it.
 
-    ``start`` and ``end`` bound the window, which ends where the shorter run does at the latest; what is run
-    lasts until its end. ``calls`` are when the SetBool service is called, ``lines`` ``ros2`` lines with
-    their moments; ``inputs`` is a recording whose inputs are given instead of them. Times are seconds.
+    ``start`` and ``end`` bound the window; it ends no later than the shorter run, and runs are made to its
+    end. ``calls`` are when the SetBool service is called, ``lines`` ``ros2`` lines with their moments;
+    ``inputs`` is a recording whose inputs are given instead of them. Times are seconds.
     """
 
     start: float = 0
@@ -65,10 +65,10 @@ def _never() -> bool:
 
 @dataclass(frozen=True)
 class ComparedSide:
-    """One of two runs as they are compared: what it is called, and all that is known of it.
+    """One side of a comparison: its name and timeline.
 
-    ``alive`` tells whether the timeline still grows; ``service`` is one that has a lane before its first
-    call; ``damage`` is a sentence on what of a recording cannot be read, or how the run failed.
+    ``alive`` tells whether the timeline still grows. ``service`` has a lane before its first call. ``damage``
+    is a sentence on the unreadable part of a recording or on missing inputs.
     """
 
     name: str
@@ -77,8 +77,8 @@ class ComparedSide:
     alive: Callable[[], bool] = _never
     damage: str | None = None
 
-    def at_rest(self) -> "ComparedSide":
-        """The same of a run that nothing more is taken from."""
+    def ended(self) -> "ComparedSide":
+        """Return a copy whose timeline no longer grows."""
         return replace(self, alive=_never)
 
     @property
@@ -90,7 +90,7 @@ class ComparedSide:
 
 @dataclass(frozen=True)
 class RunProgress:
-    """How far a run has come, and how far it goes: nanoseconds; ``until`` None: nobody knows."""
+    """Progress of a run or a recording in nanoseconds; ``until`` is None if its length is unknown."""
 
     name: str
     doing: str
@@ -103,7 +103,7 @@ Tell: TypeAlias = Callable[[RunProgress], None]
 
 @dataclass(frozen=True)
 class RunPair:
-    """Both runs, and the window that was asked for as far as both have it."""
+    """Both runs, and the part of the requested window that both cover."""
 
     first: ComparedSide
     second: ComparedSide
@@ -111,7 +111,7 @@ class RunPair:
 
 
 def compared_side(run: ShownRun, changes: Changes) -> ComparedSide:
-    """A run of the console's as one side; called by its ``changes``, which is what two runs differ in."""
+    """Return a run on screen as a side, named by its ``changes``, in which the two runs differ."""
     service = run.setup.service
     return ComparedSide(
         f"{run.setup.title}, {changes.words or 'as written'}",
@@ -122,7 +122,7 @@ def compared_side(run: ShownRun, changes: Changes) -> ComparedSide:
 
 
 def compare_runs(first: ComparedRun, second: ComparedRun, terms: ComparisonTerms) -> int:
-    """Print the comparison; returns the exit code: 0 well, 1 a run failed, 2 there is nothing to compare."""
+    """Print the comparison; returns the exit code: 0 on success, 1 if a run failed, 2 if there is none."""
     try:
         found = load_runs(first, second, terms, tell=lambda _: None, given_up=Event())
     except CannotCompareError as error:
@@ -141,7 +141,7 @@ def compare_runs(first: ComparedRun, second: ComparedRun, terms: ComparisonTerms
 def load_runs(
     first: ComparedRun, second: ComparedRun, terms: ComparisonTerms, tell: Tell, given_up: Event
 ) -> RunPair:
-    """Read what is recorded and run the rest, on the caller's thread; may take as long as it takes.
+    """Read recordings and make the other runs, on the caller's thread.
 
     Raises:
         CannotCompareError: one cannot be read or run, or nothing is left to compare.
@@ -161,7 +161,7 @@ def load_runs(
 
 
 def _until(lengths: list[Nanoseconds], terms: ComparisonTerms, tell: Tell, given_up: Event) -> Nanoseconds:
-    """Where the comparison ends: as asked, where the shorter recording does, or where the inputs do."""
+    """The end of the comparison: the requested one, that of the shorter recording, or that of the inputs."""
     if terms.end is not None:
         return min([nearest_ns(terms.end), *lengths])
     if not lengths and terms.inputs is not None:
@@ -201,9 +201,9 @@ def _recorded(name: str, path: Path, tell: Tell, given_up: Event) -> ComparedSid
 def _prepared(
     compared: ComparedRun, terms: ComparisonTerms, until: Nanoseconds, missing: Callable[[str], None]
 ) -> RunSetup:
-    """A set-up for the compared's own clock, as fast as it goes; for virtual time, if it gets inputs.
+    """The set-up of a run at full speed on its own clock; on virtual time if it gets recorded inputs.
 
-    ``missing`` gets a sentence if some of these cannot be read.
+    ``missing`` is called with a sentence if some inputs cannot be read.
     """
     assert isinstance(compared.what, RunRequest)
     request = replace(compared.what, seconds=until / SECOND, calls=terms.calls, lines=terms.lines)

@@ -313,4 +313,4 @@ def _shorter(first: ComparedSide, second: ComparedSide) -> str:
 def _at_the_end_of(bounds: Window, end: Nanoseconds) -> Playhead:
     """Where one looks at the bounds, in runs that go to ``end``."""
     span = next((span for span in SPANS if span >= bounds.length), SPANS[-1])
-    return Playhead(span, start=bounds.start).sought(bounds.end, end)
+    return Playhead(span, start=bounds.start).moved_to(bounds.end, end)

@@ -38,7 +38,7 @@ from cbtui.screens.parts.part import ScreenPart, ScreenParts
 from cbtui.screens.parts.runs import RunController, RunT_co
 from cbtui.screens.parts.selection import LaneSelection
 from cbtui.screens.sized import SizedScreen
-from cbtui.terminal.compositing import SparingCompositor
+from cbtui.terminal.compositing import PatchCompositor
 from cbtui.terminal.garbage_collector import collect_now, unfreeze_screen
 from cbtui.terminal.processor import cpu_wait, time_off_cpu
 from cbtui.widgets.checks import ChecksView
@@ -87,7 +87,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         live: Callable[[], LiveRun | None] = lambda: None,
     ) -> None:
         super().__init__()
-        self._compositor = SparingCompositor()
+        self._compositor = PatchCompositor()
         self.subject = subject
         self._charset = charset
         self.runs = runs

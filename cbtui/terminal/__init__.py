@@ -1,1 +1,1 @@
-"""What knows the terminal and the insides of Textual: drivers, signals, streams, the console's end."""
+"""The terminal and Textual's internals: drivers, signals, streams and the shutdown of the console."""

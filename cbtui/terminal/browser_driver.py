@@ -1,4 +1,4 @@
-"""What the console of a visitor reads keys from and draws to, in place of a terminal."""
+"""The Textual driver of a console that is shown in a browser."""
 
 import os
 from contextlib import suppress
@@ -9,9 +9,9 @@ from textual.drivers.web_driver import WebDriver
 
 
 class BrowserDriver(WebDriver):
-    """Ends the console when the server is gone: nobody could see or end it any more.
+    """Ends the console when the server is gone, since nobody could see or end it any more.
 
-    What is drawn until then goes nowhere.
+    Output to a closed pipe is discarded.
     """
 
     def __init__(self, *args: Any, **options: Any) -> None:
@@ -20,7 +20,7 @@ class BrowserDriver(WebDriver):
         driver._write = self._write_while_read
 
     def run_input_thread(self) -> None:
-        """Read what the visitor types, until the server stops sending."""
+        """Read the visitor's input until the server closes the pipe."""
         super().run_input_thread()
         if not self.exit_event.is_set():
             self._app.post_message(messages.ExitApp())

@@ -1,17 +1,17 @@
-"""What the terminal can do, as far as its environment tells."""
+"""Capabilities of the terminal, derived from the environment."""
 
 from collections.abc import Mapping
 
 BROWSER_DRIVER = "cbtui.terminal.browser_driver:BrowserDriver"
-"""Textual's name of what the console draws to in a browser."""
+"""The browser driver, as ``TEXTUAL_DRIVER`` names it."""
 
 _COERCED = ("C.UTF-8", "C.utf8", "UTF-8")
 
 
 def charset_of(environment: Mapping[str, str], utf8_mode: bool, encoding: str = "utf-8") -> str:
-    """Return the best charset that the terminal is sure to have.
+    """Return the best charset that the terminal surely supports.
 
-    The locale counts as POSIX has it: the first of ``LC_ALL``, ``LC_CTYPE`` and ``LANG`` that is set.
+    The locale is the first of ``LC_ALL``, ``LC_CTYPE`` and ``LANG`` that is set, as in POSIX.
     ``utf8_mode`` is ``sys.flags.utf8_mode``: where the locale was C, Python turns it on and puts an
     ``LC_CTYPE`` of its own into the environment (PEP 538 and 540).
     ``encoding`` is what Python writes to the terminal with, which ``PYTHONIOENCODING`` chooses.
@@ -33,10 +33,10 @@ def _is_utf8(name: str) -> bool:
 
 
 def is_dumb(environment: Mapping[str, str]) -> bool:
-    """Tell whether the terminal cannot even place its cursor."""
+    """Tell whether the terminal cannot position its cursor."""
     return environment.get("TERM") in {"dumb", "unknown"}
 
 
 def is_browser(environment: Mapping[str, str]) -> bool:
-    """Tell whether the console is shown in a browser, which talks to it through pipes."""
+    """Tell whether the console is shown in a browser, which is connected by pipes."""
     return environment.get("TEXTUAL_DRIVER") == BROWSER_DRIVER

@@ -1,4 +1,4 @@
-"""A compositor that draws and sends only what changes."""
+"""A compositor that draws and sends only the cells that changed."""
 
 from collections.abc import Iterable, Sequence
 from itertools import pairwise
@@ -14,7 +14,7 @@ from textual.widget import Widget
 
 
 class ScreenPatch(NamedTuple):
-    """Some columns of a line of the screen, and what stands in them."""
+    """New content for some columns of one screen line."""
 
     x: int
     y: int
@@ -22,19 +22,19 @@ class ScreenPatch(NamedTuple):
 
 
 class PatchUpdate(CompositorUpdate):
-    """The parts of a picture that differ from the one before."""
+    """A screen update that consists of patches."""
 
     def __init__(self, parts: Sequence[ScreenPatch]) -> None:
         self.parts = parts
 
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
-        """Yield the segments that go to the terminal."""
+        """Yield the segments for the terminal."""
         for x, y, strip in self.parts:
             yield Control.move_to(x, y).segment
             yield from strip
 
     def render_segments(self, console: Console) -> str:
-        """Return what goes to the terminal, with its escape sequences."""
+        """Return the text for the terminal with its escape sequences."""
         return "".join(
             sequence
             for x, y, strip in self.parts
@@ -43,7 +43,7 @@ class PatchUpdate(CompositorUpdate):
 
 
 class _VisibleWidget(NamedTuple):
-    """A widget, where it lies, and what of that is in sight."""
+    """A widget, its region, and the visible part of that region."""
 
     widget: Widget
     region: Region
@@ -51,7 +51,7 @@ class _VisibleWidget(NamedTuple):
 
 
 class _LineSegment(NamedTuple):
-    """Neighbouring columns of a line in which the same widget lies in front."""
+    """Neighbouring columns of a line in which one widget is in front."""
 
     shown: _VisibleWidget
     y: int
@@ -60,20 +60,20 @@ class _LineSegment(NamedTuple):
 
     @property
     def line(self) -> int:
-        """The line of the widget that is shown there."""
+        """The number of the widget's own line."""
         return self.y - self.shown.region.y
 
 
-class SparingCompositor(Compositor):
-    """Puts a partial picture together from the widgets that lie where it changes.
+class PatchCompositor(Compositor):
+    """Composes a partial update from the widgets in the changed regions alone.
 
-    Textual's own asks every widget for every line between the first and the last that change, cuts each in
-    pieces and sends a line from its widget's left edge on: on a screen of many panes that costs more than
-    what is new. Of Textual 8; a test holds it to the same picture.
+    Textual's own compositor renders every line of every widget between the first and the last changed line,
+    and sends lines from the widget's left edge on. With many panes that costs more than the change itself.
+    Written for Textual 8; a test compares both pictures.
     """
 
     def render_partial_update(self) -> PatchUpdate | None:  # type: ignore[override]  # an update of another kind
-        """Return what changed; None if nothing did."""
+        """Return the changed part of the screen; None if nothing changed."""
         changed = self._dirty_regions.copy()
         self._dirty_regions.clear()
         if not changed:
@@ -87,7 +87,7 @@ class SparingCompositor(Compositor):
         return PatchUpdate(_drawn([stretch for span in spans for stretch in self._stretches(span, every)]))
 
     def _stretches(self, span: tuple[int, int, int], every: Sequence[_VisibleWidget]) -> list[_LineSegment]:
-        """Share out part of a line among the widgets in front; ``every`` begins with the foremost."""
+        """Divide part of a line among the widgets in front; ``every`` begins with the foremost."""
         y, start, end = span
         stretches: list[_LineSegment] = []
         for left, right in pairwise([start, *(cut for cut in self.cuts[y] if start < cut < end), end]):
@@ -100,7 +100,7 @@ class SparingCompositor(Compositor):
 
 
 def _drawn(stretches: Iterable[_LineSegment]) -> list[ScreenPatch]:
-    """Have every widget draw its lines from the first to the last that is wanted, in one go."""
+    """Render each widget once, from its first to its last wanted line."""
     wanted: dict[Widget, list[_LineSegment]] = {}
     for stretch in stretches:
         wanted.setdefault(stretch.shown.widget, []).append(stretch)

@@ -1,4 +1,4 @@
-"""The terminal driver: it survives a terminal that is closed or a process that is stopped at any moment."""
+"""The terminal driver: it tolerates a terminal that closes, and a process that is stopped at any moment."""
 
 import os
 from collections.abc import Callable
@@ -16,10 +16,9 @@ class TerminalDriver(LinuxDriver):
         self._file = cast("Any", _SurvivingFile(terminal))
 
     def _sigcont_application(self, *signal_and_frame: Any) -> None:
-        """Go on; what was stopped without notice (SIGSTOP) has to give the terminal back before it takes it.
+        """Continue after SIGCONT; after SIGSTOP, which has no handler, the terminal is first released.
 
-        Else it would remember its own settings as the terminal's, and have two threads read the same keys, of
-        which one waits for ever.
+        Otherwise the driver would save its own settings as the terminal's, and start a second input thread.
         """
         if self._auto_restart and not self._must_signal_resume:
             self.suspend_application_mode()
@@ -28,7 +27,7 @@ class TerminalDriver(LinuxDriver):
 
 
 class _SurvivingFile:
-    """A file of a terminal that takes what is written even when the terminal is gone."""
+    """A terminal's file; once the terminal is gone, output is discarded."""
 
     def __init__(self, file: IO[str]) -> None:
         self._file = file
@@ -37,19 +36,19 @@ class _SurvivingFile:
         return getattr(self._file, name)
 
     def write(self, text: str) -> int:
-        """Write, to nowhere if need be."""
-        self._surely(lambda: self._file.write(text))
+        """Write, to the null device if the terminal is gone."""
+        self._without_failing(lambda: self._file.write(text))
         return len(text)
 
     def flush(self) -> None:
-        """Send what was written."""
-        self._surely(self._file.flush)
+        """Flush the file."""
+        self._without_failing(self._file.flush)
 
-    def _surely(self, step: Callable[[], object]) -> None:
+    def _without_failing(self, step: Callable[[], object]) -> None:
         try:
             step()
         except OSError:
-            # What Python still holds back is written as it ends, and must find a place too.
+            # The rest of Python's buffer is written at exit, and must not fail either.
             nowhere = os.open(os.devnull, os.O_WRONLY)
             os.dup2(nowhere, self._file.fileno())
             os.close(nowhere)

@@ -1,4 +1,4 @@
-"""Lends the terminal to the person's own editor, to open a file at a line."""
+"""Suspends the console while the user's own editor has a file open at a line."""
 
 import asyncio
 import os
@@ -21,10 +21,10 @@ class EditorError(Exception):
 
 
 async def edit(app: App[Any], path: Path, line: int) -> None:
-    """Open a file at a line in ``$VISUAL`` or ``$EDITOR``, and wait until that ends; the app goes on, unseen.
+    """Open a file at a line in ``$VISUAL`` or ``$EDITOR``, and wait until it exits; the app runs on, hidden.
 
     Raises:
-        EditorError: no editor is named, it or the file is not there, or the terminal cannot be lent.
+        EditorError: no editor is named, it or the file is missing, or the app cannot be suspended.
     """
     command = command_for(os.environ, path, line)
     try:
@@ -44,7 +44,7 @@ def command_for(environment: Mapping[str, str], path: Path, line: int) -> list[s
     """Return the command that opens a file at a line.
 
     Raises:
-        EditorError: the file is not there, or no editor is named in a way that can be understood.
+        EditorError: the file is missing, or the variable names no editor or cannot be parsed.
     """
     if not path.is_file():
         raise EditorError(f"{path} is not on this machine, so no editor can open it")
@@ -63,4 +63,4 @@ def command_for(environment: Mapping[str, str], path: Path, line: int) -> list[s
 
 
 def _run(command: list[str]) -> int:
-    return subprocess.run(command, check=False).returncode  # the person's own editor
+    return subprocess.run(command, check=False).returncode  # the editor's exit status is reported

@@ -1,4 +1,4 @@
-"""Ends the console in order: by exit, signal or fault, after pending mounts, with one sentence on a fault."""
+"""Orderly shutdown of the console: on exit, signal or fault, after pending mounts."""
 
 import asyncio
 import platform
@@ -15,35 +15,35 @@ from textual.worker import WorkerFailed
 
 from cbtui.terminal.garbage_collector import survivors_frozen
 from cbtui.terminal.interrupts import Interruption, deferred_interrupt, ending_signals_on_loop
-from cbtui.terminal.pending_keys import MOUNT_TIMEOUT, PatientApp
+from cbtui.terminal.pending_keys import MOUNT_TIMEOUT, PendingKeysApp
 from cbtui.text.output import shown
 from cbtui.version import own_version
 from lessons.personal import state_folder
 
 FAULT = "fault.txt"
-"""The file in the state folder that a fault of the console itself is written to."""
+"""The file in the state folder with the last internal error."""
 _MISSED = (NoMatches, MountError)
-"""Errors of widgets that start while an app ends: Textual no longer mounts their children."""
+"""Errors of widgets that start during shutdown, when Textual no longer mounts their children."""
 _RETRY = 0.02
-"""Seconds between two checks whether everything is mounted."""
+"""Seconds between two checks whether all widgets are mounted."""
 
 
-class EndingApp(PatientApp):
-    """An app that ends in order on exit, signals and faults, even while widgets are being mounted."""
+class EndingApp(PendingKeysApp):
+    """An app that shuts down in order on exit, signals and faults, even while widgets are being mounted."""
 
     def __init__(self) -> None:
         super().__init__()
         self._interruption = Interruption()
-        self._told_at: float | None = None
+        self._exit_requested_at: float | None = None
         self._leaving = False
         self.saved: list[str] = []
-        """Sentences on what was saved as screens were left."""
+        """Sentences on files that were saved as screens closed."""
         self._fault: str | None = None
 
     def run(self, *args: Any, **options: Any) -> Any:
-        """Run to the end, and say then what was saved as screens were left, and what ended it, if a fault.
+        """Run to the end, then print what was saved and the fault that ended the app, if any.
 
-        Raises KeyboardInterrupt where Ctrl-C came before the app hears it, or after.
+        Raises KeyboardInterrupt if Ctrl-C came before or after the app handled signals.
         """
         with deferred_interrupt() as self._interruption:
             result = super().run(*args, **options)
@@ -52,17 +52,14 @@ class EndingApp(PatientApp):
         return result
 
     async def run_async(self, *args: Any, **options: Any) -> Any:
-        """Run in a terminal, which gets back what it lent when the app is told to end.
-
-        It is by Ctrl-C from elsewhere, by ``kill``, and by the terminal itself when its window is closed.
-        """
+        """Run with handlers for SIGINT, SIGTERM and SIGHUP, so that the terminal is always restored."""
         with ending_signals_on_loop(lambda number: self.exit(None, 128 + number)), survivors_frozen():
             return None if self._interruption.came else await super().run_async(*args, **options)
 
     def exit(self, result: None = None, return_code: int = 0, message: RenderableType | None = None) -> None:
-        """End as soon as all widgets have mounted their children."""
-        self._told_at = self._told_at or monotonic()
-        if self.is_mounting and monotonic() < self._told_at + MOUNT_TIMEOUT:
+        """Exit as soon as all widgets have mounted their children."""
+        self._exit_requested_at = self._exit_requested_at or monotonic()
+        if self.is_mounting and monotonic() < self._exit_requested_at + MOUNT_TIMEOUT:
             again = partial(self.exit, result, return_code, message)
             asyncio.get_running_loop().call_later(_RETRY, again)
         else:
@@ -75,13 +72,13 @@ class EndingApp(PatientApp):
             super()._handle_exception(error)
 
     def _fatal_error(self) -> None:
-        # Of Textual: the exception that is being handled ends the app, which prints all of it.
-        self._fault = self._fault or _told_of_fault()
+        # Textual's own method would print the whole traceback.
+        self._fault = self._fault or _fault_report()
         self._close_messages_no_wait()
 
 
-def _told_of_fault() -> str:
-    """Say what exception is being handled, and write what a developer wants to know of it into a file."""
+def _fault_report() -> str:
+    """Write the exception that is being handled to a file; returns a sentence on it."""
     kind, error, _ = sys.exc_info()
     said = f"cbtui: a fault of its own ended the console ({getattr(kind, '__name__', kind)}: {error})."
     details = f"cbtui {own_version()}, Python {platform.python_version()}\n{traceback.format_exc()}"

@@ -1,8 +1,7 @@
-"""Python's collector of garbage, kept from walking through the whole console again and again.
+"""Keeps full garbage collections short, so that keys are answered.
 
-A full collection looks at every object there is: that takes a console a tenth of a second, in which no key is
-answered. What has outlived one is set aside here, so that the next looks at little; when a screen is left,
-all is looked at once more.
+A full collection visits every object: a tenth of a second in the console. Objects that survive one are frozen
+here, so that the next collection visits few; when a screen closes, all objects are visited once more.
 """
 
 import gc
@@ -12,34 +11,34 @@ from contextlib import contextmanager
 from cbtui.terminal.textual_internals import forget_drawn_styles
 
 _FULL = 2
-"""The oldest generation: a collection of it is a full one."""
+"""The oldest generation, whose collection is a full one."""
 
 
 @contextmanager
 def survivors_frozen() -> Iterator[None]:
     """Freeze all objects that exist now and, until the end, those that survive a full collection."""
-    gc.callbacks.append(_set_survivors_aside)
+    gc.callbacks.append(_freeze_survivors)
     gc.freeze()
     try:
         yield
     finally:
-        gc.callbacks.remove(_set_survivors_aside)
+        gc.callbacks.remove(_freeze_survivors)
         gc.unfreeze()
 
 
 def collect_now() -> None:
-    """Make a full collection while nobody waits for a key; without ``survivors_frozen`` none is due."""
-    if _set_survivors_aside in gc.callbacks:
+    """Collect now, before keys are pressed; does nothing outside of ``survivors_frozen``."""
+    if _freeze_survivors in gc.callbacks:
         gc.collect()
 
 
 def unfreeze_screen() -> None:
-    """Have the next full collection look at everything: a screen's objects are of no use any more."""
+    """Unfreeze all objects, as those of a closed screen are garbage."""
     forget_drawn_styles()
-    if _set_survivors_aside in gc.callbacks:
+    if _freeze_survivors in gc.callbacks:
         gc.unfreeze()
 
 
-def _set_survivors_aside(phase: str, about: dict[str, int]) -> None:
+def _freeze_survivors(phase: str, about: dict[str, int]) -> None:
     if phase == "stop" and about["generation"] == _FULL:
         gc.freeze()

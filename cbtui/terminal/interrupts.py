@@ -1,7 +1,7 @@
-"""Ctrl-C at any moment: critical sections are finished first, and only the exit code tells of it.
+"""Ctrl-C at any moment: critical sections are completed first, and the exit code reports the interrupt.
 
-Python raises KeyboardInterrupt between any two steps of the main thread. In the middle of writing a chunk of
-a recording that would leave half a chunk. All of this is for the main thread; on others nothing is raised.
+Python raises KeyboardInterrupt between any two bytecodes of the main thread; inside the write of a
+recording's chunk it would leave half a chunk. On other threads nothing is raised.
 """
 
 import signal
@@ -15,36 +15,36 @@ from types import FrameType
 from typing import Any, TypeAlias
 
 INTERRUPTED = 128 + signal.SIGINT
-"""The exit code of a command that was interrupted."""
+"""The exit code of an interrupted command."""
 ENDING: Sequence[signal.Signals] = [
     getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)
 ]
-"""What a command is told to end by: Ctrl-C, ``kill``, and a terminal that is closed."""
+"""The signals that end a command: Ctrl-C, ``kill``, and a closed terminal."""
 
 _RETRY = 0.005
-"""Seconds after which an interruption is tried again."""
+"""Seconds until a postponed interrupt is raised again."""
 _IMPORT_TIMEOUT = 2.0
-"""Seconds that something may take to be imported; a lesson's checks can be anything."""
+"""Seconds for which an import postpones an interrupt; a lesson's checks may import anything."""
 _FRAGILE = ("<frozen importlib._bootstrap>", typing.__file__)
-"""Where the code is of what is imported, and of what libraries in C ask about types."""
+"""Files whose code must not be interrupted: the import system, and what C libraries call for types."""
 
 _Handler: TypeAlias = Callable[[int, FrameType | None], Any]
 
 
 class Interruption:
-    """A deferred Ctrl-C: whether it has come."""
+    """A deferred Ctrl-C; ``came`` tells whether there was one."""
 
     def __init__(self) -> None:
         self.came = False
 
     def __call__(self, _number: int, _frame: FrameType | None) -> None:
-        """Note that it came."""
+        """Note the signal."""
         self.came = True
 
 
 @contextmanager
 def deferred_interrupt() -> Iterator[Interruption]:
-    """Defer Ctrl-C to the end of the block, which is short or checks whether Ctrl-C came."""
+    """Defer Ctrl-C to the end of the block, which is short or polls ``came``."""
     waiting = Interruption()
     if threading.current_thread() is not threading.main_thread():
         yield waiting
@@ -60,14 +60,14 @@ def deferred_interrupt() -> Iterator[Interruption]:
 
 @contextmanager
 def ending_signals_on_loop(tell: Callable[[signal.Signals], None]) -> Iterator[None]:
-    """Have the running event loop call ``tell`` at each of ``ENDING``; what Ctrl-C did before, it does after.
+    """Call ``tell`` on the running event loop for each signal of ``ENDING``; restores the handler of Ctrl-C.
 
-    The loop by itself leaves Python's own way with Ctrl-C behind, which breaks off what it comes upon.
+    ``remove_signal_handler`` alone would leave Python's default handler, which raises at any bytecode.
     """
-    import asyncio  # when the console opens: other commands need none of it
+    import asyncio  # imported late: only the console needs it
 
     loop, before = asyncio.get_running_loop(), signal.getsignal(signal.SIGINT)
-    if not hasattr(signal, "pthread_sigmask"):  # Windows: its loop hears no signals
+    if not hasattr(signal, "pthread_sigmask"):  # Windows: its loop handles no signals
         yield
         return
     for number in ENDING:
@@ -84,7 +84,7 @@ def ending_signals_on_loop(tell: Callable[[signal.Signals], None]) -> Iterator[N
 
 @contextmanager
 def ending_signals(tell: Callable[[signal.Signals], None]) -> Iterator[None]:
-    """Have ``tell`` called, on the main thread, at the first of ``ENDING``; the next is KeyboardInterrupt.
+    """Call ``tell`` on the main thread at the first signal of ``ENDING``; the next raises KeyboardInterrupt.
 
     A signal that is ignored, as under ``nohup``, stays ignored.
     """
@@ -110,10 +110,10 @@ def ending_signals(tell: Callable[[signal.Signals], None]) -> Iterator[None]:
 
 
 def install() -> None:
-    """Have Ctrl-C raise KeyboardInterrupt where something comes of it, and else a moment later.
+    """Raise KeyboardInterrupt on Ctrl-C where that is safe, and otherwise a moment later.
 
-    Libraries in C are not made for exceptions while they are imported or look at types (msgspec crashes, or
-    forgets them), and what is raised as an object goes is printed and forgotten.
+    C libraries do not expect exceptions while they are imported or inspect types (msgspec crashes or swallows
+    them), and an exception in a destructor is printed and lost.
     """
     if signal.getsignal(signal.SIGINT) == signal.SIG_IGN or not hasattr(signal, "setitimer"):
         return
@@ -131,7 +131,7 @@ def install() -> None:
 
 
 class _InterruptHandler:
-    """Raises KeyboardInterrupt, though not in the middle of what does not bear it."""
+    """Raises KeyboardInterrupt, except inside fragile code."""
 
     def __init__(self) -> None:
         self._since: float | None = None
@@ -159,7 +159,7 @@ def _try_again_soon() -> None:
 
 
 def ignore() -> None:
-    """Ignore Ctrl-C from now on, as the process is about to exit."""
+    """Ignore Ctrl-C from now on: the process is about to exit."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(signal, "setitimer"):
-        signal.signal(signal.SIGALRM, signal.SIG_IGN)  # Python puts what ends a process there as it ends
+        signal.signal(signal.SIGALRM, signal.SIG_IGN)  # at exit Python restores the deadly default

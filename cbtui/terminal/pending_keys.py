@@ -1,7 +1,7 @@
-"""Keys and clicks wait for the screen that they are meant for.
+"""Holds back keys and clicks until the screen that they are meant for is mounted.
 
-Textual hands a key to a screen as soon as it is on the stack. Until its widgets have their children, whatever
-the key does finds only some of them; and one that takes the screen away again leaves those without any.
+Textual sends keys to a screen as soon as it is on the stack. Until its widgets have mounted their children,
+an action finds only some of them, and removing the screen leaves the others without theirs.
 """
 
 import asyncio
@@ -15,17 +15,17 @@ from textual.widget import Widget
 from cbtui.terminal.textual_internals import is_mounted
 
 MOUNT_TIMEOUT = 3.0
-"""Seconds that widgets may take to be mounted; then nothing waits for them any more."""
+"""Seconds to wait for widgets to be mounted."""
 _POLL_INTERVAL = 0.005
-"""Seconds after which it is looked again."""
+"""Seconds between two checks."""
 
 
-class PatientApp(App[None]):
-    """An app whose keys and clicks take effect when the screen is whole, and not on what is gone."""
+class PendingKeysApp(App[None]):
+    """An app that handles input once the screen is mounted, and ignores clicks on removed widgets."""
 
     @property
     def is_mounting(self) -> bool:
-        """Whether any widget that is there still has to get its children."""
+        """Whether any widget has yet to mount its children."""
         if not is_mounted(self):
             return self.is_running
         screens = self.screen_stack
@@ -34,16 +34,16 @@ class PatientApp(App[None]):
         )
 
     async def on_event(self, event: Event) -> None:
-        """Deal with an event; with what a person did, when the screen is whole."""
+        """Handle an event; input waits until the screen is mounted."""
         if isinstance(event, InputEvent):
-            patient_until = monotonic() + MOUNT_TIMEOUT
-            while self.is_mounting and monotonic() < patient_until:
+            deadline = monotonic() + MOUNT_TIMEOUT
+            while self.is_mounting and monotonic() < deadline:
                 await asyncio.sleep(_POLL_INTERVAL)
         if not (isinstance(event, MouseDown) and self._is_gone(event)):
             await super().on_event(event)
 
     def _is_gone(self, click: MouseDown) -> bool:
-        """Whether what is clicked on was removed, and is only still drawn; Textual asks for its parent."""
+        """Whether the clicked widget was removed and is still drawn; Textual would look for its parent."""
         try:
             widget, _ = self.get_widget_at(click.x, click.y)
         except NoWidget:

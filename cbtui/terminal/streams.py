@@ -1,4 +1,4 @@
-"""Repairs standard streams that the parent process closed or that cannot encode every character."""
+"""Repairs standard streams that are closed or cannot encode every character."""
 
 import os
 import sys
@@ -11,10 +11,10 @@ _LAST = 2
 
 
 def repair_streams() -> None:
-    """Open to nowhere what is closed of standard input, output and error, and let every text be written.
+    """Open closed standard streams on the null device, and write characters that the encoding lacks as ``?``.
 
-    The next file to be opened would else get the number of a stream that is closed, and whatever engines and
-    C code write to the stream. A sign that the encoding of the output lacks is written as a question mark.
+    Otherwise the next opened file would get the descriptor of a closed stream, and with it the output of
+    engines and C code.
     """
     _fill_descriptors()
     for descriptor, name in enumerate(_NAMES):
@@ -33,9 +33,9 @@ def _fill_descriptors() -> None:
 
 
 def flush_streams() -> OSError | None:
-    """Write out what waits in standard output and error, and drop what takes no more.
+    """Flush standard output and error; a stream that fails is redirected to the null device.
 
-    Returns why standard output does not, if so.
+    Returns the error of standard output, if any.
     """
     _trouble_of(sys.stderr)
     return _trouble_of(sys.stdout)
@@ -45,7 +45,7 @@ def _trouble_of(stream: TextIO) -> OSError | None:
     try:
         stream.flush()
     except OSError as error:
-        # Python would try once more as it ends, complain in its own words, and end with 120.
+        # At exit Python would flush once more, print the error, and exit with 120.
         with suppress(OSError):
             os.dup2(os.open(os.devnull, os.O_WRONLY), stream.fileno())
         return error

@@ -1,4 +1,4 @@
-"""Makes sure that nothing but ASCII reaches a terminal that shows nothing else."""
+"""Replaces non-ASCII characters for terminals that show only ASCII."""
 
 from functools import lru_cache
 from unicodedata import normalize
@@ -24,14 +24,14 @@ _BLOCKS = (
     ("\u2800", "\u2800", " "),
     ("\u2801", "\u28ff", "."),
 )
-"""What the characters from one to another become: lines, narrow and other blocks, braille."""
+"""Replacements of character ranges: lines, narrow and other blocks, braille."""
 
 
 class AsciiFilter(LineFilter):
-    """Replaces every character beyond ASCII by the plainest one like it, column by column."""
+    """Replaces every non-ASCII character by a similar ASCII one of the same width."""
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
-        """Return the segments in ASCII; what carries no text, such as a cursor movement, stays."""
+        """Return the segments in ASCII; control segments stay."""
         return [Segment(in_ascii(text), style, control) for text, style, control in segments]
 
 

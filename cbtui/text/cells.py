@@ -1,4 +1,4 @@
-"""Text as terminal cells: a row to paint on column by column, and strange text made safe to show."""
+"""Text as terminal cells: a row of cells to paint on, and text made safe to display."""
 
 import unicodedata
 from functools import lru_cache
@@ -17,10 +17,10 @@ _TAB = 8
 
 
 def visible(text: str, charset: Charset) -> str:
-    """Return text that a terminal shows and never obeys.
+    """Return text that a terminal displays and never acts on.
 
-    Control characters become their pictures (␛ for escape), other invisible ones and lone surrogates a
-    replacement mark; in ASCII whatever is not plain becomes ``?``.
+    Control characters become their pictures (␛ for escape), other invisible characters and lone surrogates
+    the replacement character; in ASCII all of these become ``?``.
     """
     if text.isascii() and text.isprintable():
         return text
@@ -28,7 +28,7 @@ def visible(text: str, charset: Charset) -> str:
 
 
 def without_tabs(text: str) -> str:
-    """Return text with blanks up to the next multiple of 8 columns for every tab, as a terminal shows it."""
+    """Return text with tabs expanded to multiples of 8 columns."""
     first, *others = text.split("\t")
     for part in others:
         column = cell_len(first.rpartition("\n")[2])
@@ -49,7 +49,7 @@ def _shown(character: str, charset: Charset) -> str:
 
 @lru_cache(maxsize=1024)
 def to_cells(text: str, charset: Charset) -> tuple[str, ...]:
-    """Return one string a column; a wide character is followed by an empty one."""
+    """Return one string per column; a wide character is followed by an empty string."""
     cells: list[str] = []
     for character in visible(text, charset):
         cells.append(character)
@@ -72,7 +72,7 @@ def fit(text: str, width: int, charset: Charset) -> str:
 
 
 class CellRow:
-    """One line of a picture while it is painted: a glyph and an ink for each column."""
+    """One line of a picture that is being painted: a glyph and an ink per column."""
 
     __slots__ = ("cells", "charset", "inks")
 
@@ -82,7 +82,7 @@ class CellRow:
         self.inks = [BLANK] * width
 
     def put(self, column: int, glyph: str, ink: Ink) -> None:
-        """Put a glyph of one column's width at a column; outside the row nothing happens."""
+        """Put a glyph of one column's width at a column; columns outside of the row are ignored."""
         if not 0 <= column < len(self.cells):
             return
         if self.cells[column] == "":
@@ -98,14 +98,14 @@ class CellRow:
         self.inks[start:end] = [ink] * (end - start)
 
     def write(self, start: int, text: str, ink: Ink) -> None:
-        """Write text from a column on; what does not fit is lost at the row's end."""
+        """Write text from a column on; it is cut at the row's end."""
         room = max(0, len(self.cells) - start)
         cells = to_cells(fit(text, room, self.charset).rstrip() if len(text) > room else text, self.charset)
         self.cells[start : start + len(cells)] = cells
         self.inks[start : start + len(cells)] = [ink] * len(cells)
 
     def blank(self, start: int, end: int) -> bool:
-        """Tell whether the columns from ``start`` to before ``end`` lie in the row and are untouched."""
+        """Tell whether the columns from ``start`` to before ``end`` are in the row and still blank."""
         return start >= 0 and end <= len(self.cells) and all(ink is BLANK for ink in self.inks[start:end])
 
     def runs(self) -> list[TextRun]:

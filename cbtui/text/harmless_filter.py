@@ -11,14 +11,14 @@ from textual.filter import LineFilter
 _OBEYED = re.compile(
     "[\x00-\x1f\x7f-\x9f\u200b\u200e\u200f\u202a-\u202e\u2060\u2066-\u2069\ud800-\udfff\ufeff]"
 )
-"""Control characters, what turns text round or hides in it, and halves of characters."""
+"""Control characters, bidirectional and invisible characters, and lone surrogates."""
 
 
 class HarmlessFilter(LineFilter):
-    """Leaves out what a terminal would obey, column by column; panes show its picture where they can."""
+    """Replaces characters that a terminal would act on, keeping the width."""
 
     def apply(self, segments: list[Segment], background: Color) -> list[Segment]:
-        """Return the segments without it; what carries no text, such as a cursor movement, stays."""
+        """Return the segments without such characters; control segments stay."""
         if all(text.isprintable() for text, _, control in segments if not control):
             return segments
         return [
@@ -29,5 +29,5 @@ class HarmlessFilter(LineFilter):
 
 @lru_cache(maxsize=1024)
 def harmless(text: str) -> str:
-    """Return text of the same width that no terminal obeys."""
+    """Return text of the same width that no terminal acts on."""
     return _OBEYED.sub(lambda found: "?" * cell_len(found[0]), text)

@@ -1,4 +1,4 @@
-"""What commands write: text that any terminal can show and none obeys, and complaints of one line."""
+"""Output of commands: text that is safe for any terminal, and error messages of one line."""
 
 import sys
 from collections.abc import Iterator
@@ -7,12 +7,12 @@ from typing import TextIO
 
 
 def say(text: str) -> None:
-    """Write to standard output, in plain characters where it takes no others."""
+    """Write to standard output, in ASCII if its encoding is not Unicode."""
     _write(sys.stdout, shown(text))
 
 
 def say_data(data: str) -> None:
-    """Write what another program reads to standard output, as it is but for what a terminal would obey."""
+    """Write data for another program to standard output, unchanged except for control characters."""
     from sim.export.texts import printable
 
     _write(sys.stdout, printable(data))
@@ -24,7 +24,7 @@ def complain(sentence: str) -> None:
 
 
 def shown(text: str) -> str:
-    """Return text with control characters, and others that cannot be seen, as signs; lines stay lines."""
+    """Return text with control and invisible characters made visible; newlines stay."""
     lines = text.split("\n")
     if all(map(str.isprintable, lines)):
         return text
@@ -35,16 +35,16 @@ def shown(text: str) -> str:
 
 
 class CannotSayError(OSError):
-    """A standard stream takes no more."""
+    """A standard stream cannot be written."""
 
 
 @contextmanager
 def writing_to_stream() -> Iterator[None]:
-    """Have an error of what is written inside, to a standard stream, told from those of files.
+    """Mark errors inside the block as those of a standard stream, to tell them from errors of files.
 
     Raises:
-        BrokenPipeError: who read the stream has gone.
-        CannotSayError: it takes no more for another reason.
+        BrokenPipeError: the reader of the stream has closed it.
+        CannotSayError: writing failed for another reason.
     """
     try:
         yield
@@ -57,7 +57,7 @@ def writing_to_stream() -> Iterator[None]:
 def _write(stream: TextIO, text: str) -> None:
     encoding = (stream.encoding or "ascii").lower().replace("-", "").replace("_", "")
     if not encoding.startswith("utf") and not text.isascii():
-        from cbtui.text.ascii_filter import in_ascii  # with Textual, so only where it is needed
+        from cbtui.text.ascii_filter import in_ascii  # imported late: it needs Textual
 
         text = in_ascii(text)
     with writing_to_stream():
@@ -66,5 +66,5 @@ def _write(stream: TextIO, text: str) -> None:
 
 
 def is_text(word: str) -> bool:
-    """Tell whether a word of a command line or a name is text, not bytes that no encoding explains."""
+    """Tell whether a command-line word or file name is text, not bytes that could not be decoded."""
     return not any("\ud800" <= character <= "\udfff" for character in word)

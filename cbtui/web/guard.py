@@ -1,7 +1,7 @@
-"""Who may talk to the server: pages that it made itself, under a name that it goes by.
+"""Checks the Host and Origin headers of requests.
 
-Without this, any page that a visitor has open elsewhere could drive the console: a browser lets every page
-open a WebSocket to this machine (and a page under an own name that it points here, everything else as well).
+Without this check any page that a visitor has open could drive the console: browsers let every page open a
+WebSocket to this machine, and DNS rebinding allows all other requests as well.
 """
 
 import socket
@@ -11,7 +11,7 @@ from urllib.parse import urlsplit
 
 
 class HostGuard:
-    """Knows the names of the server. Numbers are let pass: nobody else can make a name of one."""
+    """Accepts requests for the server's own names. IP addresses pass: they cannot be rebound."""
 
     def __init__(self, host: str, public_url: str | None) -> None:
         public = urlsplit(public_url or "")

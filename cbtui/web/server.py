@@ -1,4 +1,4 @@
-"""The web server: hands out the page, and gives every visitor a console as long as there is room."""
+"""The web server: serves the page, and starts a console for each visitor up to a limit."""
 
 import asyncio
 from collections.abc import Awaitable, Callable, Sequence
@@ -21,7 +21,7 @@ _ONLY_OURS = (
     "default-src 'self'; style-src 'self' 'unsafe-inline'; script-src 'self' 'unsafe-inline'; "
     "img-src 'self' data:; font-src 'self' data:; connect-src 'self' ws: wss:; frame-ancestors 'none'"
 )
-"""The page takes nothing from elsewhere, and no other page shows it in a frame of its own."""
+"""The page loads nothing from other origins, and no other page may embed it."""
 _HEADERS = {
     "Content-Security-Policy": _ONLY_OURS,
     "Referrer-Policy": "no-referrer",
@@ -34,7 +34,7 @@ Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 class ConsoleServer(Server):
     """Serves ``command`` (the words of a command line) to at most ``most`` visitors at a time.
 
-    Only those are let in who show ``token``. ``public_url`` is where visitors find the server when that is
+    Requests need ``token``. ``public_url`` is where visitors find the server when that is
     not ``host`` and ``port``.
     """
 
@@ -53,9 +53,9 @@ class ConsoleServer(Server):
         self._visitors: set[Visitor] = set()
 
     async def serve_until_signal(self, ready: Callable[[str], None], interruption: Interruption) -> None:
-        """Serve until a signal ends it, and end every visitor's console then; not if Ctrl-C came before.
+        """Serve until a signal comes, then end all consoles; returns at once if Ctrl-C came before.
 
-        ``ready`` is told the address, with the token, once there is one. Raises OSError if it cannot be had.
+        ``ready`` gets the address with the token. Raises OSError if the address cannot be bound.
         """
         over = asyncio.Event()
         with ending_signals_on_loop(lambda _: over.set()):
@@ -75,7 +75,7 @@ class ConsoleServer(Server):
             await runner.cleanup()
 
     async def on_startup(self, app: web.Application) -> None:
-        """Say nothing: the command does."""
+        """Print nothing: the command reports the address."""
 
     async def on_shutdown(self, app: web.Application) -> None:
         """End the visitors' consoles."""
@@ -100,7 +100,7 @@ class ConsoleServer(Server):
         return _refusal(request)
 
     async def handle_index(self, request: web.Request) -> web.Response:
-        """Hand out the page."""
+        """Serve the page."""
         page, status = ("full.html", 503) if self._full else ("console.html", 200)
         address = self._outside.rstrip("/") if self._outside else f"http://{request.host}"
         context = {
@@ -111,7 +111,7 @@ class ConsoleServer(Server):
         return aiohttp_jinja2.render_template(page, request, context, status=status)
 
     async def handle_websocket(self, request: web.Request) -> web.WebSocketResponse:
-        """Give a visitor a console until either has enough."""
+        """Run a console for a visitor until either side closes."""
         websocket = web.WebSocketResponse(heartbeat=_HEARTBEAT, max_msg_size=_MOST_A_MESSAGE)
         await websocket.prepare(request)
         if self._full:
@@ -163,6 +163,6 @@ def _refusal(request: web.Request) -> web.Response:
     sentence = "That is not the token of this console." if wrong else "This console is opened with a token."
     response = aiohttp_jinja2.render_template("token.html", request, {"sentence": sentence}, status=403)
     if request.headers.get("Sec-Fetch-Site") == "cross-site":
-        # A strict cookie does not come with a link of another site, but with this page's own.
+        # A strict cookie is not sent with a link from another site, but with this page's refresh.
         response.headers["Refresh"] = "0; url=/"
     return response

@@ -1,6 +1,6 @@
-"""The token that every request must show: once in the address, from then on in a cookie.
+"""The token that every request must carry: once in the address, from then on in a cookie.
 
-Every user of a machine can reach its ports, and a console can run programs as the server's user.
+Every local user can reach the port, and a console runs programs as the server's user.
 """
 
 import hmac
@@ -11,23 +11,23 @@ PARAMETER = "token"
 
 
 class AccessToken:
-    """Compares what a request shows with the one token of a server."""
+    """Compares the token of a request with the server's."""
 
     def __init__(self, text: str) -> None:
         self._text = text
-        # A browser sends cookies to every port of a host: what it keeps is not the token itself.
+        # Browsers send cookies to every port of a host, so the cookie is not the token itself.
         self._cookie = hmac.new(text.encode(), b"cbtui cookie", "sha256").hexdigest()
 
     def in_address(self, request: web.Request) -> bool:
-        """Tell whether the address ends in the token."""
+        """Tell whether the address carries the token."""
         return _same(request.query.get(PARAMETER, ""), self._text)
 
     def in_cookie(self, request: web.Request) -> bool:
-        """Tell whether the visitor has shown the token before."""
+        """Tell whether the cookie of an earlier request is there."""
         return _same(request.cookies.get(_cookie_name(request), ""), self._cookie)
 
     def redirect(self, request: web.Request, *, secure: bool) -> web.Response:
-        """Keep the visitor in mind by a cookie, and lead to the page by an address without the token."""
+        """Set the cookie, and redirect to the address without the token."""
         address = request.rel_url.without_query_params(PARAMETER)
         response = web.Response(status=303, headers={"Location": str(address)})
         response.set_cookie(
@@ -41,5 +41,5 @@ def _same(shown: str, wanted: str) -> bool:
 
 
 def _cookie_name(request: web.Request) -> str:
-    """Several servers of one host have a cookie each."""
+    """The cookie's name contains the port, as cookies are shared by the ports of a host."""
     return f"cbtui-{request.get_extra_info('sockname')[1]}"

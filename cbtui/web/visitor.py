@@ -13,7 +13,7 @@ from textual_serve.download_manager import DownloadManager
 from cbtui.terminal.capabilities import BROWSER_DRIVER
 
 _EXIT_TIMEOUT = 6.0
-"""Seconds that a console has to end by itself, and its program in it."""
+"""Seconds that a console has to exit, its program included."""
 _FRAMES_A_SECOND = "30"
 _MOST_COLUMNS, _MOST_ROWS = 500, 200
 
@@ -36,16 +36,16 @@ class Visitor(AppService):
         self._ending: asyncio.Task[None] | None = None
 
     async def set_terminal_size(self, width: int, height: int) -> None:
-        """Tell the console its size."""
+        """Send the console its size."""
         await super().set_terminal_size(*_sane(width, height))
 
     async def run(self) -> None:
-        """Hand over what the console draws, until it ends; then the browser is told."""
+        """Forward the console's output until it exits; then close the connection."""
         await super().run()
         await self._close()
 
     async def stop(self) -> None:
-        """End the console and what it started; one that does not end by itself is killed."""
+        """End the console's process group; it is killed after a timeout."""
         if self._ending is None:
             self._ending = asyncio.create_task(self._end())
         await asyncio.shield(self._ending)
@@ -56,7 +56,7 @@ class Visitor(AppService):
         return environment | {"TEXTUAL_DRIVER": BROWSER_DRIVER, "TEXTUAL_FPS": _FRAMES_A_SECOND}
 
     async def _open_app_process(self, width: int = 80, height: int = 24) -> Process:
-        # A session of its own: ctrl+c in the server's terminal is the server's, and all of it can be killed.
+        # In a session of its own: Ctrl-C in the server's terminal does not reach it, and it can be killed.
         self._process = process = await asyncio.create_subprocess_exec(
             *self._words,
             stdin=PIPE,
@@ -85,7 +85,7 @@ class Visitor(AppService):
             await self._task
 
     async def _send_bytes(self, data: bytes) -> None:
-        # A console whose visitor has gone must still be read, or it could not come to its end.
+        # After the visitor has left, the output must still be read, or the console would block.
         if not self._websocket.closed:
             try:
                 await self._websocket.send_bytes(data)

@@ -67,7 +67,7 @@ def played(playhead: Playhead, key: str, amount: int, end: int) -> Playhead:
         case "zoom":
             return playhead.zoomed(amount, end)
         case "seek":
-            return playhead.sought(end * amount // 20, end)
+            return playhead.moved_to(end * amount // 20, end)
     return playhead.live()
 
 
@@ -133,16 +133,16 @@ def test_a_cursor_moves_within_the_stretch_and_takes_it_along_at_its_edges() -> 
 
 
 def test_a_far_moment_is_shown_in_the_middle() -> None:
-    sought = Playhead().sought(20 * SECOND, 60 * SECOND)
-    assert sought.window(60 * SECOND) == Window(15 * SECOND, 25 * SECOND)
+    moved_to = Playhead().moved_to(20 * SECOND, 60 * SECOND)
+    assert moved_to.window(60 * SECOND) == Window(15 * SECOND, 25 * SECOND)
 
 
 def test_a_moment_is_sought_between_the_beginning_and_the_end() -> None:
     end = 20 * SECOND
-    assert Playhead().sought(7 * SECOND, end).at == 7 * SECOND
-    assert Playhead().sought(-5, end).at == 0
-    assert Playhead().sought(end, end).at is None
-    assert Playhead(at=3).sought(30 * SECOND, end).at is None
+    assert Playhead().moved_to(7 * SECOND, end).at == 7 * SECOND
+    assert Playhead().moved_to(-5, end).at == 0
+    assert Playhead().moved_to(end, end).at is None
+    assert Playhead(at=3).moved_to(30 * SECOND, end).at is None
 
 
 def test_events_are_gone_through_one_by_one_both_ways() -> None:

@@ -6,7 +6,7 @@ from textual.app import App
 from textual.strip import Strip
 from textual.widget import Widget
 
-from cbtui.terminal.compositing import PatchUpdate, SparingCompositor
+from cbtui.terminal.compositing import PatchCompositor, PatchUpdate
 from cbtui.widgets.guide import Guide
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
@@ -50,7 +50,7 @@ async def test_the_parts_that_are_sent_make_the_whole_picture(
     app = RecordedConsole("shared-group", EVENTS, 2.0)
     async with app.run_test(size=size) as pilot:
         await settle(pilot)
-        assert isinstance(app.screen._compositor, SparingCompositor)
+        assert isinstance(app.screen._compositor, PatchCompositor)
         monkeypatch.setattr(App, "_display", lambda app, screen, update: terminal.take(update))
         app.screen.refresh(layout=True)
         await settle(pilot)

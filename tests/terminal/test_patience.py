@@ -20,7 +20,7 @@ from cbtui.screens.menu import MenuScreen
 from cbtui.screens.setup import SetupScreen
 from cbtui.terminal.ending import EndingApp
 from cbtui.terminal.pending_keys import MOUNT_TIMEOUT
-from cbtui.terminal.textual_internals import LeavablePalette
+from cbtui.terminal.textual_internals import SafeCommandPalette
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.lanes import Lanes
 from cbtui.widgets.lanes.rows import MemberLane
@@ -188,7 +188,7 @@ async def test_a_palette_that_was_closed_looks_for_nothing_more() -> None:
     async with app.run_test(size=WIDE) as pilot:
         await pilot.press("ctrl+p")
         palette = app.screen
-        assert isinstance(palette, LeavablePalette)
+        assert isinstance(palette, SafeCommandPalette)
         palette.dismiss(None)
         looking = palette._gather_commands("pause")
         await pilot.pause()

@@ -51,7 +51,7 @@ WORKAROUNDS: dict[str, tuple[str, list[Callable[..., Any]]]] = {
         "3dbf14d69491",
         [App.on_event],
     ),
-    "textual_internals.LeavablePalette": (
+    "textual_internals.SafeCommandPalette": (
         "a1540bec7776",
         [CommandPalette._gather_commands, CommandPalette._action_command_list, CommandPalette._on_click],
     ),

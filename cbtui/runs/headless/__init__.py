@@ -1,1 +1,1 @@
-"""Runs without the console: log to stderr, summary to stdout."""
+"""Headless runs: log to stderr, summary to stdout."""

@@ -33,11 +33,11 @@ def run_headless(
     recording_path: str | None = None,
     replace_recording: bool = False,
 ) -> int:
-    """Run what is set up to its end; returns the exit code: 0 well, 1 it failed, 2 a file cannot be written.
+    """Run a set-up to its end; returns the exit code: 0 well, 1 failed, 2 a file cannot be written.
 
-    Ctrl-C, ``kill`` and a terminal that is closed end the run early; its summary is still printed and its
-    recording finished, and the exit code is 128 and the signal's number. A live keyboard is this process's
-    standard input. A recording replaces another one only with ``replace_recording``.
+    Ctrl-C, ``kill`` and a closed terminal end the run early; its summary is still printed and its recording
+    finished, and the exit code is 128 plus the signal's number. A live keyboard reads this process's standard
+    input. A recording replaces an existing file only with ``replace_recording``.
     """
     with ExitStack() as files:
         try:
@@ -61,7 +61,7 @@ def run_headless(
         try:
             return _Headless(setup, file, recorder).run()
         except (BrokenPipeError, CannotSayError):
-            raise  # of what is said, not of the run
+            raise  # about standard output, not about the run
         except OSError as error:
             complain(f"the run was cut short: {error.strerror}")
             return 1
@@ -76,13 +76,13 @@ class _Headless:
         self._timeline = Timeline(until_ending=True)
         self._file = file
         self._recorder = recorder
-        self._room = DiskSpaceWatch(self._timeline)
+        self._disk_space = DiskSpaceWatch(self._timeline)
         self._input = StandardInput(self._run.session.send) if setup.keyboard is Keyboard.LIVE else None
         self._log = ProgramLog(echo=self._input is None)
         self._signal: Signals | None = None
 
     def run(self) -> int:
-        """Run to the end, whatever ends it, and print the summary and what the rules found."""
+        """Run to the end, then print the summary and the diagnosis."""
         keyboard = nullcontext() if self._input is None else closing(self._input)
         with self._run, keyboard, ending_signals(self._end_early):
             complaint = self._run.start()
@@ -98,13 +98,13 @@ class _Headless:
         return self._verdict(loss) if self._signal is None else 128 + self._signal
 
     def _end_early(self, signal: Signals) -> None:
-        """Have the engine end; its last events are still taken."""
+        """Stop the engine; its last events are still received."""
         self._signal = signal
         self._run.limit(PROGRAM_EXIT_TIMEOUT)
         self._run.session.send(Stop())
 
     def _follow(self) -> str | None:
-        """Take every batch of events; returns how the engine was lost, if it was."""
+        """Process every batch of events; returns a sentence if the engine was lost."""
         try:
             for events in self._run:
                 with deferred_interrupt():
@@ -112,18 +112,18 @@ class _Headless:
                 self._log.print(events)
                 if self._input is not None:
                     self._input.follow(events)
-                self._tell_of_room()
+                self._warn_of_full_disk()
         except EngineLostError as error:
             return str(error)
         except RunTimeoutError:
-            pass  # after a signal, when the engine does not end
+            pass  # after a signal, if the engine does not exit
         return None
 
-    def _tell_of_room(self) -> None:
+    def _warn_of_full_disk(self) -> None:
         if self._recorder is None:
-            news = self._room.news(None, 0)
+            news = self._disk_space.news(None, 0)
         else:
-            news = self._room.news(self._recorder.path, self._recorder.size)
+            news = self._disk_space.news(self._recorder.path, self._recorder.size)
         if news is not None:
             complain(news)
 
@@ -170,6 +170,6 @@ class _Headless:
 
 
 def _close(recorder: Recorder) -> None:
-    """Write a recording to its end, however often the person presses Ctrl-C."""
+    """Finish a recording even if Ctrl-C is pressed meanwhile."""
     with deferred_interrupt():
         recorder.close()

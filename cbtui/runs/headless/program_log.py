@@ -1,4 +1,4 @@
-"""What programs log and print, written to this process's own output as ROS would."""
+"""Writes what programs log and print to this process's own output, as ROS does."""
 
 import sys
 
@@ -23,9 +23,9 @@ from sim.units import SECOND
 
 
 class ProgramLog:
-    """Prints what the program logs as ROS does, and what it prints where it printed it.
+    """Prints log lines to stderr in ROS's format, and printed lines to the stream they were printed to.
 
-    With ``echo`` it also prints what is typed behind a line that was begun, as a terminal would.
+    With ``echo`` it also prints typed text after an unfinished line, as a terminal would.
     """
 
     def __init__(self, *, echo: bool = False) -> None:
@@ -36,7 +36,7 @@ class ProgramLog:
         self._processes: dict[ThreadId, ProcessId] = {}
 
     def print(self, events: list[AnyEvent]) -> None:
-        """Print the lines among the events; control characters are shown, not obeyed."""
+        """Print the lines among the events; control characters are made visible."""
         for event in events:
             match event:
                 case Logged(t=t, severity=severity, logger=logger, text=text, thread=thread):
@@ -66,19 +66,19 @@ class ProgramLog:
                     self._epoch = epoch
 
     def finish(self) -> None:
-        """End a line that was begun."""
+        """End an unfinished line."""
         if self._line_begun:
             write_line("", error=False)
 
     def _prefix(self, process: ProcessId) -> str:
-        """What ``ros2 launch`` puts before the lines of one of several programs."""
+        """The prefix of a program's lines if there are several, as ``ros2 launch`` writes it."""
         return self._prefixes.get(process, "")
 
 
 def write_line(line: str, *, error: bool, ends: bool = True) -> None:
     """Write a line, or without ``ends`` the beginning of one, to standard output or error.
 
-    Control characters are shown, not obeyed.
+    Control characters are made visible.
 
     Raises BrokenPipeError and CannotSayError, as ``cbtui.text.output.writing_to_stream``.
     """

@@ -1,4 +1,4 @@
-"""``cbtui ros2 …``: carries out a ros2 line in the run that is going on, or in an engine made for it."""
+"""``cbtui ros2 …``: runs a ros2 line in a running engine, or in an engine of its own."""
 
 import shlex
 from collections.abc import Callable, Iterator, Sequence
@@ -19,16 +19,16 @@ from sim.trace.events import AnyEvent, LineEnded, LineGiven, LineSaid, RunEnded
 
 ItemT = TypeVar("ItemT")
 
-_CUT_OFF = 1
+_ABORTED = 1
 _LINE = 1
-"""The number of the one line of an engine that was made for it."""
+"""The number of the line in an engine of its own."""
 
 
 def run_line(words: Sequence[str], process: int | None) -> int:
-    """Carry out the line ``ros2 WORDS``; returns its exit status.
+    """Run the line ``ros2 WORDS``; returns its exit status.
 
-    It goes to the run of that process number; for None to the one that was started last, or, where there is
-    none, to an engine in which nothing else runs.
+    It goes to the run of that process number; for None to the run started last, or, if there is none, to an
+    engine in which nothing else runs.
     """
     text = shlex.join(["ros2", *words])
     try:
@@ -41,34 +41,34 @@ def run_line(words: Sequence[str], process: int | None) -> int:
             f"{error}, so this line runs in an engine of its own; to reach a run, "
             "give its terminal and this one the same XDG_RUNTIME_DIR, a folder of your own"
         )
-        return _AloneLine(text).run()
-    return _follow_elsewhere(RemoteLine(connection, text))
+        return _StandaloneLine(text).run()
+    return _follow_remote(RemoteLine(connection, text))
 
 
-def _follow_elsewhere(line: RemoteLine) -> int:
+def _follow_remote(line: RemoteLine) -> int:
     for answer in _interruptible(line.next_answer, line.interrupt):
         match answer:
             case LineOutput(text=said, error=error):
                 write_line(without_tabs(said), error=error)
             case LineResult(status=None):
                 complain("the run ended before the line did")
-                return _CUT_OFF
+                return _ABORTED
             case LineResult(status=int() as status):
                 return status
-    return _CUT_OFF
+    return _ABORTED
 
 
-class _AloneLine:
-    """A line in an engine of its own, whose programs print here too."""
+class _StandaloneLine:
+    """A line in an engine of its own, whose programs print to this terminal."""
 
     def __init__(self, text: str) -> None:
         self._run = FollowedRun(setup_for_line(text, Path.cwd()), ListeningSession)
         self._input = StandardInput(self._run.session.send)
         self._log = ProgramLog()
-        self._status = _CUT_OFF
+        self._status = _ABORTED
 
     def run(self) -> int:
-        """Carry it out; the first Ctrl-C goes to the line, the second ends the engine."""
+        """Run the line; the first Ctrl-C interrupts it, the second ends the engine."""
         with self._run, closing(self._input):
             complaint = self._run.start()
             if complaint is not None:
@@ -90,7 +90,7 @@ class _AloneLine:
         for event in events:
             match event:
                 case LineGiven():
-                    pass  # the person has just typed it
+                    pass  # the user has just typed it
                 case LineSaid(text=text, error=error):
                     write_line(without_tabs(text), error=error)
                 case LineEnded(status=status):
@@ -102,7 +102,7 @@ class _AloneLine:
 
 
 def _interruptible(take: Callable[[], ItemT | None], interrupt: Callable[[], None]) -> Iterator[ItemT]:
-    """What ``take`` gives until that is None; the first Ctrl-C while it waits calls ``interrupt`` instead."""
+    """Yield the results of ``take`` until None; the first Ctrl-C calls ``interrupt``, the next is raised."""
     interrupted = False
     while True:
         try:

@@ -1,4 +1,4 @@
-"""Standard input as the terminal of a run's programs: what is typed there, or comes through a pipe."""
+"""Standard input as the terminal of a run's programs: typed text, or the content of a pipe."""
 
 import os
 import select
@@ -19,10 +19,10 @@ _READ_SIZE = 4096
 
 
 class StandardInput:
-    """Gives a run what is typed from when a program waits for it on; what is typed before is left alone.
+    """Forwards input to a run once a program waits for it; earlier input is not read.
 
-    A terminal meanwhile is in the mode that the program wants: in one that takes each key, a second ctrl+c in
-    a row ends the run. ``give`` is called on a thread of its own.
+    The terminal is in the mode that the program asked for; in raw mode a second Ctrl-C in a row ends the run.
+    ``give`` is called on a thread of its own.
     """
 
     def __init__(self, give: Callable[[Type], None]) -> None:
@@ -36,7 +36,7 @@ class StandardInput:
         self._reader = threading.Thread(target=self._read, name="standard-input", daemon=True)
 
     def follow(self, events: Iterable[AnyEvent]) -> None:
-        """Do as a program wants that waits for the keyboard."""
+        """Follow the programs' requests for keyboard input."""
         for event in events:
             if isinstance(event, KeyboardAsked):
                 self._put_in_mode(event.reads)
@@ -44,7 +44,7 @@ class StandardInput:
                     self._reader.start()
 
     def close(self) -> None:
-        """Read no more, and leave the terminal as it was."""
+        """Stop reading, and restore the terminal."""
         self._put_in_mode(Reading.NOTHING)
         os.close(self._end)
         if self._reader.ident is not None:
@@ -79,7 +79,7 @@ class StandardInput:
             text = decoder.decode(data, final=not data)
             goes_on = bool(data) or (self.is_terminal and not self._reads.takes_keys)
             if text == latest == INTERRUPT:
-                os.kill(os.getpid(), signal.SIGINT)  # the main thread hears it
+                os.kill(os.getpid(), signal.SIGINT)  # handled on the main thread
             latest = text
             self._give(Type(text if data or not goes_on else END_OF_INPUT, ends=not goes_on))
             if not goes_on:
@@ -87,7 +87,7 @@ class StandardInput:
 
 
 def _descriptor(opened: ExitStack) -> int:
-    """Standard input's; where it was closed, or another object is in its place, one on which nobody types."""
+    """The descriptor of standard input; of the null device if it is closed or replaced by an object."""
     try:
         return sys.stdin.fileno()
     except (AttributeError, OSError, ValueError):

@@ -1,1 +1,1 @@
-"""Runs followed to their end: checked, explored, bounded."""
+"""Runs that are judged: checked, explored and bounded by a budget."""

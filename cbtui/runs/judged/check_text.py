@@ -1,4 +1,4 @@
-"""What came of checks, as plain text for a terminal."""
+"""Results of checks as plain text for a terminal."""
 
 from collections.abc import Iterator
 from textwrap import fill
@@ -14,9 +14,9 @@ PASSED, FAILED = "✓", "✗"
 
 
 def checked_text(checked: CheckedFile) -> str:
-    """Each check with what was expected and seen, how many passed, and for those that did not, what is wrong.
+    """Each check with what it expected and saw, the number that passed, and the faults of a failed run.
 
-    Empty where nothing could be judged.
+    Empty if nothing could be judged.
     """
     if not checked.judged:
         return ""
@@ -24,7 +24,7 @@ def checked_text(checked: CheckedFile) -> str:
 
 
 def verdict_line(judged: JudgedCheck) -> str:
-    """What was expected of a check, what was seen, and when."""
+    """What a check expected, what it saw, and when."""
     verdict = judged.verdict
     when = "" if verdict.at is None else f", at {timestamp(verdict.at)}"
     return f"expected {verdict.expected}; saw {verdict.seen}{when}"
@@ -42,7 +42,7 @@ def _lines(checked: CheckedFile) -> Iterator[str]:
 
 
 def faults(timeline: Timeline) -> Iterator[str]:
-    """Yield what is wrong with a run beside its checks: that it was over too soon, what was diagnosed."""
+    """Yield faults of a run beyond its checks: an early end, and diagnosed problems."""
     ended = timeline.ended
     if ended is not None and not ended.time_was_up:
         yield f"the run was over at {timestamp(ended.t)}: {' '.join(ended.reason.split())}"

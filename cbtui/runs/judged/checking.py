@@ -1,6 +1,6 @@
 """Runs a lesson's node, or a learner's file in its place, on the lesson's clock, so that checks can judge it.
 
-Whatever the file does, it ends: a run has a limit of real time and one of what it may write.
+A run is limited in real time and in the amount of text that it writes.
 """
 
 from collections.abc import Iterable
@@ -20,16 +20,16 @@ from sim.trace.events import AnyEvent, Logged, Printed
 from sim.trace.timeline import Timeline
 
 LIMIT = 60.0
-"""Real seconds that a run may take; those of the lessons take one, on the real clock a few."""
+"""Default limit in real seconds; the lessons' own runs take one, on the real clock a few."""
 MOST_TEXT = 32_000_000
-"""Characters that a run may write to its log and its output."""
+"""Limit of a run's log and output in characters."""
 
 
 @dataclass(frozen=True)
 class ObservedRun:
-    """A run that is over, and in a sentence why it came to no good end; None if it did.
+    """A finished run; ``trouble`` says in a sentence why it failed, None if it did not.
 
-    ``broken_off`` tells that it was cut short from outside or died, and did not fail by itself.
+    ``broken_off`` tells that it was aborted or its engine was lost, rather than that its program failed.
     """
 
     timeline: Timeline
@@ -39,7 +39,7 @@ class ObservedRun:
 
 @dataclass(frozen=True)
 class CheckedFile:
-    """What came of a learner's file: each check, or none and the sentence of what is wrong with the file."""
+    """The results of a learner's file: its judged checks, none of them if the run failed."""
 
     judged: tuple[JudgedCheck, ...]
     total: int
@@ -52,7 +52,7 @@ class CheckedFile:
 
     @property
     def good(self) -> bool:
-        """Whether the file does all that the exercise asks."""
+        """Whether the run succeeded and all checks passed."""
         return self.run.trouble is None and self.passed == self.total
 
 
@@ -61,7 +61,7 @@ def check(
 ) -> CheckedFile:
     """Run a learner's file and judge it by a lesson's checks; takes about a second, at most ``limit``.
 
-    ``seed`` chooses the order of its threads, None the usual one.
+    ``seed`` chooses the thread schedule, None the default one.
     """
     setup = replace(request_to_judge(lesson, file), changes=Changes(seed=seed)).setup()
     run = observe(setup, file.name, limit)
@@ -76,10 +76,9 @@ def observe(
     given_up: Event | None = None,
     open_session: OpenSession = ProcessSession,
 ) -> ObservedRun:
-    """Run what is set up to its end, on the caller's thread; ``name`` is what it is called in sentences.
+    """Run a set-up to its end on the caller's thread; ``name`` stands for the program in sentences.
 
-    Setting ``given_up``, from any thread, breaks the run off. ``open_session`` makes the session, as
-    ``ProcessSession`` does.
+    Setting ``given_up``, from any thread, aborts the run. ``open_session`` creates the session.
     """
     timeline = Timeline(until_ending=True)
     text = 0
@@ -102,7 +101,7 @@ def observe(
 
 
 def ended_run(timeline: Timeline, name: str, loss: str | None) -> ObservedRun:
-    """Return what is to be said of a run that came to its end; ``loss`` says how its engine was lost."""
+    """Return a run that has ended; ``loss`` says how its engine was lost, None if it was not."""
     if loss is not None:
         sentence = f"{name} ended its whole process at {_time(timeline)}: {loss}"
         return ObservedRun(timeline, sentence, broken_off=True)
@@ -114,17 +113,17 @@ def ended_run(timeline: Timeline, name: str, loss: str | None) -> ObservedRun:
 
 
 def text_in(events: Iterable[AnyEvent]) -> int:
-    """Return how many characters of log and output are among some events."""
+    """Return the number of characters of log and output in some events."""
     return sum(len(event.text) for event in events if isinstance(event, Logged | Printed))
 
 
 def wrote_too_much(timeline: Timeline, name: str) -> str:
-    """Say that a run was ended for what it wrote."""
+    """Return the sentence on a run that was aborted for its amount of output."""
     return f"{name} wrote more than {MOST_TEXT // 1_000_000} MB of log by {_time(timeline)}"
 
 
 def took_too_long(timeline: Timeline, name: str, limit: float) -> str:
-    """Say that a run was ended for the real seconds that it took."""
+    """Return the sentence on a run that was aborted for its real time."""
     return f"{name} was given {limit:g} s of real time, and had not come further than {_time(timeline)}"
 
 

@@ -1,4 +1,4 @@
-"""What came of a program's other orders, as plain text for a terminal."""
+"""Results of an exploration as plain text for a terminal."""
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
@@ -11,9 +11,9 @@ from sim.plural import counted
 
 
 def exploration_text(name: str, found: Mapping[int, ScheduleResult], replays: Sequence[str]) -> str:
-    """Tell how many different outcomes a program's schedules had, each with a seed that shows it.
+    """Summarise the different outcomes of a program's schedules, each with an example seed.
 
-    ``found`` has what came of each seed, ``replays`` the commands that show a schedule, but for its seed.
+    ``found`` has the result of each seed, ``replays`` the commands that repeat a schedule, without its seed.
     """
     return "\n".join([*_lines(name, found, replays), ""])
 
@@ -25,7 +25,7 @@ def _lines(name: str, found: Mapping[int, ScheduleResult], replays: Sequence[str
     failed = sum(len(seeds) for result, seeds in outcomes.items() if not result.well)
     said = f"{counted(failed, 'schedule')} failed" if failed else "all went well"
     yield f"{name}: {counted(len(found), 'schedule')}, {counted(len(outcomes), 'outcome')}, {said}"
-    # Those that failed first, and the more frequent first.
+    # Failures first, and the more frequent first.
     for result, seeds in sorted(outcomes.items(), key=lambda pair: (pair[0].well, -len(pair[1]))):
         yield ""
         sign = PASSED if result.well else FAILED
@@ -66,6 +66,6 @@ def _wrapped(text: str, indent: int) -> str:
 
 
 def _with_seed(command: str, seed: int) -> str:
-    """The command with the seed, in front of what is for the program."""
+    """The command with the seed inserted before the program's own arguments."""
     own, dashes, behind = command.partition(" -- ")
     return f"{own} --seed {seed}{dashes}{behind}"

@@ -1,4 +1,4 @@
-"""Runs a program in other orders of its threads, several at once, and returns the result of each."""
+"""Runs a program under many thread schedules, several at once, and returns the result of each."""
 
 import os
 from collections.abc import Generator, Iterable, Iterator
@@ -22,14 +22,14 @@ from sim.trace.events import NoticeKind, Severity
 from sim.trace.model import Window
 
 _PRELOADED = ["cbtui.cli", "sim.engine.process", "sim.robot.driver", "sim.robot.world"]
-"""What an engine needs; it is imported once, and every run begins with a copy of that process."""
+"""Modules of an engine, imported once in the server that every run is forked from."""
 _STUCK = ("self-made-deadlock", "needs-one-more-worker")
-"""The rules of the diagnosis that find callbacks which wait for ever."""
+"""Ids of the diagnosis rules on callbacks that wait for ever."""
 
 
 @dataclass(frozen=True)
 class ScheduleFailure:
-    """What went wrong in a run. Two are the same if they are called the same, whatever the figures."""
+    """A failure of a run. Failures are equal if ``what`` is; ``detail`` may differ."""
 
     what: str
     detail: str = field(default="", compare=False)
@@ -37,27 +37,27 @@ class ScheduleFailure:
 
 @dataclass(frozen=True)
 class ScheduleResult:
-    """What came of a schedule: what failed, and the ids of the rules that found a problem, in their order.
+    """The result of one schedule: its failures, and the ids of the rules that found a problem.
 
-    Schedules with equal results came out alike.
+    Results that compare equal are the same outcome.
     """
 
     failures: tuple[ScheduleFailure, ...] = ()
     problems: tuple[str, ...] = ()
     notes: tuple[str, ...] = field(default=(), compare=False)
-    """What the engine warned of, in its words."""
+    """Warnings of the engine."""
     repeatable: bool = field(default=True, compare=False)
-    """Whether nothing is known that makes another run with the same seed differ."""
+    """Whether a run with the same seed is expected to be the same."""
 
     @property
     def well(self) -> bool:
-        """Whether nothing failed. What the diagnosis tells of every order is no failure of one."""
+        """Whether nothing failed; problems of the diagnosis alone are no failures."""
         return not self.failures
 
 
 @dataclass(frozen=True)
 class Exploration:
-    """What is run, how its name is said, by whose checks it is judged, and its limit in real seconds."""
+    """A set-up to explore; ``limit`` is in real seconds per run, ``judge`` may be None."""
 
     setup: RunSetup
     name: str
@@ -67,9 +67,9 @@ class Exploration:
     def results(
         self, seeds: Iterable[int], processes: int | None = None
     ) -> Generator[tuple[int, ScheduleResult], None, None]:
-        """Run the schedules of some seeds and yield what came of each, in the order in which they end.
+        """Run the schedules of some seeds and yield their results in order of completion.
 
-        ``processes`` run at once, None: one for each core. Closing the iterator ends all of them.
+        ``processes`` run at once, by default one per core. Closing the iterator ends all of them.
         """
         given_up = Event()
         context = forking_context(_PRELOADED)

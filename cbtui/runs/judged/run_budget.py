@@ -1,4 +1,4 @@
-"""The budget of a judged run: real time, and the amount of text it may write."""
+"""The budget of a judged run: real time, and amount of text."""
 
 from collections.abc import Callable, Iterable
 from time import monotonic
@@ -29,7 +29,7 @@ class RunBudget:
         self._at = now
 
     def rest(self) -> None:
-        """Leave that time out: the run is paused, or slowed down to be watched."""
+        """Skip the time since then: the run is paused, or slowed down for the viewer."""
         self._at = self._clock()
 
     def spent(self, timeline: Timeline, name: str) -> str | None:

@@ -1,4 +1,4 @@
-"""Notices that a file was saved, however an editor does that: in place, by renaming, or by making it anew."""
+"""Watches a file that editors save in place, by renaming, or by creating it again."""
 
 import asyncio
 from collections.abc import AsyncIterator
@@ -9,28 +9,28 @@ from watchfiles import awatch
 from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
 
 CANNOT_WATCH = (OSError, RuntimeError)
-"""What is raised where a folder cannot be watched."""
+"""Errors of a folder that cannot be watched."""
 
 _DEBOUNCE_MS = 50
-"""Milliseconds without another change after which a save is over."""
+"""Milliseconds without a further change after which a save is complete."""
 _POLL_MS = 1000
-"""Milliseconds after which the file is looked at in any case: some file systems do not report changes."""
+"""Milliseconds between two reads without a change report: some file systems send none."""
 _SAVE_TIME = 0.3
-"""Seconds that a file may be gone or empty in the middle of a save."""
+"""Seconds for which a file may be missing or empty during a save."""
 
 
 async def contents(path: Path) -> AsyncIterator[bytes | None]:
-    """Yield what a file holds after each change, and as often as it is looked at; None while it is gone.
+    """Yield a file's content after each change and each poll; None while it is missing.
 
-    The same may come twice. Ends only with the task that waits for it.
+    The same content may come twice. Ends only when its task is cancelled.
 
-    Raises one of ``CANNOT_WATCH`` where nothing helps.
+    Raises one of ``CANNOT_WATCH`` if polling fails as well.
     """
     folder = path.parent
     try:
         async for _ in _changes(folder, force_polling=None):
             yield await _settled(path)
-    except CANNOT_WATCH:  # the system watches no more files, or none of this kind
+    except CANNOT_WATCH:  # out of watches, or the file system has none
         async for _ in _changes(folder, force_polling=True):
             yield await _settled(path)
 

@@ -10,12 +10,12 @@ from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 
 _MIN_INTERVAL = 1.0
-"""Seconds between two looks, at least."""
+"""Least seconds between two updates."""
 _TIME_SHARE = 0.01
-"""The share of all time that looks may take: the longer a look takes, the later the next one."""
+"""The share of time that updates may take: the longer one takes, the later the next."""
 _MAX_GROWTH: Nanoseconds = 20_000_000_000
-"""Growth after which a look is not put off: a recording grows by minutes while it is read, and what is saved
-up of that would keep keys waiting when it is all looked at together."""
+"""Growth after which an update is not delayed: a recording grows by minutes while it is read, and one update
+for all of that would block the keys."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,12 +33,12 @@ class ExplainedFinding:
 
     @property
     def name(self) -> str:
-        """The rule's name, as one would say it: ``group starvation``."""
+        """The rule's name in words: ``group starvation``."""
         return self.finding.rule.id.replace("-", " ")
 
     @property
     def at(self) -> Nanoseconds | None:
-        """The moment when it was so; None for what is true of the run as a whole."""
+        """The moment of the finding; None if it is about the whole run."""
         return self.finding.at or None
 
     @property
@@ -48,7 +48,7 @@ class ExplainedFinding:
 
 
 class FindingsMonitor:
-    """Keeps the findings of the rules in a timeline. Not thread-safe, like the timeline.
+    """Updates the findings of the rules in a timeline. Not thread-safe, like the timeline.
 
     ``clock`` tells real time in seconds.
     """
@@ -60,7 +60,7 @@ class FindingsMonitor:
         clock: Callable[[], float] = monotonic,
     ) -> None:
         self.findings: tuple[ExplainedFinding, ...] = ()
-        """The findings of the last look: problems first, the worst at the front."""
+        """The findings of the last update, the worst problem first."""
         self._timeline = timeline
         self._diagnoses = diagnoses or Diagnoses()
         self._clock = clock
@@ -68,10 +68,7 @@ class FindingsMonitor:
         self._looked_to: Nanoseconds = 0
 
     def look_when_due(self) -> bool:
-        """Look if enough time has passed since the last look, or the run has grown by much.
-
-        Returns whether the findings have changed.
-        """
+        """Update if it is time, or if the run has grown much; returns whether the findings changed."""
         grown = self._timeline.end - self._looked_to
         if self._clock() < self._due and grown < _MAX_GROWTH:
             return False
@@ -80,7 +77,7 @@ class FindingsMonitor:
         return self.findings != before
 
     def look(self) -> None:
-        """Look now, whenever the last look was."""
+        """Update now."""
         began = self._clock()
         timeline = self._timeline
         self._looked_to = timeline.end
@@ -95,6 +92,6 @@ def _explained(found: Finding, timeline: Timeline) -> ExplainedFinding:
 
 
 def problem_count_text(findings: Sequence[ExplainedFinding]) -> str:
-    """How many problems there are: ``2 problems``; "" for none."""
+    """The number of problems: ``2 problems``; "" for none."""
     count = sum(each.is_problem for each in findings)
     return counted(count, "problem") if count else ""

@@ -1,4 +1,4 @@
-"""Exporting a run that is on screen: a file of its own in the current folder, written on another thread."""
+"""Exports a run on screen to a new file in the current folder, on another thread."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,7 +16,7 @@ class _GivenUpError(Exception):
 
 @dataclass(frozen=True)
 class ExportableRun:
-    """What there is to export: a run's title, its events, how far they go, and a sentence on what is not."""
+    """A run's title, events and end, and a sentence on missing events."""
 
     title: str
     source: EventSource
@@ -27,7 +27,7 @@ class ExportableRun:
 class LiveExport:
     """One file in one of ``FORMATS``; ``window`` is what a picture shows, None for the whole run.
 
-    ``write`` is for any thread; the rest may be asked on another one meanwhile.
+    ``write`` runs on any thread; the other members may be used on another one meanwhile.
     """
 
     def __init__(self, material: ExportableRun, form: str, window: Window | None) -> None:
@@ -38,16 +38,16 @@ class LiveExport:
         self._wish = ExportRequest({form: self._path}, start, end, replace=False)
         self._given_up = Event()
         self.share = 0.0
-        """How much of the run is in the file, from 0 to 1."""
+        """The exported share of the run, from 0 to 1."""
         self.over = False
-        """Whether nothing more is done about it."""
+        """Whether ``write`` has returned."""
 
     def give_up(self) -> None:
-        """Leave off, and no file behind, unless it is whole already."""
+        """Abort; leaves no file unless it is complete already."""
         self._given_up.set()
 
     def write(self) -> str:
-        """Write the file; returns a sentence on where it is, or on why it could not be written."""
+        """Write the file; returns a sentence on its path, or on why it could not be written."""
         try:
             export(self._material.source, self._wish, self._reach)
         except _GivenUpError:

@@ -1,4 +1,4 @@
-"""Recording a run that is on screen, from when the person asks for it until they have had enough."""
+"""Records a run on screen while the user wants it."""
 
 import re
 import time
@@ -12,20 +12,20 @@ from sim.engine.setup import RunSetup
 from sim.recording import BackgroundRecorder, Recorder, RunSnapshot
 from sim.trace.events import AnyEvent
 
-Finish: TypeAlias = Callable[[], str]
-"""Writes a recording to its end, however long the disk takes, and says what it holds; for any thread."""
+FinishFile: TypeAlias = Callable[[], str]
+"""Finishes a recording and returns a sentence on its content; may block, on any thread."""
 
 _LONGEST_TITLE = 60
 _MOST_NAMES = 1000
 _NAME_RETRIES = 100
-"""How often another console may be quicker to take a name."""
+"""How often another console may take a name first."""
 
 
 class LiveRecording:
-    """Records none or any number of stretches of a run, each to a file of its own.
+    """Records any number of periods of a run, each to a file of its own.
 
-    It follows the run all the time, since a stretch has to tell what was there when it began. Files are
-    written on threads of their own. It belongs to one thread, but ``end`` may be called from any.
+    It follows the run all the time, since each file begins with a snapshot of the run. Files are written on
+    threads of their own. Used on one thread; only ``end`` may be called from any.
     """
 
     def __init__(self, setup: RunSetup) -> None:
@@ -72,7 +72,7 @@ class LiveRecording:
             return self._recorder_here(tries - 1)
 
     def take(self, events: list[AnyEvent]) -> str | None:
-        """Follow the run; a sentence if its recording came to an end for it cannot be written."""
+        """Process events; returns a sentence if the recording ended because it cannot be written."""
         self._snapshot.take(events)
         recorder = self._recorder
         if recorder is None:
@@ -81,12 +81,12 @@ class LiveRecording:
         return None if recorder.failure is None else self.end()
 
     def end(self) -> str | None:
-        """Finish the recording, and say what it holds; None if there is none. Waits for the disk."""
-        finish = self.part()
+        """Finish the recording; returns a sentence on its content, None if there is none. Blocks."""
+        finish = self.detach()
         return None if finish is None else finish()
 
-    def part(self) -> Finish | None:
-        """Record no more; return what is left to do, None if nothing is being recorded."""
+    def detach(self) -> FinishFile | None:
+        """Stop recording; returns the function that finishes the file, None if nothing is being recorded."""
         recorder, self._recorder = self._recorder, None
         return None if recorder is None else partial(_finish, recorder)
 
@@ -100,7 +100,7 @@ def _finish(recorder: BackgroundRecorder) -> str:
 
 
 def unused_name(title: str, suffix: str = ".mcap") -> Path:
-    """A name with the title and the time of day that no file in the current folder has."""
+    """Return a file name of title and time that is unused in the current folder."""
     plain = re.sub(r"[^A-Za-z0-9_-]+", "-", title).strip("-")[:_LONGEST_TITLE] or "run"
     stem = f"{plain}-{time.strftime('%Y%m%d-%H%M%S')}"
     names = (Path(f"{stem}{'' if number == 1 else f'-{number}'}{suffix}") for number in range(1, _MOST_NAMES))

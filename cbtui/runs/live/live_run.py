@@ -1,4 +1,4 @@
-"""A run as screens show it, and the run of an engine: its timeline, its session, and what was asked of it."""
+"""The run that screens show: its protocol, and the live run of an engine."""
 
 from collections.abc import Sequence
 from enum import Enum, auto
@@ -8,7 +8,7 @@ from typing import Protocol
 from cbtui.engines.session import Deliver, Ended, OpenSession
 from cbtui.runs.live.disk_space import DiskSpaceWatch
 from cbtui.runs.live.live_export import ExportableRun
-from cbtui.runs.live.live_recording import Finish, LiveRecording
+from cbtui.runs.live.live_recording import FinishFile, LiveRecording
 from sim.engine.commands import (
     CallService,
     CompleteLine,
@@ -38,17 +38,17 @@ from sim.trace.storage.event_store import EventStore
 from sim.trace.timeline import Timeline
 
 SPEEDS: tuple[float | None, ...] = (0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, None)
-"""Seconds of a run per real second that can be chosen; None, virtual only, is as fast as the engine can."""
+"""Available speeds in seconds of the run per real second; None, virtual only, is unlimited."""
 
-_LETS_TIME_PASS = (CommandKind.RESUME, CommandKind.RUN_UNTIL)
-"""Commands after which time goes on; a halt before them is that of an earlier command."""
+_STARTS_TIME = (CommandKind.RESUME, CommandKind.RUN_UNTIL)
+"""Commands that let time pass; a halt that was reported before them belongs to an earlier command."""
 
 _CHANGES_STATE = {Notice, TimeHalted, CommandGiven}
-"""Events that say whether time goes on; most batches have none."""
+"""Events that tell whether time passes; most batches have none."""
 
 
 class RunState(Enum):
-    """How far a run has come."""
+    """The state of a run."""
 
     STARTING = auto()
     LIVE = auto()
@@ -61,9 +61,9 @@ class RunState(Enum):
 
 
 class ShownRun(Protocol):
-    """A run as screens show it, whether an engine makes it now or it was recorded.
+    """A run that a screen shows, live or recorded.
 
-    It belongs to the UI thread; only ``stop`` may be called from any. ``loss`` says how the engine was lost.
+    Used on the UI thread; only ``stop`` may be called from any. ``loss`` says how the engine was lost.
     """
 
     setup: RunSetup
@@ -74,15 +74,15 @@ class ShownRun(Protocol):
 
     @property
     def state(self) -> RunState:
-        """How far it has come."""
+        """The state of the run."""
 
     @property
     def alive(self) -> bool:
-        """Whether an engine can still be told something."""
+        """Whether an engine still takes commands."""
 
     @property
     def asked(self) -> KeyboardAsked | None:
-        """How a program waits for the keyboard now; None if none does."""
+        """The current request for keyboard input; None if no program reads."""
 
     @property
     def virtual(self) -> bool:
@@ -90,68 +90,68 @@ class ShownRun(Protocol):
 
     @property
     def speeds(self) -> tuple[float | None, ...]:
-        """The speeds that can be chosen."""
+        """The available speeds."""
 
     @property
     def can_be_paced(self) -> bool:
         """Whether it can be paused, resumed and given another speed."""
 
     def start(self) -> str | None:
-        """Start the source of its events; a sentence if not all of it works."""
+        """Start the source of events; returns a sentence if part of it does not work."""
 
     def take(self, events: list[AnyEvent]) -> str | None:
-        """Add what the source delivered; a sentence on what goes wrong meanwhile."""
+        """Add delivered events; returns a warning, None if there is none."""
 
-    def over(self, trouble: str | None) -> Finish | None:
-        """Note that no more events come; ``trouble`` says why, if that should not be.
+    def over(self, trouble: str | None) -> FinishFile | None:
+        """Note the end of the events; ``trouble`` is a sentence if it came unexpectedly.
 
-        Returns what is left to do and then tells of it, None if there is nothing.
+        Returns the function that finishes a file, None if there is none.
         """
 
     def stop(self) -> str | None:
-        """End the source, and say what was saved. Blocks for up to a second, and for a recording's file."""
+        """End the source; returns a sentence on what was saved. Blocks until the recording is written."""
 
     def material(self) -> ExportableRun:
-        """What there is to export of the run so far."""
+        """The run so far, for an export."""
 
     def pause(self) -> None:
-        """Let time stand."""
+        """Stop time."""
 
     def resume(self) -> None:
-        """Let time go on."""
+        """Let time pass again."""
 
     def change_speed(self, steps: int) -> None:
-        """Go up (> 0) or down in ``speeds``."""
+        """Change the speed by so many steps of ``speeds``."""
 
 
 def neighbouring_speed(speed: float | None, speeds: Sequence[float | None], steps: int) -> float | None:
-    """Return the speed so many steps up (> 0) or down; the last one in that direction has none beside it."""
+    """Return the speed so many steps up (> 0) or down, up to the last one."""
     return speeds[max(0, min(speeds.index(speed) + steps, len(speeds) - 1))]
 
 
 class LiveRun:
-    """A run in progress. It belongs to the UI thread: what the session delivers is handed over there."""
+    """A run of an engine. Used on the UI thread, to which the session's batches are posted."""
 
     def __init__(self, setup: RunSetup, open_session: OpenSession, deliver: Deliver, ended: Ended) -> None:
         self.setup = setup
         self.timeline = Timeline(until_ending=setup.until is not None)
-        self._room = DiskSpaceWatch(self.timeline)
+        self._disk_space = DiskSpaceWatch(self.timeline)
         self.recording = LiveRecording(setup)
         self._events = EventStore()
         self.speed = setup.speed if self.virtual else setup.speed or 1.0
         self.loss: str | None = None
         self.paused = False
         self._silent = False
-        self._goes_on = True
+        self._time_passes = True
         self._over = False
-        self._numbers = count(len(setup.lines) + 1)
+        self._line_numbers = count(len(setup.lines) + 1)
         self._line = 0
         self._started = False
         self._session = open_session(setup, deliver, ended)
 
     @property
     def state(self) -> RunState:
-        """How far the run has come; a lost engine outdoes everything else."""
+        """The state of the run; a lost engine takes precedence."""
         if self.loss is not None:
             return RunState.LOST
         if self._over or self.timeline.ended is not None:
@@ -164,36 +164,36 @@ class LiveRun:
 
     @property
     def alive(self) -> bool:
-        """Whether the engine can still be told something."""
+        """Whether the engine still takes commands."""
         return self.state in (RunState.STARTING, RunState.LIVE, RunState.PAUSED, RunState.SILENT)
 
     @property
     def asked(self) -> KeyboardAsked | None:
-        """How a program waits for the keyboard now; None if none does."""
+        """The current request for keyboard input; None if no program reads."""
         return self.timeline.asked(self.timeline.end) if self.alive else None
 
     @property
     def virtual(self) -> bool:
-        """Whether time stands still for every thread in a pause, and can go on step by step."""
+        """Whether it runs on virtual time, which can be paused and stepped."""
         return self.setup.clock == "virtual"
 
     @property
     def speeds(self) -> tuple[float | None, ...]:
-        """The speeds that can be chosen for this run."""
+        """The available speeds."""
         return SPEEDS if self.virtual else SPEEDS[:-1]
 
     @property
     def can_be_paced(self) -> bool:
-        """Whether the engine is there to be paced, and is a model's: real ROS 2 goes on by itself."""
+        """Whether it can be paused, resumed and given another speed; real ROS 2 goes on by itself."""
         return self.alive and self.setup.real is None
 
     @property
     def can_step(self) -> bool:
-        """Whether time stands, and can go on to the next scheduling decision."""
+        """Whether time is paused and can be stepped."""
         return self.virtual and self.state is RunState.PAUSED
 
     def start(self) -> str | None:
-        """Start the engine, one that cannot be started counts as lost; a sentence if not all of it works."""
+        """Start the engine; if that fails it counts as lost. Returns a sentence if a part does not work."""
         try:
             complaint = self._session.start()
         except OSError as error:
@@ -203,7 +203,7 @@ class LiveRun:
         return complaint
 
     def take(self, events: list[AnyEvent]) -> str | None:
-        """Add what the session delivered; a sentence on what it could not be kept in, or soon cannot."""
+        """Add delivered events; returns a warning about the recording or the disk, None if there is none."""
         self.timeline.extend(events)
         self._events.take(events)
         self._silent = False
@@ -212,24 +212,24 @@ class LiveRun:
                 self._silent = self._silent or event.kind is NoticeKind.ENGINE_SILENT
             elif isinstance(event, TimeHalted):
                 self.paused = True
-            elif isinstance(event, CommandGiven) and self._goes_on and event.kind in _LETS_TIME_PASS:
+            elif isinstance(event, CommandGiven) and self._time_passes and event.kind in _STARTS_TIME:
                 self.paused = False
         failure = self.recording.take(events)
         if failure is not None:
             self._session.send(KeepContents(wanted=False))
-        return failure or self._room.news(self.recording.path, self.recording.size)
+        return failure or self._disk_space.news(self.recording.path, self.recording.size)
 
-    def over(self, trouble: str | None) -> Finish | None:
-        """Note that the engine is gone; ``trouble`` says how, if it should not be.
+    def over(self, trouble: str | None) -> FinishFile | None:
+        """Note that the engine is gone; ``trouble`` is a sentence if that was unexpected.
 
-        Returns what finishes a recording and tells of it, None if there is none.
+        Returns the function that finishes the recording, None if there is none.
         """
         self._over = True
         self.loss = trouble
-        return self.recording.part()
+        return self.recording.detach()
 
     def stop(self) -> str | None:
-        """End the engine and a recording, and say what that holds.
+        """End the engine and the recording; returns a sentence on the recording, None if there is none.
 
         Blocks for up to a second and until the recording is written; may be called from any thread.
         """
@@ -247,13 +247,13 @@ class LiveRun:
         self._session.send(KeepContents(wanted=True))
         return sentence
 
-    def end_recording(self) -> Finish | None:
-        """Record no more; return what finishes the recording and tells of it, None if there is none."""
+    def end_recording(self) -> FinishFile | None:
+        """Stop recording; returns the function that finishes the file, None if there is none."""
         self._session.send(KeepContents(wanted=False))
-        return self.recording.part()
+        return self.recording.detach()
 
     def material(self) -> ExportableRun:
-        """What there is to export of the run so far."""
+        """The run so far, for an export."""
         return ExportableRun(self.setup.title, self._events, self.timeline.end, self._events.missing)
 
     def call(self, data: bool) -> None:
@@ -262,8 +262,8 @@ class LiveRun:
         self._session.send(CallService(None if service is None else service.name, data))
 
     def give_line(self, text: str) -> None:
-        """Have a ``ros2`` line carried out."""
-        self._line = next(self._numbers)
+        """Run a ``ros2`` line."""
+        self._line = next(self._line_numbers)
         self._session.send(RunLine(self._line, text))
 
     def type(self, text: str) -> None:
@@ -271,30 +271,30 @@ class LiveRun:
         self._session.send(Type(text))
 
     def interrupt_line(self) -> None:
-        """End the line that was given last, as Ctrl-C would."""
+        """Interrupt the last line, as Ctrl-C would."""
         self._session.send(InterruptLine(self._line))
 
     def complete_line(self, text: str, cursor: int) -> None:
-        """Ask what could stand at a place of a line; the answer comes with the trace."""
-        self._session.send(CompleteLine(next(self._numbers), text, cursor))
+        """Request completions at a cursor position; they arrive with the trace."""
+        self._session.send(CompleteLine(next(self._line_numbers), text, cursor))
 
     def pause(self) -> None:
         """Stop time."""
-        self.paused, self._goes_on = True, False
+        self.paused, self._time_passes = True, False
         self._session.send(Pause())
 
     def resume(self) -> None:
-        """Let time go on."""
-        self.paused, self._goes_on = False, True
+        """Let time pass again."""
+        self.paused, self._time_passes = False, True
         self._session.send(Resume())
 
     def step(self) -> None:
-        """Go on to the next scheduling decision; time stands again there."""
+        """Run to the next scheduling decision, and pause there."""
         self._session.send(Step())
 
     def run_until(self, moment: Nanoseconds) -> None:
-        """Go on to a moment that has not come yet; time stands again there."""
-        self.paused, self._goes_on = False, True
+        """Run to a future moment, and pause there."""
+        self.paused, self._time_passes = False, True
         self._session.send(RunUntil(moment))
 
     def reset_world(self) -> None:
@@ -302,6 +302,6 @@ class LiveRun:
         self._session.send(ResetWorld())
 
     def change_speed(self, steps: int) -> None:
-        """Go up (> 0) or down in ``speeds``."""
+        """Change the speed by so many steps of ``speeds``."""
         self.speed = neighbouring_speed(self.speed, self.speeds, steps)
         self._session.send(SetSpeed(self.speed))

@@ -1,4 +1,4 @@
-"""Which moment and which stretch of a run is on screen."""
+"""The playhead: the cursor and the window of time on screen."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -14,19 +14,18 @@ SPANS = (
     *(length * SECOND for length in (10, 20, 30)),
     *(length * _MINUTE for length in (1, 2, 5, 10)),
 )
-"""The stretches of time that the lanes can show: 1 ms to 10 minutes."""
+"""The lengths of windows that the lanes can show: 1 ms to 10 minutes."""
 
 _STEPS = 10
-"""Into how many steps a stretch is divided for moving the cursor and for panning."""
+"""Steps per window for moving the cursor and for panning."""
 
 
 @dataclass(frozen=True)
 class Playhead:
-    """The cursor, and the stretch of time around which the lanes are drawn; each can be moved alone.
+    """The cursor, and the window of time that the lanes show; each can be moved alone.
 
-    The cursor follows the end of the run (``at`` None), or stands where the person looked back to: every pane
-    shows that moment. The stretch ends at the cursor (``start`` None), or begins where it was moved to and
-    stands still while the run goes on.
+    The cursor follows the end of the run (``at`` is None) or stands at a past moment, which every pane shows.
+    The window ends at the cursor (``start`` is None), or stands where it was moved to.
     """
 
     span: Nanoseconds = 10 * SECOND
@@ -35,28 +34,28 @@ class Playhead:
 
     @property
     def follows(self) -> bool:
-        """Whether cursor and stretch both go with the end of the run."""
+        """Whether cursor and window both follow the end of the run."""
         return self.at is None and self.start is None
 
     def now(self, end: Nanoseconds) -> Nanoseconds:
-        """The moment on screen, in a run that has come to ``end``."""
+        """The moment on screen of a run that goes to ``end``."""
         return end if self.at is None else min(self.at, end)
 
     def window(self, end: Nanoseconds) -> Window:
-        """The stretch on screen; one that ends at a cursor younger than it is long begins at 0."""
+        """The window on screen; it begins no earlier than 0."""
         start = max(0, self.now(end) - self.span) if self.start is None else self.start
         return Window(start, start + self.span)
 
     # the cursor
 
     def moved(self, steps: int, end: Nanoseconds) -> "Playhead":
-        """Move the cursor by steps of a tenth of the stretch, < 0 into the past; past the end is live."""
-        return self.sought(self.now(end) + steps * self.span // _STEPS, end)
+        """Move the cursor by tenths of the window, < 0 into the past; past the end it follows the run."""
+        return self.moved_to(self.now(end) + steps * self.span // _STEPS, end)
 
-    def sought(self, at: Nanoseconds, end: Nanoseconds) -> "Playhead":
-        """Put the cursor to a moment, the beginning if it lies before that; at or past the end is live again.
+    def moved_to(self, at: Nanoseconds, end: Nanoseconds) -> "Playhead":
+        """Put the cursor to a moment, no earlier than 0; at or past the end it follows the run.
 
-        The stretch stands still as long as it shows the cursor.
+        The window stays if it shows the cursor.
         """
         if at >= end:
             return self.live()
@@ -64,11 +63,11 @@ class Playhead:
         return replace(self, at=at, start=self._start_that_shows(at, end))
 
     def beside(self, timelines: Sequence[Timeline], end: Nanoseconds, step: int) -> "Playhead":
-        """Go to the event before (``step`` < 0) or after, of any of the runs; after the last is live."""
+        """Go to the previous (``step`` < 0) or next event of any run; after the last, follow the end."""
         neighbours = [timeline.neighbour(self.now(end), None, step) for timeline in timelines]
         found = [at for at in neighbours if at is not None]
         if found:
-            return self.sought(min(found) if step > 0 else max(found), end)
+            return self.moved_to(min(found) if step > 0 else max(found), end)
         return self.live() if step > 0 else self
 
     def live(self) -> "Playhead":
@@ -76,9 +75,9 @@ class Playhead:
         return replace(self, at=None, start=None)
 
     def _start_that_shows(self, at: Nanoseconds, end: Nanoseconds) -> Nanoseconds:
-        """Where the stretch has to begin: with a far moment in its middle, else as near as it stands.
+        """The start of a window that shows a moment: centred on a distant one, else moved a little.
 
-        At its left edge some of what was before stays on screen: the first column may be cut off.
+        At the left edge a margin stays, as the first column may be cut off.
         """
         shown, margin = self.window(end), self.span // (2 * _STEPS)
         if not shown.start - self.span // 2 <= at <= shown.end + self.span // 2:
@@ -87,14 +86,14 @@ class Playhead:
             return max(0, at - 2 * margin)
         return max(shown.start, at - self.span)
 
-    # the stretch
+    # the window
 
     def panned(self, steps: int, end: Nanoseconds) -> "Playhead":
-        """Move the stretch by steps of a tenth of itself and leave the cursor; at the end it follows that."""
+        """Move the window by tenths of itself without the cursor; at the end it follows the run."""
         return self._beginning_at(self.window(end).start + steps * self.span // _STEPS, end)
 
     def zoomed(self, steps: int, end: Nanoseconds) -> "Playhead":
-        """Show a longer (> 0) or shorter stretch: around the cursor, or around its middle without one."""
+        """Show a longer (> 0) or shorter window, around the cursor if it is inside, else its middle."""
         place = SPANS.index(self.span) + steps
         other = replace(self, span=SPANS[max(0, min(place, len(SPANS) - 1))])
         if self.follows:
@@ -105,7 +104,7 @@ class Playhead:
         return other._beginning_at(fixed - (fixed - shown.start) * other.span // self.span, end)
 
     def _beginning_at(self, start: Nanoseconds, end: Nanoseconds) -> "Playhead":
-        """The stretch from ``start``, as near to it as the run's beginning and end allow."""
+        """A window that begins at ``start``, clamped to the run."""
         latest = max(0, end - self.span)
         start = max(0, min(start, latest))
         return replace(self, start=None if self.at is None and start == latest else start)

@@ -1,4 +1,4 @@
-"""A recording as the console shows it: its subject, what reads its events, and the run that they tell of."""
+"""A recording on screen: its reader, its run, and the program that it shows."""
 
 import threading
 from collections.abc import Iterator
@@ -8,7 +8,7 @@ from pathlib import Path
 from cbtui.engines.session import Deliver, Ended
 from cbtui.runs.live.disk_space import DiskSpaceWatch
 from cbtui.runs.live.live_export import ExportableRun
-from cbtui.runs.live.live_recording import Finish
+from cbtui.runs.live.live_recording import FinishFile
 from cbtui.runs.live.live_run import SPEEDS, RunState, neighbouring_speed
 from cbtui.runs.live.playhead import Playhead
 from cbtui.runs.recorded.recording_file import setup_of
@@ -23,12 +23,12 @@ from sim.trace.timeline import Timeline
 from sim.units import SECOND
 
 _BATCH = 2000
-"""Events that are delivered at once: what the screen takes in between two frames."""
+"""Events per batch: as many as the screen processes between two frames."""
 _STOP_TIMEOUT = 0.4
-"""Seconds that a reader gets to notice that it is to stop."""
+"""Seconds to wait for the reader to stop."""
 
 _LONGEST_SOURCE = 500_000
-"""Bytes of a program that is shown; recordings take no longer ones along either."""
+"""The longest source in bytes that is shown; recordings hold no longer ones."""
 _GUIDE = """# Recording of {title}
 
 {facts}
@@ -42,10 +42,9 @@ Every pane shows the moment that the status line tells.
 
 
 class RecordingReader:
-    """A recording as a source of events.
+    """Reads a recording on a thread of its own, on which ``deliver`` and ``ended`` are called.
 
-    ``deliver`` and ``ended`` are called on a thread of its own; what ``ended`` gets is one sentence on what
-    of the recording cannot be read, or None.
+    ``ended`` gets a sentence on the unreadable part of the recording, or None.
     """
 
     def __init__(self, recording: Recording, deliver: Deliver, ended: Ended) -> None:
@@ -56,11 +55,11 @@ class RecordingReader:
         self._reader = threading.Thread(target=self._read, name="recording-reader", daemon=True)
 
     def start(self) -> None:
-        """Start to read."""
+        """Start reading."""
         self._reader.start()
 
     def stop(self) -> None:
-        """Read no further. May be called again."""
+        """Stop reading. Idempotent."""
         self._stopping.set()
         self._reader.join(_STOP_TIMEOUT)
 
@@ -89,32 +88,32 @@ class RecordingReader:
 
 
 class _ReadAgain:
-    """The events of a recording, read anew for each caller."""
+    """The events of a recording, read again on each call."""
 
     def __init__(self, path: Path) -> None:
         self._path = path
 
     def batches(self) -> Iterator[list[AnyEvent]]:
-        """The events, batch after batch.
+        """Yield the batches of events.
 
         Raises:
-            RecordingError: nothing of the recording is left.
+            RecordingError: the recording is no longer readable.
             OSError: it cannot be read to its end.
         """
         yield from read(self._path).batches()
 
 
 class RecordedRun:
-    """A recorded run. It is played by moving the moment on screen, never by an engine.
+    """A recorded run. It is played by moving the cursor; there is no engine.
 
-    ``damage`` is one sentence on what cannot be read of it, once it has been read to its end.
+    ``damage`` is a sentence on its unreadable part, once it has been read to its end.
     """
 
     alive = False
     asked = None
     can_be_paced = True
     speeds = SPEEDS[:-1]
-    """The speeds at which it can be played."""
+    """The available playback speeds."""
 
     def __init__(self, recording: Recording, setup: RunSetup, deliver: Deliver, ended: Ended) -> None:
         self.setup = setup
@@ -131,7 +130,7 @@ class RecordedRun:
 
     @property
     def state(self) -> RunState:
-        """Whether the moment on screen moves or stands."""
+        """Whether it is being played."""
         return RunState.REPLAY_STANDS if self.paused else RunState.REPLAY_PLAYS
 
     @property
@@ -140,34 +139,34 @@ class RecordedRun:
         return self.setup.clock == "virtual"
 
     def start(self) -> None:
-        """Start to read."""
+        """Start reading."""
         self._reader.start()
 
     def take(self, events: list[AnyEvent]) -> str | None:
-        """Add what was read."""
+        """Add events that were read."""
         self.timeline.extend(events)
         return self._disk_space.news(None, 0)
 
-    def over(self, trouble: str | None) -> Finish | None:
-        """Note that it has been read to its end; what tells of what cannot be read, if there is such."""
+    def over(self, trouble: str | None) -> FinishFile | None:
+        """Note that it has been read to its end; returns what reports the unreadable part, or None."""
         self.is_read = True
         self.damage = trouble
         return None if trouble is None else lambda: trouble
 
     def stop(self) -> None:
-        """Read no further."""
+        """Stop reading."""
         self._reader.stop()
 
     def material(self) -> ExportableRun:
-        """What there is to export: all of the recording, however much of it has been read."""
+        """The whole recording, for an export."""
         return ExportableRun(self.setup.title, _ReadAgain(self._path), self.timeline.end)
 
     def pause(self) -> None:
-        """Let the moment on screen stand."""
+        """Pause playback."""
         self.paused = True
 
     def resume(self) -> None:
-        """Let the moment on screen move."""
+        """Resume playback."""
         self.paused = False
 
     def change_speed(self, steps: int) -> None:
@@ -175,16 +174,16 @@ class RecordedRun:
         self.speed = neighbouring_speed(self.speed, self.speeds, steps)
 
     def played(self, playhead: Playhead, elapsed: Nanoseconds) -> Playhead:
-        """Move a playhead on by what is played in ``elapsed`` real time; at the end it stands."""
+        """Advance a playhead by ``elapsed`` nanoseconds of real time; playback pauses at the end."""
         end = self.timeline.end
-        moved = playhead.sought(playhead.now(end) + round(elapsed * (self.speed or 1.0)), end)
+        moved = playhead.moved_to(playhead.now(end) + round(elapsed * (self.speed or 1.0)), end)
         if moved.at is None:
             self.paused = True
         return moved
 
 
 def of_recording(recording: Recording) -> ShownProgram:
-    """Return a recording as a subject; the sources are those that were recorded."""
+    """Return a recording as a program to show, with the recorded sources."""
     about = recording.about
     path, source = _source_of(recording)
     setup = setup_of(about) or RunSetup(title=about.title, programs=(), clock=about.clock or "virtual")
@@ -202,7 +201,7 @@ def of_recording(recording: Recording) -> ShownProgram:
 
 
 def _source_of(recording: Recording) -> tuple[Path, str]:
-    """The first program's path and text; what neither was recorded nor lies on this machine says so."""
+    """The first program's path and source; a placeholder if the source is neither recorded nor here."""
     names = [*recording.about.programs, *recording.sources]
     name = next((name for name in names if name in recording.sources), next(iter(names), ""))
     path = Path(_plain(name) or recording.path.name)
@@ -212,7 +211,7 @@ def _source_of(recording: Recording) -> tuple[Path, str]:
 
 
 def _program_text(path: Path) -> str:
-    """A program that a recording names, if this machine has it; any file may be named, of any size."""
+    """The source of a program that a recording names, if this machine has it; the name may be any file."""
     try:
         return read_text(path, _LONGEST_SOURCE, "replace") if path.suffix in PROGRAMS else ""
     except (OSError, ValueError):
@@ -247,7 +246,7 @@ def _moment(nanoseconds: int) -> str:
 
 
 def _plain(text: str) -> str:
-    """A recorded text without what a terminal or a file system would take for a command."""
+    """A recorded text without unprintable characters."""
     return "".join(character for character in text if character.isprintable())
 
 

@@ -3,7 +3,7 @@
 import asyncio
 from collections.abc import Callable
 
-from cbtui.runs.live.live_recording import Finish
+from cbtui.runs.live.live_recording import FinishFile
 
 
 class FileFinisher:
@@ -13,8 +13,8 @@ class FileFinisher:
         self.tell = tell
         self._tasks: set[asyncio.Task[None]] = set()
 
-    def finish(self, finish: Finish | None) -> None:
-        """Finish a file; nothing for None."""
+    def finish(self, finish: FinishFile | None) -> None:
+        """Finish a file; does nothing for None."""
         if finish is not None:
             task = asyncio.create_task(self._finish(finish))
             self._tasks.add(task)
@@ -24,6 +24,6 @@ class FileFinisher:
         """Wait until every file is finished."""
         await asyncio.gather(*self._tasks)
 
-    async def _finish(self, finish: Finish) -> None:
+    async def _finish(self, finish: FinishFile) -> None:
         sentence = await asyncio.to_thread(finish)
         self.tell(sentence)

@@ -43,7 +43,7 @@ class TimeNavigation(ScreenPart):
 
     def seek(self, moment: Nanoseconds) -> None:
         """Put the cursor to a moment."""
-        self.move(self.playhead.sought(moment, self.end()))
+        self.move(self.playhead.moved_to(moment, self.end()))
 
     def zoom(self, steps: int) -> None:
         """Show a longer (> 0) or shorter stretch of time."""

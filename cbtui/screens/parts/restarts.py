@@ -66,7 +66,7 @@ class Restarts(ScreenPart):
         """Run again with these changes, at a speed."""
         before = self.runs.run
         if before.timeline.end > 0:
-            self.before = compared_side(before, self.changes).at_rest()
+            self.before = compared_side(before, self.changes).ended()
         self.changes = changes
         self.runs.begin(speed)
         self.began()
