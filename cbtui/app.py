@@ -63,8 +63,9 @@ class CbtuiApp(EndingApp):
 
     ``start_lesson`` is the id of a lesson to open at once, ``start_exercise`` of one whose exercise to open,
     ``start_file`` a program file, its arguments and its clock, ``start_changes`` what is changed about
-    either, ``start_recording`` a recording to show, ``start_comparison`` two runs to compare. ``theme`` is
-    the name of a colour theme, ``keys`` the keys in force, and ``complaints`` are sentences to begin with.
+    either, ``start_program`` any other program, ``start_recording`` a recording to show, ``start_comparison``
+    two runs to compare. ``theme`` is the name of a colour theme, ``keys`` the keys in force, and
+    ``complaints`` are sentences to begin with.
     ``open_session`` starts engines in place of the real ones, ``observe`` runs one to its end beside the
     screen.
     """
@@ -87,6 +88,7 @@ class CbtuiApp(EndingApp):
         start_exercise: str | None = None,
         start_file: tuple[Path, Sequence[str], str] | None = None,
         start_changes: "Changes | None" = None,
+        start_program: "ShownProgram | None" = None,
         start_recording: "Recording | None" = None,
         start_comparison: "tuple[ComparedRun, ComparedRun, ComparisonTerms] | None" = None,
         theme: str = STANDARD,
@@ -101,6 +103,7 @@ class CbtuiApp(EndingApp):
         self._start_exercise = start_exercise
         self._start_file = start_file
         self._start_changes = start_changes
+        self._start_program = start_program
         self._start_recording = start_recording
         self._start_comparison = start_comparison
         self._complaints = complaints
@@ -160,6 +163,8 @@ class CbtuiApp(EndingApp):
         elif self._start_file is not None:
             path, arguments, clock = self._start_file
             self._run_file(path, arguments, clock, self._start_changes)
+        elif self._start_program is not None:
+            self._show_program(self._start_program, None)
         elif self._start_recording is not None:
             self._show_recording(self._start_recording)
         elif self._start_comparison is not None:

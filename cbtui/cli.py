@@ -24,6 +24,7 @@ from cbtui.commands import (
     lint_lesson,
     listing,
     new_lesson,
+    probe,
     reset,
     run,
     serve,
@@ -166,6 +167,7 @@ def _parser() -> argparse.ArgumentParser:
     explore.add_options(exploring)
     exploring.set_defaults(action=explore.explore)
 
+    _add_watching(commands)
     _add_exercises(commands)
 
     replaying = commands.add_parser("replay", help="show a recording in the console")
@@ -232,6 +234,22 @@ def _parser() -> argparse.ArgumentParser:
     examining.set_defaults(action=doctor.examine)
     commands.add_parser("ros2", help="carry out a ros2 line in the run that is going on", add_help=False)
     return parser
+
+
+def _add_watching(commands: "argparse._SubParsersAction[CommandParser]") -> None:
+    probing = commands.add_parser(
+        "probe",
+        help="run a command on real ROS 2 so that attach can watch it",
+        usage="%(prog)s -- COMMAND …",
+        description="Become a command, such as python3 node.py or ros2 launch …, in which every process that "
+        "imports rclpy can be watched with cbtui attach. The processes need nothing of cbtui's, and go on "
+        "whether they are watched or not.",
+    )
+    probing.set_defaults(action=probe.probe)
+
+    attaching = commands.add_parser("attach", help="watch processes that cbtui probe has started")
+    probe.add_attach_options(attaching)
+    attaching.set_defaults(action=probe.attach)
 
 
 def _add_exercises(commands: "argparse._SubParsersAction[CommandParser]") -> None:

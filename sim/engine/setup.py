@@ -93,9 +93,15 @@ class PeriodChange(msgspec.Struct, frozen=True):
 
 
 class RealRos(msgspec.Struct, frozen=True):
-    """A real ROS 2: the one that the interpreter ``python`` has, "" for the one that runs this."""
+    """A real ROS 2: the one that the interpreter ``python`` has, "" for the one that runs this.
+
+    With ``watched``, a folder of probes' sockets, nothing is run: what ``processes`` do is shown (numbers of
+    the operating system), or what all do whose probes listen there.
+    """
 
     python: str = ""
+    watched: str = ""
+    processes: tuple[int, ...] = ()
 
 
 class RunSetup(msgspec.Struct, frozen=True, kw_only=True):

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from selectors import BaseSelector
 
-from sim.real.programs import LineReader
+from sim.real.probe_link import LineReader
 from sim.real.wire import ProbeLine, decode_lines
 
 

@@ -1,11 +1,10 @@
-"""The process that runs programs on real rclpy: it starts them, takes what their probes tell, and ends them.
+"""The process behind a run on real rclpy: it takes what probes tell, and does what the console asks for.
 
 It speaks with the console as the model's engine does. One thread does all; the outbox has another.
 """
 
 import os
 import random
-import signal
 import sys
 import tempfile
 import time
@@ -15,18 +14,22 @@ from functools import partial
 from multiprocessing.connection import Connection
 from pathlib import Path
 from selectors import EVENT_READ, DefaultSelector
-from typing import NoReturn
+from typing import NoReturn, Protocol
 
 import msgspec
 
 from sim.engine import commands
+from sim.engine.failures.failure import breakdown
 from sim.engine.outbox import Outbox
 from sim.engine.setup import RobotUse, RunSetup
 from sim.engine.stdio.descriptors import leave_terminal
+from sim.probes.on_path.cbtui_probe import FOLDER
 from sim.real.companions import Companion
-from sim.real.programs import PROBE_FOLDER, Program, environment
+from sim.real.launched import STOPPED, LaunchedPrograms, Outcome
+from sim.real.programs import environment, unbootstrapped
 from sim.real.translation import HOLD, Translation
-from sim.real.wire import ProbeLine, Uncaught
+from sim.real.watched import WatchedProcesses
+from sim.real.wire import ProbeLine
 from sim.trace.events import (
     AnyEvent,
     CommandGiven,
@@ -39,8 +42,6 @@ from sim.trace.events import (
     LineSaid,
     Notice,
     Printed,
-    ProcessAppeared,
-    ProcessEnded,
     RunEnded,
     RunEnding,
     RunStarted,
@@ -52,11 +53,10 @@ _PERIOD = 0.01
 """Seconds between two looks at what is due."""
 _GRACE = 3.0
 """Seconds that the programs have to end once they were told to."""
-_TO_BEGIN = 10.0
-"""Seconds after which the run begins though no program has made a node."""
+_TO_BEGIN = 10_000_000_000
+"""Nanoseconds after which the robot is waited for no longer, and after which a run without a node begins."""
 _DOMAINS = range(1, 102)
 """The ROS domains whose ports are free on every system."""
-_STOPPED = "it was stopped"
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,34 +67,76 @@ class _Due:
     do: Callable[[], None]
 
 
+class Programs(Protocol):
+    """The programs of a run, which it starts itself or only watches."""
+
+    def start(self) -> None:
+        """Start them."""
+
+    def look(self) -> None:
+        """See who has come, and who has ended."""
+
+    @property
+    def any_run(self) -> bool:
+        """Whether there is anything left to follow, now or soon."""
+
+    def outcome(self) -> Outcome:
+        """How they ended, taken together."""
+
+    def interrupt(self) -> None:
+        """Have those that the run started end as Ctrl-C would; the others are followed no longer."""
+
+    def kill(self) -> list[str]:
+        """End those by force that the run started; returns the names of those that ran."""
+
+    def type(self, text: str, *, ends: bool) -> None:
+        """Have an only program read a text from its standard input; with ``ends``, no more will come."""
+
+
 class RealEngine:
     """One run of one set-up on real rclpy. ``pipe`` carries events out and commands in."""
 
     def __init__(self, setup: RunSetup, pipe: Connection) -> None:
+        assert setup.real is not None
         self._setup = setup
         self._pipe = pipe
         self._selector = DefaultSelector()
         self._folder = tempfile.TemporaryDirectory(prefix="cbtui-")
-        self._outbox = Outbox(pipe, may_wait=False, before_batch=lambda: None, heartbeat=self._heartbeat)
+        self._outbox = Outbox(pipe, may_wait=False, before_batch=_nothing, heartbeat=self._heartbeat)
         self._start = 0
         self._translation = Translation(self._outbox.record, self._begin)
-        self._started_at = time.monotonic_ns()
-        python = (setup.real.python if setup.real is not None else "") or sys.executable
-        self._environment = environment(python, Path(self._folder.name), random.choice(_DOMAINS))
-        unprobed = {name: value for name, value in self._environment.items() if name != PROBE_FOLDER}
-        caller = [python, "-m", "cbtui_probe.caller"]
-        self._caller = Companion(self._selector, caller, unprobed, self._take)
+        self._began_to_wait = time.monotonic_ns()
+        self._python = setup.real.python or sys.executable
+        folder = Path(self._folder.name)
+        self._programs: Programs
+        if setup.real.watched:
+            graph = unbootstrapped(self._python)
+            self._programs = WatchedProcesses(
+                self._selector, Path(setup.real.watched), setup.real.processes, self._take, self._record
+            )
+        else:
+            probed = environment(setup, self._python, folder, random.choice(_DOMAINS))
+            graph = {name: value for name, value in probed.items() if name != FOLDER}
+            self._programs = LaunchedPrograms(
+                self._selector,
+                folder,
+                [[self._python, each.path, *each.arguments] for each in setup.programs],
+                probed,
+                self._take,
+                self._record,
+                self._print,
+            )
+        self._caller = Companion(
+            self._selector, [self._python, "-m", "cbtui_probe.caller"], graph, self._take
+        )
         rate = [] if setup.sensor_rate is None else [str(setup.sensor_rate)]
         robot = [sys.executable, "-m", "sim.real.robot", *rate]
-        self._robot = Companion(self._selector, robot, unprobed, self._take)
-        self._python = python
-        self._programs: list[Program] = []
-        self._running: list[Program] = []
+        self._robot = Companion(self._selector, robot, graph, self._take)
+        self._is_watching = bool(setup.real.watched)
         self._services: list[str] = []
-        self._failure: str | None = None
-        self._error = ""
-        self._cause: tuple[str, bool, bool] | None = None
-        self._given_up_at = 0
+        self._cause: Outcome | None = None
+        self._time_was_up = False
+        self._given_up_at: int | None = None
         self._due: list[_Due] = []
 
     def run(self) -> NoReturn:
@@ -103,20 +145,28 @@ class RealEngine:
         self._outbox.start()
         self._selector.register(self._pipe, EVENT_READ, self._obey)
         try:
-            self._start_companions()
-            while not self._robot_is_there() and self._cause is None:
-                self._turn()
-            self._start_programs()
-            while self._running:
-                self._turn()
-            self._finish()
+            self._run()
+        except Exception as error:  # noqa: BLE001 - an error of the engine's own, which nobody else tells of
+            self._outbox.close(RunEnded(self._now(), breakdown(error), True))
         finally:
-            for program in self._running:
-                program.signal(signal.SIGKILL)
+            self._programs.kill()
             self._caller.stop()
             self._robot.stop()
             self._folder.cleanup()
             os._exit(0)
+
+    def _run(self) -> None:
+        if not self._is_watching:
+            self._start_companions()
+            while self._robot_is_awaited():
+                self._turn()
+        if self._cause is None:
+            self._programs.start()
+        self._began_to_wait = time.monotonic_ns()
+        self._schedule()
+        while self._programs.any_run:
+            self._turn()
+        self._finish()
 
     def _start_companions(self) -> None:
         if self._setup.robot is not RobotUse.NEVER:
@@ -124,29 +174,48 @@ class RealEngine:
         if self._setup.calls:
             self._caller.start()
 
-    def _robot_is_there(self) -> bool:
-        """Whether a robot drives already, or need not be waited for."""
-        late = time.monotonic_ns() > self._started_at + _TO_BEGIN * 1e9
-        return self._setup.robot is RobotUse.NEVER or self._robot.has_spoken or late
+    def _robot_is_awaited(self) -> bool:
+        """Whether there is to be a robot, and it does not drive yet."""
+        is_late = time.monotonic_ns() > self._began_to_wait + _TO_BEGIN
+        return not (
+            self._setup.robot is RobotUse.NEVER
+            or self._robot.has_spoken
+            or is_late
+            or self._cause is not None
+        )
 
-    def _start_programs(self) -> None:
-        if self._cause is not None:
-            return
-        self._started_at = time.monotonic_ns()
-        several = len(self._setup.programs) > 1
-        for place, setup in enumerate(self._setup.programs, start=1):
-            number = place if several else 0
-            command = [self._python, setup.path, *setup.arguments]
-            program = Program(self._selector, command, self._environment, number, self._take, self._print)
-            self._programs.append(program)
-            if several:
-                self._record(ProcessAppeared(0, number, f"{Path(setup.path).stem}-{place}"))
-        self._running = list(self._programs)
+    def _schedule(self) -> None:
         name = None if self._setup.service is None else self._setup.service.name
         self._due += [_Due(call.at, partial(self._call, name, call.data)) for call in self._setup.calls]
         if self._setup.until is not None:
             self._due.append(_Due(self._setup.until, self._time_is_up))
         self._due.sort(key=lambda due: due.at)
+
+    def _turn(self) -> None:
+        for key, _ in self._selector.select(_PERIOD):
+            key.data()
+        self._programs.look()
+        now = time.monotonic_ns()
+        if now > self._began_to_wait + _TO_BEGIN and self._due:
+            self._translation.begin_at(now)
+        self._translation.release(now - HOLD)
+        while self._start and self._due and self._due[0].at <= self._now():
+            self._due.pop(0).do()
+        if self._given_up_at is not None and now > self._given_up_at:
+            self._given_up_at = None
+            self._kill()
+
+    def _finish(self) -> None:
+        now = time.monotonic_ns()
+        self._translation.begin_at(now)
+        self._translation.release(now)
+        outcome = self._programs.outcome()
+        if self._cause is not None and not outcome.failed:
+            outcome = self._cause
+        last = RunEnded(self._now(), outcome.reason, outcome.failed, self._time_was_up, outcome.error)
+        self._outbox.close(last)
+
+    # the run's time
 
     def _begin(self, moment: int) -> None:
         self._start = moment
@@ -159,6 +228,8 @@ class RealEngine:
     def _heartbeat(self) -> list[AnyEvent]:
         now = self._now() - HOLD
         return [TimePassed(now)] if now > 0 else []
+
+    # what happens
 
     def _record(self, event: AnyEvent) -> None:
         """Put an event of the run's own among those of the probes, at the moment that it is."""
@@ -178,60 +249,26 @@ class RealEngine:
     def _print(self, text: str, error: bool, process: int) -> None:
         self._record(Printed(0, text, error, process))
 
-    def _turn(self) -> None:
-        for key, _ in self._selector.select(_PERIOD):
-            key.data()
-        for program in self._running:
-            program.connect(Path(self._folder.name) / f"{program.pid}.sock")
-        now = time.monotonic_ns()
-        if self._programs and now > self._started_at + _TO_BEGIN * 1e9:
-            self._translation.begin_at(now)
-        self._translation.release(now - HOLD)
-        while self._start and self._due and self._due[0].at <= self._now():
-            self._due.pop(0).do()
-        for program in [each for each in self._running if each.has_ended]:
-            self._end(program)
-        if self._given_up_at and now > self._given_up_at:
-            self._kill()
+    # the end
 
-    def _end(self, program: Program) -> None:
-        self._running.remove(program)
-        reason, failed = _outcome(program)
-        if program.number:
-            self._record(ProcessEnded(0, program.number, reason, program.status))
-        if failed and self._cause is None:
-            self._failure = self._failure or (f"{program.name}: {reason}" if program.number else reason)
-            self._error = self._error or ("" if program.uncaught is None else program.uncaught.error)
-
-    def _finish(self) -> None:
-        now = time.monotonic_ns()
-        self._translation.begin_at(now)
-        self._translation.release(now)
-        only = self._programs[0] if len(self._programs) == 1 else None
-        returned = "every program returned" if only is None else _outcome(only)[0]
-        reason, failed, time_was_up = self._cause or (returned, False, False)
-        if self._failure is not None:
-            reason, failed = self._failure, True
-        self._outbox.close(RunEnded(self._now(), reason, failed, time_was_up, self._error))
-
-    def _stop(self, reason: str, *, time_was_up: bool = False) -> None:
-        """Have the programs end as by Ctrl-C; by force if that takes too long."""
+    def _stop(self, reason: str) -> None:
+        """Have the programs end as by Ctrl-C, by force if that takes too long; what is watched goes on."""
         if self._cause is None:
-            self._cause = (reason, False, time_was_up)
+            self._cause = Outcome(reason, failed=False)
             self._record(RunEnding(0, reason))
             self._given_up_at = time.monotonic_ns() + int(_GRACE * 1e9)
-            for program in self._running:
-                program.signal(signal.SIGINT)
+            self._programs.interrupt()
 
     def _time_is_up(self) -> None:
-        self._stop("its time was up", time_was_up=True)
+        self._time_was_up = self._cause is None
+        self._stop("its time was up")
 
     def _kill(self) -> None:
-        for program in self._running:
-            text = f"{program.name} had not ended {_GRACE:g} s after it was told to: it was ended by force"
+        for name in self._programs.kill():
+            text = f"{name} had not ended {_GRACE:g} s after it was told to: it was ended by force"
             self._tell(Severity.WARN, text)
-            program.signal(signal.SIGKILL)
-        self._given_up_at = 0
+
+    # commands
 
     def _obey(self) -> None:
         try:
@@ -240,7 +277,7 @@ class RealEngine:
             sys.exit()  # the console is gone
         match command:
             case commands.Stop():
-                self._stop(_STOPPED)
+                self._stop(STOPPED)
             case commands.CallService(name=name, data=data):
                 self._call(name, data)
             case commands.ResetWorld():
@@ -249,11 +286,7 @@ class RealEngine:
             case commands.Type(text=text, ends=ends):
                 self._type(text, ends=ends)
             case commands.RunLine(line=line, text=text):
-                self._record(LineGiven(0, line, text))
-                self._record(
-                    LineSaid(0, line, "ros2 lines act on the model only: type them in a terminal", True)
-                )
-                self._record(LineEnded(0, line, 1))
+                self._refuse_line(line, text)
             case commands.CompleteLine(line=line, cursor=cursor):
                 self._record(LineCompleted(0, line, cursor, ()))
             case commands.InterruptLine() | commands.KeepContents():
@@ -274,33 +307,21 @@ class RealEngine:
     def _type(self, text: str, *, ends: bool) -> None:
         if text == commands.INTERRUPT:
             self._stop("it was interrupted from the keyboard")
-        elif len(self._running) == 1:
-            self._running[0].type(text, ends=ends)
+        else:
+            self._programs.type(text, ends=ends)
+
+    def _refuse_line(self, line: int, text: str) -> None:
+        self._record(LineGiven(0, line, text))
+        said = "ros2 lines act on the model; on real ROS 2, type them in a terminal of their own"
+        self._record(LineSaid(0, line, said, True))
+        self._record(LineEnded(0, line, 1))
 
 
-def _outcome(program: Program) -> tuple[str, bool]:
-    """How a program ended, as a sentence, and whether it failed."""
-    uncaught, status = program.uncaught, program.status
-    if uncaught is not None:
-        return f"{_place(uncaught)}: the program raised {uncaught.error}", True
-    if status == -signal.SIGINT:
-        return _STOPPED, False
-    if status < 0:
-        return f"the program crashed by {signal.Signals(-status).name}", True
-    return (
-        ("the program returned", False)
-        if status == 0
-        else (f"the program ended with exit code {status}", True)
-    )
-
-
-def _place(uncaught: Uncaught) -> str:
-    name = Path(uncaught.file).name
-    return f"{name}:{uncaught.line}" if uncaught.line else name
+def _nothing() -> None:
+    """Do nothing between batches: what waits is found out by the probes."""
 
 
 def run(packed_setup: bytes, pipe: Connection, crash_dump: Connection) -> None:
     """Be the engine process of one run on real rclpy; programs that crash do so in processes of their own."""
     crash_dump.close()
-    setup = msgspec.msgpack.decode(packed_setup, type=RunSetup)
-    RealEngine(setup, pipe).run()
+    RealEngine(msgspec.msgpack.decode(packed_setup, type=RunSetup), pipe).run()

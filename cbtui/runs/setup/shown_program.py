@@ -3,12 +3,16 @@
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.lesson_setup import RunRequest, request_to_judge, setup_for
 from lessons.lesson import Lesson
-from sim.engine.setup import RunSetup
+from sim.engine.setup import RealRos, RobotUse, RunSetup
+from sim.plural import counted
+
+if TYPE_CHECKING:
+    from sim.real.wire import Hello
 
 SetUp: TypeAlias = Callable[[int | None, float | None], RunSetup]
 """Makes a run from a number of threads (None: the program's own) and a speed (None: as fast as it can)."""
@@ -24,6 +28,18 @@ the order in which the program fills them, with what waits in them and why.
 - `r` puts the robot back to its start, and runs the file again when it is over.
 
 The lessons' robot is there for your file too: `/odom`, `/scan`, `/cmd_vel`, `/reset_world`, `/motor_power`.
+"""
+
+
+_WATCHED_GUIDE = """# Processes on real ROS 2
+
+{processes}
+
+Every thread that runs callbacks has a lane; below are the callback groups, with what waits in them and why.
+Nothing is changed about the processes: they go on when you leave.
+
+- `s` calls the first SetBool service that they offer, `S` the same with false.
+- `R` records what happens from now on, `d` tells what is wrong.
 """
 
 
@@ -94,4 +110,23 @@ def of_file(path: Path, arguments: Sequence[str], clock: str) -> ShownProgram:
         service="",
         executor="as the file says",
         set_up=set_up,
+    )
+
+
+def of_processes(folder: Path, numbers: tuple[int, ...], found: Sequence["Hello"]) -> ShownProgram:
+    """Return the processes whose probes listen in a folder; ``numbers`` chooses some, none means all.
+
+    The first one of those that were ``found`` has its program shown.
+    """
+    real = RealRos(watched=str(folder), processes=numbers)
+    title = counted(len(found), "process")
+    setup = RunSetup(title=title, programs=(), clock="real", robot=RobotUse.NEVER, real=real)
+    lines = [f"- `{' '.join(each.command)}` ({each.process}, Python {each.python})" for each in found]
+    return ShownProgram(
+        heading=f"watched: {title}",
+        guide=_WATCHED_GUIDE.format(processes="\n".join(lines)),
+        node_path=Path(found[0].command[1] if len(found[0].command) > 1 else ""),
+        service="",
+        executor="as the programs say",
+        set_up=lambda _threads, _speed: setup,
     )

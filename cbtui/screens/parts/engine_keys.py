@@ -10,6 +10,7 @@ from cbtui.screens.parts.panes import PaneLayout
 from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
 from cbtui.widgets.shell import ShellView
+from sim.engine.setup import RobotUse
 
 
 @dataclass
@@ -85,7 +86,8 @@ class WorldKeys(ScreenPart):
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer it to an engine that is there; a robot is put back by one that answers."""
         run = self.runs.run
-        return run.alive and (action != "reset_world" or run.state is not RunState.SILENT)
+        has_robot = run.setup.robot is not RobotUse.NEVER and run.state is not RunState.SILENT
+        return run.alive and (has_robot or action != "reset_world")
 
     def action_call_service(self) -> None:
         """Call the lesson's service with true."""
@@ -111,7 +113,9 @@ class TypingKeys(ScreenPart):
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Offer what somebody waits for."""
         run = self.runs.run
-        return run.alive if action == "prompt" else run.asked is not None
+        if action == "prompt":
+            return run.alive and run.setup.real is None
+        return run.asked is not None
 
     def action_prompt(self) -> None:
         """Let the person type a ros2 line."""

@@ -98,6 +98,10 @@ class SetUpKeys(ScreenPart):
     selection: LaneSelection
     subject: ShownProgram
 
+    def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
+        """Offer to change what the run starts itself, and does not only watch."""
+        return bool(self.runs.run.setup.programs)
+
     def action_threads(self) -> None:
         """Ask for a number of threads."""
         self._ask(ThreadsRow(self._changeable))

@@ -10,3 +10,9 @@ PROTOCOL = 1
 
 FOLDER = "CBTUI_PROBE"
 """The environment variable that names the folder of the sockets; without it the probe does nothing."""
+
+CHANGES = "CBTUI_CHANGES"
+"""The environment variable with what is to be changed about the program, as JSON."""
+
+FOLLOW = b"follow\n"
+"""What a console says that wants to be told what happens; until then it is only told which process it is."""

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from .recorder import Recorder
+    from .tuning import Tuning
 
 STATE = "_cbtui"
 """The attribute in which an entity, node, publisher or group of rclpy's has what the probe knows of it."""
@@ -63,8 +64,9 @@ def state_of(thing: object) -> Any:
 class Entities:
     """Puts itself into the ways in which nodes make and destroy things. ``nodes`` are those there are."""
 
-    def __init__(self, recorder: Recorder) -> None:
+    def __init__(self, recorder: Recorder, tuning: Tuning) -> None:
         self._recorder = recorder
+        self._tuning = tuning
         self.nodes: weakref.WeakSet[Any] = weakref.WeakSet()
 
     def watch(self, node_class: Any) -> None:
@@ -107,6 +109,7 @@ class Entities:
                 return make(node, *args, **kwargs)  # which says so
             entity = Entity("guard" if kind == "guard_condition" else kind)
             callback = bound.arguments.get("callback")
+            self._tuning.change(node, kind, _called(node, kind, bound.arguments), bound.arguments)
             if callable(callback):
                 bound.arguments["callback"] = self._traced(entity, callback)
             made = make(*bound.args, **bound.kwargs)
@@ -222,3 +225,9 @@ def _name_of(kind: str, made: Any) -> str:
     if kind in ("service", "client"):
         return str(made.service_name)
     return str(getattr(made, "_action_name", ""))
+
+
+def _called(node: Any, kind: str, arguments: dict[str, Any]) -> str:
+    """What a change calls something by: its callback, or its service where it has none."""
+    name = written_at(arguments.get("callback"))[0]
+    return str(node.resolve_service_name(arguments["srv_name"])) if kind == "client" else name

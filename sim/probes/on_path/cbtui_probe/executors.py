@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from .recorder import Recorder
+    from .tuning import Tuning
 
 _IDLE = 200_000_000
 """Nanoseconds without a sign of being spun after which nobody spins an executor."""
@@ -45,8 +46,9 @@ class Spinner:
 class Executors:
     """Puts itself into the ways in which executors are made and wait."""
 
-    def __init__(self, recorder: Recorder) -> None:
+    def __init__(self, recorder: Recorder, tuning: Tuning) -> None:
         self._recorder = recorder
+        self._tuning = tuning
         self._spinners: weakref.WeakKeyDictionary[Any, Spinner] = weakref.WeakKeyDictionary()
 
     def spinner_of(self, executor: Any) -> Spinner | None:
@@ -63,10 +65,11 @@ class Executors:
             make(executor, *args, **kwargs)
             if not isinstance(executor, pool_class):
                 self._know(executor, 1)
+                self._tuning.tell_of_single_thread()
 
         @wraps(make_pool)
-        def init_pool(executor: Any, *args: Any, **kwargs: Any) -> None:
-            make_pool(executor, *args, **kwargs)
+        def init_pool(executor: Any, num_threads: int | None = None, **kwargs: Any) -> None:
+            make_pool(executor, self._tuning.threads or num_threads, **kwargs)
             pool = executor._executor
             pool._initializer = self._work_for(self._know(executor, pool._max_workers))
 

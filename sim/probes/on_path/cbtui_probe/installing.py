@@ -11,6 +11,7 @@ from .entities import Entities
 from .executors import Executors
 from .recorder import Recorder, now
 from .sockets import Server
+from .tuning import Tuning
 from .waits import Waits
 
 _SEVERITIES = {10: "DEBUG", 20: "INFO", 30: "WARN", 40: "ERROR", 50: "FATAL"}
@@ -29,7 +30,8 @@ def install(folder: str) -> None:
     from rclpy.impl.implementation_singleton import rclpy_implementation
 
     recorder = Recorder()
-    executors, entities = Executors(recorder), Entities(recorder)
+    tuning = Tuning(recorder)
+    executors, entities = Executors(recorder, tuning), Entities(recorder, tuning)
     server = Server(recorder, Waits(recorder, entities, executors, rclpy_implementation).look)
     server.start(folder)
     executors.watch(rclpy.executors, rclpy_implementation)

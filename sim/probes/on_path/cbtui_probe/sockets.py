@@ -16,7 +16,7 @@ from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import PROTOCOL
+from . import FOLLOW, PROTOCOL
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -27,6 +27,9 @@ _PERIOD = 0.01
 """Seconds between two looks."""
 _UNSENT = 1 << 20
 """Bytes that wait for a slow console before more is encoded; until then events wait as they are."""
+_UNATTENDED = 20_000
+"""Events that are kept while no console is there: the latest."""
+_VISITORS = 4
 _FAREWELL = 0.5
 """Seconds for which the process's end waits for a console to take the last events."""
 
@@ -41,6 +44,8 @@ class Server:
         self._recorder = recorder
         self._look = look
         self._console: socket.socket | None = None
+        self._visitors: list[socket.socket] = []
+        """Those who came, and have not said yet what they want."""
         self._unsent = b""
         self._lost_told = 0
         self._ends = threading.Event()
@@ -56,7 +61,7 @@ class Server:
         self._listener.listen(1)
         self._listener.setblocking(False)
         self._pid = os.getpid()
-        atexit.register(self._say_farewell)
+        atexit.register(self.close)
         self._thread.start()
 
     def _serve(self) -> None:
@@ -83,20 +88,37 @@ class Server:
         return True
 
     def _meet(self) -> None:
-        """Take a console that comes; one at a time, and only the same user's."""
-        try:
-            console, _ = self._listener.accept()
-        except BlockingIOError:
-            return
-        _, user, _ = struct.unpack("3i", console.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, 12))
-        if self._console is not None or user not in (0, os.getuid()):
-            console.close()
-            return
-        console.setblocking(False)
+        """Take who comes, if it is the same user, and says that it wants to follow; one at a time."""
+        with suppress(BlockingIOError):
+            visitor, _ = self._listener.accept()
+            credentials = visitor.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, 12)
+            if (
+                struct.unpack("3i", credentials)[1] not in (0, os.getuid())
+                or len(self._visitors) >= _VISITORS
+            ):
+                visitor.close()
+                return
+            visitor.setblocking(False)
+            visitor.sendall(_lines([self._hello()]))
+            self._visitors.append(visitor)
+        for visitor in list(self._visitors):
+            try:
+                said = visitor.recv(len(FOLLOW))
+            except BlockingIOError:
+                continue
+            self._visitors.remove(visitor)
+            if said == FOLLOW and self._console is None:
+                self._follow(visitor)
+            else:
+                visitor.close()
+
+    def _follow(self, console: socket.socket) -> None:
+        """Tell a console what is there, what happened lately, and from now on all that happens."""
         self._console = console
         waiting = self._recorder.take()
-        known = [event for event in self._recorder.appeared.values() if event not in set(waiting)]
-        self._unsent = _lines([self._hello(), *known, *waiting])
+        told = set(waiting)
+        known = [event for event in self._recorder.appeared.values() if event not in told]
+        self._unsent = _lines([*known, *waiting])
 
     def _hello(self) -> tuple[Any, ...]:
         return (
@@ -113,6 +135,7 @@ class Server:
     def _send(self) -> None:
         console = self._console
         if console is None:
+            self._recorder.trim(_UNATTENDED)
             return
         if len(self._unsent) < _UNSENT:
             events = self._recorder.take()
@@ -129,8 +152,8 @@ class Server:
             console.close()
             self._console, self._unsent = None, b""
 
-    def _say_farewell(self) -> None:
-        """Hand on what is left when the program ends; a child made by fork has nothing to hand on."""
+    def close(self) -> None:
+        """Hand on what is left, and listen no more; a child made by fork has nothing to hand on."""
         if os.getpid() != self._pid:
             return
         self._ends.set()
@@ -141,6 +164,9 @@ class Server:
             if not self._unsent:
                 break
             time.sleep(_PERIOD)
+        for each in (self._listener, *self._visitors, self._console):
+            if each is not None:
+                each.close()
         self._path.unlink(missing_ok=True)
 
 

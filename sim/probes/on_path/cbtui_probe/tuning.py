@@ -1,0 +1,59 @@
+"""What a person changed about a program: callback groups, timers' periods, and executors' threads."""
+
+from __future__ import annotations
+
+import json
+import os
+from typing import TYPE_CHECKING, Any
+
+from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+
+from . import CHANGES
+from .recorder import now
+
+if TYPE_CHECKING:
+    from .recorder import Recorder
+
+
+class Tuning:
+    """The changes that the environment tells of, made where the program makes what they are about.
+
+    A change for a node goes before one for any node.
+    """
+
+    def __init__(self, recorder: Recorder) -> None:
+        changes = json.loads(os.environ.get(CHANGES, "{}"))
+        self.threads: int | None = changes.get("threads")
+        self._recorder = recorder
+        self._groups = {(node, callback): wish for node, callback, wish in changes.get("groups", ())}
+        self._periods = {(node, callback): period for node, callback, period in changes.get("periods", ())}
+        self._shared: dict[tuple[Any, str], Any] = {}
+
+    def change(self, node: Any, kind: str, name: str, arguments: dict[str, Any]) -> None:
+        """Change the arguments with which a node makes something whose callback has that name."""
+        full = node.get_fully_qualified_name()
+        wish = self._groups.get((full, name), self._groups.get(("", name)))
+        if wish is not None:
+            arguments["callback_group"] = self._group(node, wish)
+        period = self._periods.get((full, name), self._periods.get(("", name)))
+        if kind == "timer" and period is not None:
+            arguments["timer_period_sec"] = period / 1e9
+
+    def tell_of_single_thread(self) -> None:
+        """Tell that the executor that the program makes cannot have another number of threads."""
+        if self.threads not in (None, 1):
+            text = (
+                f"the program's SingleThreadedExecutor cannot have {self.threads} threads on real ROS 2: "
+                "make it a MultiThreadedExecutor in the code"
+            )
+            self._recorder.put("notice", now(), "WARN", text)
+
+    def _group(self, node: Any, wish: str) -> Any:
+        if wish == "default":
+            return node.default_callback_group
+        if wish == "own":
+            return MutuallyExclusiveCallbackGroup()
+        if (node, wish) not in self._shared:
+            made = ReentrantCallbackGroup() if wish == "reentrant" else MutuallyExclusiveCallbackGroup()
+            self._shared[node, wish] = made
+        return self._shared[node, wish]

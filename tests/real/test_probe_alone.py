@@ -1,0 +1,196 @@
+"""The probe by itself: in any Python, at its socket."""
+
+import ast
+import os
+import shutil
+import socket
+import subprocess
+import sys
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from sim.probes.on_path.cbtui_probe import FOLLOW
+from sim.probes.on_path.cbtui_probe.recorder import Recorder, now
+from sim.probes.on_path.cbtui_probe.sockets import Server
+from sim.real.probe_link import processes_in
+from sim.real.programs import ON_PATH
+from sim.real.wire import Hello, decode_lines
+from sim.trace.events import Notice
+
+VERSIONS = ("3.10", "3.12", "3.13", "3.14")
+
+
+def test_the_probe_imports_nothing_but_python_and_rclpy() -> None:
+    for path in ON_PATH.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            names = []
+            if isinstance(node, ast.Import):
+                names = [each.name for each in node.names]
+            elif isinstance(node, ast.ImportFrom) and node.level == 0:
+                names = [node.module or ""]
+            roots = {name.partition(".")[0] for name in names}
+            assert roots <= {*sys.stdlib_module_names, "rclpy", "cbtui_probe"}, path
+
+
+def python_of(version: str) -> str:
+    """A Python of that version, as pyenv has it or the path; skips where there is none."""
+    kept = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv")) / "versions"
+    found = next(map(str, kept.glob(f"{version}.*/bin/python")), None) or shutil.which(f"python{version}")
+    return found or pytest.skip(f"no Python {version} is installed")
+
+
+@pytest.mark.parametrize("version", VERSIONS)
+def test_every_python_of_ros_can_run_it(version: str) -> None:
+    code = "import cbtui_probe.callbacks, cbtui_probe.recorder, cbtui_probe.sockets, cbtui_probe.starting"
+    done = subprocess.run(
+        [python_of(version), "-c", code],
+        env={**os.environ, "PYTHONPATH": str(ON_PATH)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_another_sitecustomize_is_run_too(tmp_path: Path) -> None:
+    (tmp_path / "sitecustomize.py").write_text("print('mine')\n")
+    path = os.pathsep.join([str(ON_PATH), str(tmp_path)])
+    done = subprocess.run(
+        [sys.executable, "-c", "print('program')"],
+        env={**os.environ, "PYTHONPATH": path, "_ROS_WHEELS_BOOTSTRAP_COMPLETE": "1"},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.stdout.split() == ["mine", "program"]
+
+
+@pytest.fixture
+def recorder() -> Recorder:
+    return Recorder()
+
+
+@pytest.fixture
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("p")
+
+
+@pytest.fixture
+def server(recorder: Recorder, folder: Path) -> Iterator[Server]:
+    server = Server(recorder, lambda: None)
+    server.start(str(folder))
+    yield server
+    server.close()
+
+
+class Console:
+    """Somebody at a probe's socket."""
+
+    def __init__(self, folder: Path) -> None:
+        [path] = folder.glob("*.sock")
+        self._socket = socket.socket(socket.AF_UNIX)
+        self._socket.settimeout(10)
+        self._socket.connect(str(path))
+        self._lines = self._socket.makefile("rb")
+
+    def next(self) -> object:
+        [line] = decode_lines(self._lines.readline())
+        return line
+
+    def follow(self) -> "Console":
+        assert isinstance(self.next(), Hello)
+        self._socket.sendall(FOLLOW)
+        return self
+
+    def hears_something(self) -> bool:
+        """Whether a line comes, kept in ``first``; who is turned away hears nothing."""
+        line = self._lines.readline()
+        self.first = decode_lines(line)[0] if line else None
+        return bool(line)
+
+    def leave(self) -> None:
+        self._lines.close()
+        self._socket.close()
+
+
+Come = Callable[[], Console]
+
+
+@pytest.fixture
+def come(folder: Path) -> Iterator[Come]:
+    """Has somebody come to the probe's socket, who leaves at the end at the latest."""
+    consoles: list[Console] = []
+
+    def one_more() -> Console:
+        consoles.append(Console(folder))
+        return consoles[-1]
+
+    yield one_more
+    for console in consoles:
+        console.leave()
+
+
+def say(recorder: Recorder, text: str) -> None:
+    recorder.put("notice", now(), "INFO", text)
+
+
+def text_of(line: object) -> str:
+    assert isinstance(line, Notice)
+    return line.text
+
+
+@pytest.mark.usefixtures("server")
+def test_who_follows_hears_what_was_and_what_comes(recorder: Recorder, come: Come) -> None:
+    say(recorder, "before")
+    console = come().follow()
+    assert text_of(console.next()) == "before"
+    say(recorder, "after")
+    assert text_of(console.next()) == "after"
+
+
+def come_when_nobody_follows(recorder: Recorder, come: Come) -> Console:
+    """Follow as soon as the probe has seen that the one before has left."""
+    while True:
+        say(recorder, "into nowhere")
+        console = come().follow()
+        if console.hears_something():
+            return console
+
+
+@pytest.mark.usefixtures("server")
+def test_one_console_follows_at_a_time_and_the_next_when_it_has_left(
+    recorder: Recorder, folder: Path, come: Come
+) -> None:
+    say(recorder, "to the first")
+    first = come().follow()
+    assert first.hears_something()
+    assert not come().follow().hears_something()
+    assert [hello.process for hello in processes_in(folder)] == [os.getpid()]
+    first.leave()
+    come_when_nobody_follows(recorder, come)
+
+
+@pytest.mark.usefixtures("server")
+def test_what_has_appeared_is_told_to_everybody_who_comes(recorder: Recorder, come: Come) -> None:
+    thread = recorder.thread()
+    first = come().follow()
+    assert getattr(first.next(), "thread", None) == thread
+    first.leave()
+    second = come_when_nobody_follows(recorder, come)
+    assert getattr(second.first, "thread", None) == thread
+
+
+def test_a_full_buffer_gives_up_the_oldest_and_counts_them(recorder: Recorder) -> None:
+    for number in range(200_005):
+        say(recorder, str(number))
+    assert recorder.lost == 5
+    assert recorder.take()[0][3] == "5"
+
+
+def test_the_sockets_of_dead_processes_are_removed(folder: Path) -> None:
+    with socket.socket(socket.AF_UNIX) as dead:
+        dead.bind(str(folder / "4711.sock"))
+    assert processes_in(folder) == []
+    assert list(folder.iterdir()) == []

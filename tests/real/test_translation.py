@@ -1,0 +1,183 @@
+"""What probes send becomes the trace: in order, in the run's time, with messages and calls linked."""
+
+import math
+
+import msgspec
+import pytest
+
+from sim.real.translation import Translation
+from sim.real.wire import Called, Sent, Taken, decode_lines, finite
+from sim.trace.events import (
+    AnyEvent,
+    CallbackStarted,
+    EntityAppeared,
+    EntityKind,
+    EntityReady,
+    EventsLost,
+    Logged,
+    MessageDropped,
+    NodeAppeared,
+    Notice,
+    Published,
+    Reason,
+    RobotMoved,
+    ServiceCalled,
+    ServiceReplied,
+    Severity,
+    ThreadAppeared,
+    WaitEnded,
+    WaitStarted,
+)
+
+START = 5_000
+NODE, HEARD, SERVED, CLIENT, THREAD = 71, 72, 73, 74, 75
+
+
+class Told:
+    """A translation, and the events that it told."""
+
+    def __init__(self) -> None:
+        self.events: list[AnyEvent] = []
+        self.began: list[int] = []
+        self.translation = Translation(self.events.append, self.began.append)
+        self.tell(NodeAppeared(START, NODE, "/n"))
+        self.tell(appeared(HEARD, EntityKind.SUBSCRIPTION, "/news", depth=2))
+        self.tell(appeared(SERVED, EntityKind.SERVICE, "/switch", depth=10))
+        self.tell(appeared(CLIENT, EntityKind.CLIENT, "/switch", depth=10))
+        self.tell(ThreadAppeared(START, THREAD, "MainThread"))
+
+    def tell(self, *lines: object, process: int = 0) -> None:
+        self.translation.take(lines, process)  # type: ignore[arg-type]
+
+    def all(self, kind: type[AnyEvent]) -> list[AnyEvent]:
+        self.translation.release(10**18)
+        return [event for event in self.events if isinstance(event, kind)]
+
+
+def appeared(entity: int, kind: EntityKind, name: str, depth: int) -> EntityAppeared:
+    return EntityAppeared(START, entity, NODE, 1, kind, name, "", "", 0, 0, depth, 0)
+
+
+def sent(t: int, wall: int) -> Sent:
+    return Sent(t, 1000 + t, "/news", NODE, 0, wall, wall + 5)
+
+
+def test_the_run_begins_with_the_first_node() -> None:
+    told = Told()
+    told.tell(Notice(START - 900, Severity.INFO, "before"))
+    told.tell(NodeAppeared(START + 400, 90, "/later"))
+    assert told.began == [START]
+    assert [event.t for event in told.all(NodeAppeared)] == [0, 400]
+    assert [event.t for event in told.all(Notice)] == [0]
+
+
+def test_events_of_several_threads_and_processes_come_in_order() -> None:
+    told = Told()
+    told.tell(Notice(START + 300, Severity.INFO, "c"), Notice(START + 200, Severity.INFO, "b"))
+    told.tell(Notice(START + 100, Severity.INFO, "a"), process=2)
+    told.translation.release(START + 250)
+    assert [event.text for event in told.events if isinstance(event, Notice)] == ["a", "b"]
+    assert [getattr(event, "text", None) for event in told.all(Notice)] == ["a", "b", "c"]
+
+
+def test_threads_belong_to_their_process() -> None:
+    told = Told()
+    told.tell(ThreadAppeared(START, 99, "MainThread"), process=3)
+    assert [getattr(event, "process", None) for event in told.all(ThreadAppeared)] == [0, 3]
+
+
+def test_a_message_is_the_one_that_was_sent_at_that_time() -> None:
+    told = Told()
+    told.tell(sent(START + 10, 500), sent(START + 20, 600))
+    told.tell(Taken(START + 30, HEARD, THREAD, 503, 40), Taken(START + 40, HEARD, THREAD, 602, 50))
+    first, second = told.all(Published)
+    assert isinstance(first, Published)
+    assert isinstance(second, Published)
+    starts = [event for event in told.all(CallbackStarted) if isinstance(event, CallbackStarted)]
+    assert [(each.message, each.age) for each in starts] == [(first.message, 40), (second.message, 50)]
+    assert first.message < second.message
+
+
+def test_a_message_from_elsewhere_has_no_number() -> None:
+    told = Told()
+    told.tell(sent(START + 10, 500), Taken(START + 30, HEARD, THREAD, 700, 40))
+    [start] = told.all(CallbackStarted)
+    assert isinstance(start, CallbackStarted)
+    assert start.message == 0
+
+
+def test_what_waits_has_its_messages_in_its_queue_and_a_full_one_loses_the_oldest() -> None:
+    told = Told()
+    told.tell(sent(START + 10, 500))
+    told.tell(EntityReady(START + 20, HEARD, 1, 0))
+    told.tell(WaitStarted(START + 20, HEARD, START + 15, Reason.GROUP_HELD, 0, False))
+    told.tell(sent(START + 30, 600), sent(START + 40, 700))
+    told.tell(WaitEnded(START + 50, HEARD), Taken(START + 50, HEARD, THREAD, 601, 9))
+    depths = [(e.depth, e.message) for e in told.all(EntityReady) if isinstance(e, EntityReady)]
+    assert depths == [(1, 1), (2, 2), (2, 3)]
+    [lost] = told.all(MessageDropped)
+    assert isinstance(lost, MessageDropped)
+    assert (lost.t, lost.message, lost.depth) == (40, 1, 1)
+    [start] = told.all(CallbackStarted)
+    assert isinstance(start, CallbackStarted)
+    assert (start.message, start.depth) == (2, 1)
+    [wait] = told.all(WaitStarted)
+    assert isinstance(wait, WaitStarted)
+    assert (wait.t, wait.since) == (20, 15)
+
+
+def test_what_a_subscription_passes_over_is_lost() -> None:
+    told = Told()
+    told.tell(sent(START + 10, 500), sent(START + 20, 600), sent(START + 30, 700))
+    told.tell(Taken(START + 40, HEARD, THREAD, 702, 9))
+    assert [getattr(event, "message", None) for event in told.all(MessageDropped)] == [1, 2]
+
+
+def test_a_call_keeps_its_number_from_request_to_reply() -> None:
+    told = Told()
+    told.tell(Called(START + 10, 4711, "/switch", 0, "request", 500, 505))
+    told.tell(Taken(START + 20, SERVED, THREAD, 502, 9))
+    told.tell(ServiceReplied(START + 30, 4711, "/switch", "well"))
+    told.tell(CallbackStarted(START + 31, CLIENT, THREAD, 4711, 0, 0))
+    [call] = told.all(ServiceCalled)
+    [reply] = told.all(ServiceReplied)
+    served, taken = told.all(CallbackStarted)
+    numbers = {getattr(each, "call", None) for each in (call, reply)}
+    assert numbers == {getattr(each, "message", None) for each in (served, taken)} == {1}
+
+
+def test_a_reply_that_waits_is_that_of_the_oldest_open_call() -> None:
+    told = Told()
+    told.tell(Called(START + 10, 4711, "/switch", 0, "request", 500, 505))
+    told.tell(EntityReady(START + 20, CLIENT, 1, 0))
+    [ready] = told.all(EntityReady)
+    assert isinstance(ready, EntityReady)
+    assert (ready.entity, ready.message) == (CLIENT, 1)
+
+
+def test_losses_of_all_processes_are_added_up() -> None:
+    told = Told()
+    told.tell(EventsLost(START + 1, 5), process=1)
+    told.tell(EventsLost(START + 2, 7), process=2)
+    told.tell(EventsLost(START + 3, 6), process=1)
+    assert [getattr(event, "count", None) for event in told.all(EventsLost)] == [5, 12, 13]
+
+
+def test_a_robot_with_nothing_in_sight_comes_through_json() -> None:
+    told = Told()
+    moved = RobotMoved(START, 0.0, 0.0, 0.0, math.inf, 0.0, 0.0, True, False, 0.0, 0.0)
+    told.tell(*decode_lines(msgspec.json.encode(finite(moved)) + b"\n"))
+    [shown] = told.all(RobotMoved)
+    assert isinstance(shown, RobotMoved)
+    assert shown.front == math.inf
+
+
+@pytest.mark.parametrize("data", [b"no json\n", b'["no such event",1]\n', b'["taken","x"]\n', b"\xff\n"])
+def test_what_no_probe_sends_is_told_apart(data: bytes) -> None:
+    with pytest.raises(msgspec.DecodeError):
+        decode_lines(data)
+
+
+def test_log_lines_are_events_as_they_are() -> None:
+    [line] = decode_lines(b'["log",7,"WARN","n","text",75,72]\n')
+    assert line == Logged(7, Severity.WARN, "n", "text", 75, 72)

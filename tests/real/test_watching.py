@@ -1,0 +1,97 @@
+"""Programs that others start are watched, and nothing happens to them."""
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+from queue import Queue
+
+import pytest
+
+from cbtui import cli
+from cbtui.engines.control_socket import runtime_folder
+from cbtui.engines.session import ProcessSession
+from cbtui.runs.setup.shown_program import of_processes
+from sim.engine.commands import Stop
+from sim.real.probe_link import processes_in
+from sim.real.wire import Hello
+from sim.trace.events import AnyEvent, CallbackEnded, ProcessAppeared, RunEnded
+from tests.real import programs
+from tests.real.programs import needs_ros
+
+
+@pytest.fixture(autouse=True)
+def folder(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("XDG_RUNTIME_DIR", str(tmp_path_factory.mktemp("x")))
+    probes = runtime_folder() / "probes"
+    probes.mkdir()
+    return probes
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["probe"], "probe needs a command: cbtui probe -- python3 node.py"),
+        (["probe", "--", "no-such-program"], "there is no program no-such-program"),
+        (["attach"], "no process can be watched: start one with cbtui probe -- COMMAND"),
+        (["attach", "4711"], "no process 4711 can be watched; cbtui attach --list tells which can"),
+    ],
+)
+def test_what_cannot_be_watched_is_told_in_a_sentence(
+    words: list[str], said: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        cli.main(words)
+    assert ended.value.code == 2
+    assert said in capsys.readouterr().err
+
+
+@needs_ros
+@pytest.mark.slow
+def test_a_process_is_watched_and_goes_on_when_nobody_watches_any_more(tmp_path: Path, folder: Path) -> None:
+    file = tmp_path / "tried.py"
+    file.write_text(
+        programs.HEAD + programs.STARVED + programs.TAIL.format(executor="SingleThreadedExecutor()")
+    )
+    probe = [sys.executable, "-m", "cbtui", "probe", "--", sys.executable, str(file)]
+    with subprocess.Popen(probe, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+        try:
+            while not (found := processes_in(folder)):
+                assert process.poll() is None
+                time.sleep(0.05)
+            assert [hello.process for hello in found] == [process.pid]  # it has become the command
+            for _ in range(2):
+                events = watched(folder, found)
+                assert f"tried.py-{process.pid}" in [
+                    e.label for e in events if isinstance(e, ProcessAppeared)
+                ]
+                assert isinstance(events[-1], RunEnded)
+                assert process.poll() is None
+            process.terminate()
+            process.wait(timeout=30)
+            assert processes_in(folder) == []
+        finally:
+            process.kill()
+
+
+def watched(folder: Path, found: list[Hello]) -> list[AnyEvent]:
+    """Watch until three callbacks have ended, and leave."""
+    news: Queue[list[AnyEvent] | str | None] = Queue()
+    session = ProcessSession(of_processes(folder, (), found).set_up(None, 1.0), news.put, news.put)
+    session.start()
+    events: list[AnyEvent] = []
+    try:
+        while isinstance(batch := news.get(timeout=60), list):
+            events += batch
+            if sum(isinstance(event, CallbackEnded) for event in events) >= 3:
+                session.send(Stop())
+    finally:
+        session.stop()
+    assert batch is None
+    return events
+
+
+def test_the_runtime_folder_is_the_users_alone(folder: Path) -> None:
+    assert folder.parent.stat().st_mode & 0o077 == 0
+    assert folder.stat().st_uid == os.getuid()
