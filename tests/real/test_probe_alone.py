@@ -153,8 +153,8 @@ def test_who_follows_hears_what_was_and_what_comes(recorder: Recorder, come: Com
 def come_when_nobody_follows(recorder: Recorder, come: Come) -> Console:
     """Follow as soon as the probe has seen that the one before has left."""
     while True:
-        say(recorder, "into nowhere")
         console = come().follow()
+        say(recorder, "to whoever follows now")
         if console.hears_something():
             return console
 
