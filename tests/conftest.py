@@ -4,12 +4,17 @@ import gc
 import multiprocessing
 import signal
 from collections.abc import Iterator
+from contextlib import suppress
+from importlib import import_module
+from pathlib import Path
 
 import pytest
 from textual.notifications import Notification
 
 from cbtui.engines import session
 from tests.support import forked_engines, properties, style_sheets
+
+TESTS = Path(__file__).parent
 
 properties.register_profiles()
 for number, handler in ((signal.SIGINT, signal.default_int_handler), (signal.SIGHUP, signal.SIG_DFL)):
@@ -52,6 +57,17 @@ def engines_copied() -> Iterator[None]:
 def fresh_engines(monkeypatch: pytest.MonkeyPatch) -> None:
     """Start engines as the console does, where the process itself is what is tested."""
     monkeypatch.setattr(session, "SPAWN_CONTEXT", multiprocessing.get_context("spawn"))
+
+
+def pytest_sessionstart(session: pytest.Session) -> None:
+    """Let each worker of a whole run compile its part of the tests first, so that none compiles all."""
+    worker = getattr(session.config, "workerinput", None)
+    if worker is None or session.config.args_source is not pytest.Config.ArgsSource.TESTPATHS:
+        return
+    modules = sorted(path.relative_to(session.config.rootpath) for path in TESTS.rglob("test_*.py"))
+    for module in modules[int(worker["workerid"].removeprefix("gw")) :: worker["workercount"]]:
+        with suppress(Exception):  # the collection tells of it
+            import_module(".".join(module.with_suffix("").parts))
 
 
 def pytest_collection_finish(session: pytest.Session) -> None:

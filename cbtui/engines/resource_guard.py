@@ -35,11 +35,9 @@ class ResourceGuard:
         self._thread.start()
 
     def stop(self) -> None:
-        """End the process tree and stop watching."""
+        """End the watch, which ends the process tree as its last act."""
         self._over.set()
-        self._tree.end()
-        if self._thread.is_alive():
-            self._thread.join()
+        self._thread.join()
 
     def wait(self, seconds: float) -> None:
         """Wait up to so many seconds until the watch is over."""

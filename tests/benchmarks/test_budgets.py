@@ -21,6 +21,7 @@ from tests.benchmarks import scenes
 from tests.benchmarks.crowd import Drawn, call, timers
 from tests.benchmarks.drawing import FRAME, long_run
 from tests.benchmarks.scenes import Scene, single
+from tests.support.daily import first_daily
 from tests.support.fake_session import FakeSession
 from tests.support.runs import ns
 
@@ -76,7 +77,9 @@ def test_a_callback_costs_the_same_among_five_hundred_entities_as_alone() -> Non
     assert of_a_callback(scenes.timer_among(500)) < 1.5 * of_a_callback(scenes.one_timer)
 
 
-@pytest.mark.parametrize("in_groups", [False, True], ids=["in one group", "in groups of their own"])
+@pytest.mark.parametrize(
+    "in_groups", first_daily(False, True), ids=["in one group", "in groups of their own"]
+)
 @pytest.mark.parametrize("part", ["lanes", "factory", "sentence", "code", "rules"])
 def test_a_frame_with_two_thousand_timers_costs_what_fits_on_screen(part: str, in_groups: bool) -> None:
     assert of_a_frame(2000, in_groups)[part] < 1.2 * of_a_frame(MOST + 20, in_groups)[part]

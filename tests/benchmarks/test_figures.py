@@ -10,6 +10,7 @@ import pytest
 from tests.benchmarks import records
 from tests.benchmarks.__main__ import row
 from tests.benchmarks.figures import FIGURES, DearFigure, Figure
+from tests.support.daily import first_daily
 
 DEAR = "CBTUI_DEAR_FIGURES" in os.environ
 """Whether those are measured too that take a console each."""
@@ -17,7 +18,7 @@ DEAR = "CBTUI_DEAR_FIGURES" in os.environ
 
 @pytest.mark.parametrize(
     "figure",
-    [figure for figure in FIGURES if DEAR or not isinstance(figure, DearFigure)],
+    first_daily(*(figure for figure in FIGURES if DEAR or not isinstance(figure, DearFigure))),
     ids=lambda figure: figure.name,
 )
 def test_every_figure_can_be_measured(figure: Figure) -> None:

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from tests.support.daily import first_daily
+
 _PRELUDE = """
 import queue, sys, threading, time
 import concurrent.futures.thread as futures
@@ -194,7 +196,7 @@ PROGRAMS = {
 }
 
 
-@pytest.mark.parametrize("seed", [1, 3])
+@pytest.mark.parametrize("seed", first_daily(1, 3))
 def test_programs_in_another_order(seed: int) -> None:
     """Each lives in a process of its own, for which time is replaced for good."""
     for name, program in PROGRAMS.items():

@@ -89,6 +89,7 @@ def test_run_puts_the_log_on_stderr_as_ros_prints_it_and_a_summary_on_stdout() -
     assert "1 call" in done.stdout
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("fresh_engines")
 def test_events_are_one_json_object_a_line_and_the_same_each_time(tmp_path: Path) -> None:
     files = [tmp_path / "once.jsonl", tmp_path / "again.jsonl"]

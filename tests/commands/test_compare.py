@@ -34,6 +34,7 @@ def test_a_lesson_can_be_compared_with_itself_with_other_threads() -> None:
     assert "  run B waits: no free worker" in text.splitlines()
 
 
+@pytest.mark.slow
 def test_lines_and_calls_reach_both_runs() -> None:
     line = "ros2 service call /dummy_server_srv std_srvs/srv/SetBool '{data: true}'"
     words = ("--to", "3", "--call", "1.2", "--at", "0.5", line)
@@ -43,6 +44,7 @@ def test_lines_and_calls_reach_both_runs() -> None:
     assert alone != text
 
 
+@pytest.mark.slow
 def test_what_is_run_gets_the_inputs_of_a_recording_and_lasts_as_long(tmp_path: Path) -> None:
     recording = str(tmp_path / "run.mcap")
     told("run", "exclusive-2-threads", "--for", "3", "--at", "1.2", "ros2 topic list", "--record", recording)

@@ -45,6 +45,7 @@ def test_a_machine_that_has_everything_is_well_and_nothing_is_changed_on_it(tmp_
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.slow
 def test_where_pybullet_crashes_the_doctor_lives_and_ends_with_1(tmp_path: Path) -> None:
     (tmp_path / "pybullet.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGSEGV)\n")
     done = _doctor("--charset", "ascii", PYTHONPATH=str(tmp_path))

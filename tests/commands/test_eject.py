@@ -145,6 +145,7 @@ def test_the_readme_names_every_executable(ejected: Path) -> None:
         assert "$" not in readme
 
 
+@pytest.mark.slow
 def test_an_ejected_launch_file_runs_in_the_console_as_it_is(ejected: Path) -> None:
     launch_file = ejected / "unit5_pkg" / "launch" / "exclusive_2_threads.launch.py"
     command = [sys.executable, "-m", "cbtui", "run", str(launch_file), "--clock", "virtual", "--for", "3"]

@@ -23,6 +23,7 @@ from tests.commands.exercise_files import (
     STARTER,
     SYNTAX_ERROR,
 )
+from tests.support.daily import first_daily, first_row_daily
 
 
 @pytest.fixture(autouse=True)
@@ -208,6 +209,7 @@ def test_reset_says_when_it_cannot_be_kept(tmp_path: Path, capsys: pytest.Captur
     assert "cannot be read: Not a directory" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_check_writes_plain_characters_where_the_terminal_has_no_others(here: Path) -> None:
     (here / "split_groups.py").write_text(STARTER)
     done = subprocess.run(
@@ -226,14 +228,14 @@ def test_check_writes_plain_characters_where_the_terminal_has_no_others(here: Pa
 
 @pytest.mark.parametrize(
     ("source", "sentence"),
-    [
+    first_row_daily(
         (SYNTAX_ERROR, "split_groups.py:28: expected ':'"),
         (LEAVES, "split_groups.py ended its whole process at 0.000 s: the engine ended with exit code 3"),
         (A_GIGABYTE, "split_groups.py wrote more than 32 MB of log by 0.000 s"),
         ("raise RuntimeError('no')\n", "split_groups.py:1: the program raised RuntimeError: no"),
         ("", "split_groups.py defines no main() and runs nothing at its top level"),
         ("\0", "split_groups.py is no Python file: there are null bytes in it"),
-    ],
+    ),
     ids=["syntax", "exit", "log", "raises", "empty", "null"],
 )
 def test_a_file_that_is_no_use_gets_one_clear_line(
@@ -248,7 +250,7 @@ def test_a_file_that_is_no_use_gets_one_clear_line(
     assert (here / "split_groups.py").read_text() == source
 
 
-@pytest.mark.parametrize("source", [ENDLESS_MAIN, ENDLESS_CALLBACK], ids=["main", "callback"])
+@pytest.mark.parametrize("source", first_daily(ENDLESS_MAIN, ENDLESS_CALLBACK), ids=["main", "callback"])
 def test_an_endless_loop_is_cut_off(here: Path, capsys: pytest.CaptureFixture[str], source: str) -> None:
     (here / "split_groups.py").write_text(source)
     assert cli.main(["check", "split-groups", "--limit", "2"]) == 1
@@ -258,6 +260,7 @@ def test_an_endless_loop_is_cut_off(here: Path, capsys: pytest.CaptureFixture[st
     assert said.err.startswith(sentence)
 
 
+@pytest.mark.slow
 def test_a_node_that_never_spins_fails_every_check_it_would_have_to_run_for(
     here: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -47,6 +47,7 @@ def test_an_order_that_fails_is_found_and_its_seed_shows_it_again(file: Path) ->
     assert "AssertionError: taken twice" in again.stdout + again.stderr
 
 
+@pytest.mark.slow
 def test_locks_that_are_taken_in_two_orders_are_found(file: Path) -> None:
     file.write_text(LOCK_ORDER)
     explored = cbtui("explore", str(file), "--schedules", "4", "--seed", "1", "--for", "0.5")
@@ -56,6 +57,7 @@ def test_locks_that_are_taken_in_two_orders_are_found(file: Path) -> None:
     assert "in back" in explored.stdout
 
 
+@pytest.mark.slow
 def test_a_program_in_order_has_one_outcome_and_ends_with_0(file: Path) -> None:
     file.write_text(IN_ONE_GROUP)
     explored = cbtui("explore", str(file), "--schedules", "4", "--for", "0.3")
@@ -63,6 +65,7 @@ def test_a_program_in_order_has_one_outcome_and_ends_with_0(file: Path) -> None:
     assert explored.returncode == 0
 
 
+@pytest.mark.slow
 def test_a_changed_set_up_is_what_is_explored_and_shown_again(file: Path) -> None:
     file.write_text(IN_ONE_GROUP)
     words = ("--group", "ann=reentrant", "--group", "/seats:bob=reentrant", "--group", "eve=own")
@@ -74,6 +77,7 @@ def test_a_changed_set_up_is_what_is_explored_and_shown_again(file: Path) -> Non
     assert f"\n  {again} --seed " in explored.stdout
 
 
+@pytest.mark.slow
 def test_a_solution_passes_its_checks_in_every_order() -> None:
     solution = find("overlapping-timer").node_path.with_name("solution.py")
     explored = cbtui("explore", str(solution), "--check", "overlapping-timer", "--schedules", "2")
@@ -82,6 +86,7 @@ def test_a_solution_passes_its_checks_in_every_order() -> None:
     assert explored.returncode == 0
 
 
+@pytest.mark.slow
 def test_checks_that_fail_are_named_with_what_was_seen() -> None:
     explored = cbtui("explore", "overlapping-timer", "--schedules", "2")
     assert "check failed: every call of inspect is counted\n      expected " in explored.stdout
@@ -149,6 +154,7 @@ def test_ctrl_c_ends_it_and_every_process(file: Path) -> None:
     wait_until_gone(children)
 
 
+@pytest.mark.slow
 def test_who_has_read_enough_of_it_is_no_trouble(file: Path) -> None:
     file.write_text(IN_ONE_GROUP)
     words = ["explore", str(file), "--schedules", "1", "--for", "0.1"]

@@ -67,6 +67,7 @@ def test_every_learner_has_a_row_whatever_the_one_before_did(
     assert eve["problem"] == "eve.py does not tell by its name which exercise it is for"
 
 
+@pytest.mark.slow
 def test_with_a_lesson_named_a_file_may_be_called_anything(
     school: Path, capsys: pytest.CaptureFixture[str], tmp_path: Path
 ) -> None:
@@ -78,12 +79,14 @@ def test_with_a_lesson_named_a_file_may_be_called_anything(
     assert "5/5  ann  split-groups" in capsys.readouterr().out.splitlines()
 
 
+@pytest.mark.slow
 def test_a_class_that_passes_ends_with_0(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "split_groups_zoe.py").write_text(SOLUTION)
     assert cli.main(["grade", str(tmp_path)]) == 0
     assert capsys.readouterr().out == "5/5  zoe  split-groups\n"
 
 
+@pytest.mark.slow
 def test_what_a_program_says_is_no_formula_in_a_spreadsheet(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -142,6 +145,7 @@ def test_a_table_on_a_full_disk_is_said_to_be_so(tmp_path: Path, capsys: pytest.
     assert capsys.readouterr().err.endswith("cbtui: /dev/full cannot be written: No space left on device\n")
 
 
+@pytest.mark.slow
 def test_names_that_are_not_utf_8_keep_nobody_else_from_being_graded(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

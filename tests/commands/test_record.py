@@ -12,6 +12,7 @@ from cbtui.runs.recorded.recording_file import CannotRecordError, setup_of, star
 from sim.engine.setup import RunSetup, TimedCall
 from sim.recording import RecordingMetadata, read
 from tests.recording.files import write
+from tests.support.daily import first_row_daily
 from tests.trace.samples import FULL
 
 
@@ -86,12 +87,12 @@ def test_info_tells_of_losses_and_prints_no_control_characters(
 
 @pytest.mark.parametrize(
     ("arguments", "sentence"),
-    [
+    first_row_daily(
         (["--record", "{there}"], "there is a file {there} already; give another name, or --force"),
         (["--record", "/no/such/folder/x.mcap"], "cannot record to /no/such/folder/x.mcap: No such file"),
         (["--record", "/dev/full", "--force"], "cannot record to /dev/full: No space left on device"),
         (["--force"], "--force lets --record replace a file; there is nothing to record to"),
-    ],
+    ),
 )
 def test_what_cannot_be_recorded_is_refused_before_the_run(
     arguments: list[str], sentence: str, tmp_path: Path

@@ -19,6 +19,7 @@ from cbtui.terminal.capabilities import charset_of
 from cbtui.text.output import CannotSayError
 from sim.engine.commands import Type
 from sim.trace.events import KeyboardAsked, Reading
+from tests.support.daily import first_daily
 
 _CBTUI = f"{sys.executable} -m cbtui"
 
@@ -29,7 +30,7 @@ def _shell(line: str, **environment: str) -> subprocess.CompletedProcess[str]:
     )
 
 
-@pytest.mark.parametrize("closed", ["<&-", ">&-", "2>&-", "<&- >&- 2>&-"])
+@pytest.mark.parametrize("closed", first_daily("<&- >&- 2>&-", "<&-", ">&-", "2>&-"))
 def test_streams_that_are_closed_are_as_if_nobody_read_them(closed: str, tmp_path: Path) -> None:
     events = tmp_path / "events"
     done = _shell(f"{_CBTUI} run single-thread --for 0.2 --events {events} {closed}")
@@ -70,6 +71,7 @@ def test_a_run_whose_standard_input_has_no_descriptor_comes_to_its_end(
     assert "cut short" not in capsys.readouterr().err
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no device that is always full")
 def test_an_output_that_is_full_is_told_in_one_sentence(tmp_path: Path) -> None:
     for environment in ({}, {"PYTHONUNBUFFERED": "1"}):
@@ -79,6 +81,7 @@ def test_an_output_that_is_full_is_told_in_one_sentence(tmp_path: Path) -> None:
             assert done.stderr == "cbtui: what it says cannot be written: No space left on device\n"
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="this system has no device that is always full")
 def test_where_not_even_complaints_can_be_written_the_exit_code_tells() -> None:
     assert _shell(f"{_CBTUI} nonsense 2>/dev/full").returncode == 2
@@ -103,6 +106,7 @@ def test_a_log_that_cannot_be_written_ends_the_run_in_order(
     assert capsys.readouterr().err == ""
 
 
+@pytest.mark.slow
 def test_signs_that_the_encoding_lacks_become_question_marks() -> None:
     done = _shell(f"{_CBTUI} list", PYTHONIOENCODING="ascii")
     assert done.returncode == 0
@@ -130,6 +134,7 @@ def test_what_python_writes_with_limits_the_signs(encoding: str, charset: str) -
     assert charset_of({"LANG": "C.UTF-8", "TERM": "xterm"}, False, encoding) == charset
 
 
+@pytest.mark.slow
 def test_why_a_run_is_given_up_is_told_once(tmp_path: Path) -> None:
     path = tmp_path / "node.py"
     path.write_text("import time\nwhile True:\n    time.sleep(0)\n")

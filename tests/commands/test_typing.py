@@ -14,6 +14,7 @@ from typing import Any
 import pytest
 
 from cbtui.cli import main
+from tests.support.daily import first_daily
 from tests.support.pseudo_terminal import start_in_terminal
 from tests.support.teleop import ASKING, TELEOP
 
@@ -66,6 +67,7 @@ def test_keys_drive_a_teleop_program_and_ctrl_c_is_one_of_them(tmp_path: Path) -
     assert typist.leaves() == 0
 
 
+@pytest.mark.slow
 def test_a_line_is_asked_for_at_once_and_ctrl_c_ends_the_run(tmp_path: Path) -> None:
     typist = Typist(tmp_path, ASKING)
     typist.sees(r"speed\? $")
@@ -75,7 +77,7 @@ def test_a_line_is_asked_for_at_once_and_ctrl_c_ends_the_run(tmp_path: Path) -> 
     assert typist.leaves() == 128 + signal.SIGINT
 
 
-@pytest.mark.parametrize("ending", ["kill", "ctrl-c twice"])
+@pytest.mark.parametrize("ending", first_daily("kill", "ctrl-c twice"))
 def test_the_terminal_is_left_as_it_was(tmp_path: Path, ending: str) -> None:
     typist = Typist(tmp_path, "import sys, tty\ntty.setraw(0)\nwhile True:\n    print(sys.stdin.read(1))\n")
     typist.type("x")
@@ -91,6 +93,7 @@ def test_the_terminal_is_left_as_it_was(tmp_path: Path, ending: str) -> None:
         assert typist.leaves() == 128 + signal.SIGINT
 
 
+@pytest.mark.slow
 def test_what_comes_through_a_pipe_is_what_is_typed_and_its_end_is_the_inputs(tmp_path: Path) -> None:
     path = tmp_path / "node.py"
     path.write_text(ASKING)

@@ -100,7 +100,7 @@ SENSORS = ("timer_callback", "odom_callback", "scan_callback")
         ("single-thread", None, None, {(each, 2) for each in SENSORS}),
         pytest.param("shared-group", 2, None, {(each, None) for each in SENSORS}, marks=pytest.mark.slow),
         pytest.param("no-groups-at-all", None, 2.55, {("timer_callback", None)}, marks=pytest.mark.slow),
-        ("reentrant-1-thread", None, 2.55, {("", 2)}),
+        pytest.param("reentrant-1-thread", None, 2.55, {("", 2)}, marks=pytest.mark.slow),
         pytest.param("lock-or-group", None, None, {("count_with_lock", None)}, marks=pytest.mark.slow),
     ],
 )

@@ -3,6 +3,7 @@
 import pytest
 
 from sim.diagnosis import Weight, diagnose
+from tests.support.daily import first_row_daily
 from tests.support.engine_runs import run_lesson
 
 GROUP_HELD = {
@@ -20,7 +21,7 @@ Findings = set[tuple[str, str]]
 
 @pytest.mark.parametrize(
     ("lesson", "calls", "threads", "problems", "remarks"),
-    [
+    first_row_daily(
         ("single-thread", (), None, GROUP_HELD, {TURNS_FOR_LONG}),
         ("shared-group", (), None, GROUP_HELD, {TURNS_FOR_LONG}),
         ("shared-group", (), 4, GROUP_HELD, {TURNS_FOR_LONG, ("groups-change-nothing", "odom_callback")}),
@@ -34,7 +35,7 @@ Findings = set[tuple[str, str]]
             {("no-free-worker", "timer_callback")},
             {("groups-change-nothing", "SetBool_callback")},
         ),
-    ],
+    ),
 )
 def test_a_lesson_has_exactly_its_own_findings(
     lesson: str, calls: tuple[float, ...], threads: int | None, problems: Findings, remarks: Findings

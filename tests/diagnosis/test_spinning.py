@@ -6,6 +6,7 @@ import pytest
 
 from sim.diagnosis import Finding, diagnose
 from sim.trace.events import Printed, SpinClashed
+from tests.support.daily import first_row_daily
 from tests.support.engine_runs import Run, run_program
 
 PROGRAM = """
@@ -53,7 +54,7 @@ def found_in(run: Run) -> list[Finding]:
 
 @pytest.mark.parametrize(
     ("ask", "spin", "what", "cure"),
-    [
+    first_row_daily(
         (
             "rclpy.spin_until_future_complete(self, future)",
             "rclpy.spin(caller)",
@@ -80,7 +81,7 @@ def found_in(run: Run) -> list[Finding]:
             TAKEN.format("spin_until_future_complete"),
             "after call_async() let tick return",
         ),
-    ],
+    ),
 )
 def test_a_callback_that_spins_what_runs_it_is_told_with_its_line(
     ask: str, spin: str, what: str, cure: str, tmp_path: Path

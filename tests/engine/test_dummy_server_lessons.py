@@ -60,11 +60,13 @@ def test_the_robot_turns_during_the_call_and_stands_after_it(lesson: str) -> Non
     assert abs(robot.turned) > 0.5
 
 
+@pytest.mark.slow
 def test_three_calls_at_once_use_both_threads_of_a_reentrant_group() -> None:
     run = run_lesson("reentrant-2-threads", 16, 2.55, 2.55, 2.55)
     assert _ticks(run) == [1, 2, 7.55, 8, 9, 10, 11, 12, 13, 14, 15]
 
 
+@pytest.mark.slow
 def test_three_calls_at_once_are_served_one_by_one_in_an_exclusive_group() -> None:
     run = run_lesson("exclusive-2-threads", 20, 2.55, 2.55, 2.55)
     assert _ticks(run) == [float(second) for second in range(1, 20)]

@@ -24,6 +24,7 @@ from sim.trace.events import (
     ServiceReplied,
     VelocityCommanded,
 )
+from tests.support.daily import first_daily, first_row_daily
 from tests.support.engine_runs import SECOND, program_setup, run_lesson, run_program, run_to_end
 
 SPIN = """
@@ -36,8 +37,9 @@ rclpy.spin(node)
 """
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("fresh_engines")
-@pytest.mark.parametrize("lesson", ["split-groups", "reentrant-2-threads"])
+@pytest.mark.parametrize("lesson", first_daily("reentrant-2-threads", "split-groups"))
 def test_the_same_run_twice_gives_the_same_events(lesson: str) -> None:
     once = run_lesson(lesson, 15, 2.55, 4.0)
     again = run_lesson.__wrapped__(lesson, 15, 2.55, 4.0)
@@ -105,7 +107,7 @@ def test_threads_that_a_program_leaves_are_waited_for(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("source", "sentence"),
-    [
+    first_row_daily(
         (
             "x = 1\nraise ValueError('no such robot')",
             "node.py:2: the program raised ValueError: no such robot",
@@ -118,7 +120,7 @@ def test_threads_that_a_program_leaves_are_waited_for(tmp_path: Path) -> None:
             "import rclpy\nfrom rclpy.node import Node\nNode('early')",
             "node.py:3: the program raised NotInitializedException",
         ),
-    ],
+    ),
 )
 def test_a_program_that_fails_is_told_of_in_one_sentence(tmp_path: Path, source: str, sentence: str) -> None:
     run = run_program(tmp_path, source)

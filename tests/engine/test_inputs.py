@@ -308,6 +308,7 @@ def test_an_engine_repeats_a_run_of_calls_lines_and_interrupts_to_its_stop(tmp_p
     assert _repeated(setup, run.events) == recorded
 
 
+@pytest.mark.slow
 def test_an_engine_repeats_a_robot_that_is_reset(tmp_path: Path) -> None:
     path = tmp_path / "node.py"
     path.write_text(NODE)

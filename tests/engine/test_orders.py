@@ -42,6 +42,7 @@ def forked(seed: int) -> list[AnyEvent]:
     return events
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("fresh_engines")
 def test_a_seed_gives_the_same_trace_in_a_fresh_process_and_in_a_copy() -> None:
     assert seeded(4) == forked(4) == forked(4)

@@ -8,6 +8,7 @@ from pathlib import Path
 from queue import Queue
 
 import msgspec
+import pytest
 
 from cbtui.engines.session import ProcessSession
 from cbtui.runs.setup.lesson_setup import setup_for
@@ -81,6 +82,7 @@ def console(setup: RunSetup) -> Iterator[Console]:
         found.stop()
 
 
+@pytest.mark.slow
 def test_a_lesson_that_is_paused_stepped_and_hurried_is_the_lesson_that_is_not() -> None:
     setup = msgspec.structs.replace(setup_for(find("split-groups"), speed=1.0), until=12 * SECOND)
     with console(setup) as run:

@@ -6,10 +6,11 @@ import pytest
 
 from sim.trace.events import AnyEvent, CallbackStarted, EntityAppeared, Logged, MessageDropped, RobotMoved
 from sim.trace.figures.summary import summarise
+from tests.support.daily import first_daily
 from tests.support.engine_runs import SECOND, Run, run_lesson
 
-BLOCKED = ("single-thread", "shared-group")
-ROBOT_LESSONS = (*BLOCKED, "split-groups")
+BLOCKED = first_daily("shared-group", "single-thread")
+ROBOT_LESSONS = [*BLOCKED, pytest.param("split-groups", marks=pytest.mark.slow)]
 SLEEPING = [f"SLEEPING=={second} seconds" for second in range(10)]
 
 

@@ -36,6 +36,7 @@ def group(callback: str, wish: str, node: str = SUB_NODE) -> GroupChange:
     return GroupChange(node, callback, wish)
 
 
+@pytest.mark.slow
 def test_a_group_of_its_own_and_a_thread_more_let_a_starved_callback_run() -> None:
     run = tuned("shared-group", 20, threads=2, groups=(group("scan_callback", "own"),))
     assert [at for at in run.starts("scan_callback") if 5 < at < 13]

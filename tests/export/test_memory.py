@@ -19,6 +19,7 @@ from sim.trace.events import (
     WaitEnded,
     WaitStarted,
 )
+from tests.support.daily import first_daily
 from tests.trace.systems import System
 
 STEP = 20_000_000
@@ -61,11 +62,11 @@ def peak(make: Callable[[IO[bytes]], TraceExporter | CallTable], seconds: int) -
 
 @pytest.mark.parametrize(
     "make",
-    [
+    first_daily(
         lambda file: TraceExporter(PerfettoFile(file)),
         lambda file: TraceExporter(ChromeFile(file)),
         lambda file: CallTable(TextIOWrapper(file, "utf-8", newline="")),
-    ],
+    ),
     ids=["perfetto", "chrome", "csv"],
 )
 def test_memory_does_not_grow_with_the_run(make: Callable[[IO[bytes]], TraceExporter | CallTable]) -> None:

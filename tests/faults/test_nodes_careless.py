@@ -11,6 +11,7 @@ from sim.engine.setup import RobotUse
 from sim.trace.events import AnyEvent, Notice, RunEnded
 from sim.trace.model import Window
 from tests.faults.support import FIRST, PATIENCE, Provoked, console_on, node_with, provoked, still_here
+from tests.support.daily import first_daily
 
 AT = f"node.py:{FIRST}"
 NO_NUMBERS = """\
@@ -81,7 +82,7 @@ FAULTS = {
 }
 
 
-@pytest.mark.parametrize("name", FAULTS)
+@pytest.mark.parametrize("name", first_daily(*FAULTS))
 def test_a_node_that_goes_on_after_its_fault_is_still_followed_and_can_be_ended(
     folder: Path, name: str
 ) -> None:
@@ -110,7 +111,7 @@ def _notices_of_the_end(run: Provoked) -> list[str]:
 
 
 @pytest.mark.parametrize(
-    "name", ["an exception in a destructor", "an exception in a thread", "time is patched"]
+    "name", first_daily("time is patched", "an exception in a destructor", "an exception in a thread")
 )
 def test_on_virtual_time_too(folder: Path, name: str) -> None:
     fault, notices, line = FAULTS[name]
@@ -119,6 +120,7 @@ def test_on_virtual_time_too(folder: Path, name: str) -> None:
         assert run.live.alive
 
 
+@pytest.mark.slow
 def test_what_comes_out_of_a_destructor_again_and_again_is_told_once(folder: Path) -> None:
     fault = FAULTS["an exception in a destructor"].fault
     with provoked(node_with(folder, fault, again=True)) as run:
@@ -140,7 +142,7 @@ def test_a_file_that_is_gone_is_told_of_when_it_is_run_again(folder: Path) -> No
 
 @pytest.mark.parametrize(
     "fault",
-    ["lock = threading.Lock()\nlock.acquire()\nlock.acquire()", "os.read(os.pipe()[0], 1)"],
+    first_daily("lock = threading.Lock()\nlock.acquire()\nlock.acquire()", "os.read(os.pipe()[0], 1)"),
     ids=["a lock", "a pipe"],
 )
 def test_a_callback_that_waits_for_ever_on_the_real_clock_is_told_of_with_its_place(
@@ -174,6 +176,7 @@ def test_a_node_that_destroys_itself_is_told_of_and_its_other_callbacks_run_no_m
         assert run.printed == ["destroyed"]
 
 
+@pytest.mark.slow
 async def test_a_node_that_destroys_itself_is_told_of_on_screen_and_can_be_run_again(folder: Path) -> None:
     path = node_with(folder, "self.destroy_node()")
     async with console_on(path) as console:

@@ -9,13 +9,14 @@ from cbtui.engines import resource_guard
 from cbtui.engines.memory_limit import MEMORY_LIMIT, memory_limit
 from cbtui.runs.live.live_run import RunState
 from tests.faults.support import FIRST, node_with, provoked, still_here
+from tests.support.daily import first_daily
 from tests.support.processes import wait_until_gone
 
 LITTLE = "0.3"
 """GB that a node may use here: twice what an engine takes."""
 
 
-@pytest.mark.parametrize("clock", ["real", "virtual"])
+@pytest.mark.parametrize("clock", first_daily("real", "virtual"))
 @pytest.mark.parametrize(
     "fault",
     ["kept = []\nwhile True: kept.append(bytearray(b'x') * 2_000_000)", "self.kept = b'x' * 3_000_000_000"],
@@ -77,6 +78,7 @@ def test_forking_does_not_live_on_virtual_time_and_says_so(folder: Path) -> None
         assert f"node.py:{FIRST}: the program raised NotImplementedError: os.fork does not" in run.sentence
 
 
+@pytest.mark.slow
 def test_a_node_that_forks_without_end_is_ended_with_all_that_came_of_it(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -122,6 +124,7 @@ rclpy.shutdown()
     wait_until_gone([int(told.read_text())])
 
 
+@pytest.mark.slow
 def test_nothing_that_a_node_started_outlives_its_crash(folder: Path) -> None:
     fault = (
         "subprocess.Popen(['sleep', '300'], start_new_session=True)\nos.system('sleep 300 &')\nos._exit(1)"

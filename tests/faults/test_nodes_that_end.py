@@ -7,6 +7,7 @@ import pytest
 
 from cbtui.runs.live.live_run import RunState
 from tests.faults.support import FIRST, node_with, provoked
+from tests.support.daily import first_daily
 
 
 class Ends(NamedTuple):
@@ -60,7 +61,7 @@ FAULTS = {
 }
 
 
-@pytest.mark.parametrize("name", FAULTS)
+@pytest.mark.parametrize("name", first_daily(*FAULTS))
 def test_a_node_that_ends_its_process_is_told_of_with_its_place_and_its_recording_opens(
     folder: Path, name: str
 ) -> None:
@@ -72,7 +73,7 @@ def test_a_node_that_ends_its_process_is_told_of_with_its_place_and_its_recordin
     assert run.recorded is not None
 
 
-@pytest.mark.parametrize("name", ["os._exit", "a crash in C", "rclpy.shutdown in a callback"])
+@pytest.mark.parametrize("name", first_daily("os._exit", "a crash in C", "rclpy.shutdown in a callback"))
 def test_it_is_told_the_same_way_on_virtual_time(folder: Path, name: str) -> None:
     with provoked(node_with(folder, FAULTS[name].fault), "virtual") as run:
         run.to_its_end()

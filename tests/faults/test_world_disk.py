@@ -18,6 +18,7 @@ from cbtui.runs.live.live_run import RunState
 from sim.engine.setup import RunSetup
 from sim.recording import read
 from tests.faults.support import ANSWERED, PATIENCE, console_on, node_with, nothing_left, still_here
+from tests.support.daily import first_row_daily
 from tests.support.runs import shared_group_run
 
 LONG = "self.get_logger().info(os.urandom(1000).hex())"
@@ -82,7 +83,9 @@ async def test_a_disk_that_fills_up_ends_the_recording_and_the_run_goes_on(folde
 
 @pytest.mark.parametrize(
     ("option", "file", "what"),
-    [("--record", "run.mcap", "the recording is"), ("--events", "run.jsonl", "the events in the file are")],
+    first_row_daily(
+        ("--record", "run.mcap", "the recording is"), ("--events", "run.jsonl", "the events in the file are")
+    ),
 )
 def test_a_disk_that_fills_up_does_not_end_a_run_without_a_console(
     folder: Path, option: str, file: str, what: str
@@ -110,7 +113,8 @@ def small_disk(tmp_path: Path) -> Iterator[Path]:
 
 
 @pytest.mark.parametrize(
-    ("file", "taken"), [("run.mcap", 0), ("run.mcap", 50_000), ("run.jsonl", 0), ("run.jsonl", 50_000)]
+    ("file", "taken"),
+    first_row_daily(("run.mcap", 0), ("run.mcap", 50_000), ("run.jsonl", 0), ("run.jsonl", 50_000)),
 )
 def test_a_small_disk_that_fills_up_keeps_what_fits(
     folder: Path, small_disk: Path, file: str, taken: int

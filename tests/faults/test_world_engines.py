@@ -22,6 +22,7 @@ from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
 from sim.recording import read
 from sim.trace.events import AnyEvent, Logged, Notice, NoticeKind, Printed, RunStarted, Severity
 from tests.faults.support import ANSWERED, PATIENCE, console_on, node_with, nothing_left, still_here
+from tests.support.daily import first_daily
 from tests.support.processes import engines_of, is_stopped
 
 pytestmark = [
@@ -78,6 +79,7 @@ async def test_an_engine_that_is_killed_is_told_of_and_can_be_run_again(folder: 
         await console.until(still_here)
 
 
+@pytest.mark.slow
 async def test_an_engine_that_is_stopped_is_told_of_and_goes_on_when_it_may(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -98,6 +100,7 @@ async def test_an_engine_that_is_stopped_is_told_of_and_goes_on_when_it_may(
         assert engine() != stopped
 
 
+@pytest.mark.slow
 async def test_an_engine_that_code_in_c_keeps_is_told_of(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -155,7 +158,9 @@ def _waiting(descriptor: int) -> bytes:
     return b""
 
 
-@pytest.mark.parametrize("fault", [WITH_CHILDREN, IN_C], ids=["with children", "kept by code in C"])
+@pytest.mark.parametrize(
+    "fault", first_daily(WITH_CHILDREN, IN_C), ids=["with children", "kept by code in C"]
+)
 def test_a_console_that_is_killed_takes_its_engine_and_what_it_started_along(
     fault: str, folder: Path
 ) -> None:
@@ -171,6 +176,7 @@ def test_a_console_that_is_killed_takes_its_engine_and_what_it_started_along(
     assert "breaks off" in recording.damage
 
 
+@pytest.mark.slow
 def test_a_machine_that_slept_finishes_its_run(folder: Path) -> None:
     path = node_with(folder, "for each in (os.getppid(), os.getpid()): os.kill(each, signal.SIGSTOP)")
     with nothing_left():
@@ -189,6 +195,7 @@ def test_a_machine_that_slept_finishes_its_run(folder: Path) -> None:
     assert max(times) >= 1_000_000_000
 
 
+@pytest.mark.slow
 def test_a_wall_clock_that_is_set_again_and_again_changes_no_time_of_a_run(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -15,7 +15,7 @@ import pytest
 from lessons.catalogue import find
 from sim.recording import Recorder, RecordingMetadata, read
 from tests.faults.support import PATIENCE, node_with, nothing_left
-from tests.support.daily import first_daily
+from tests.support.daily import first_daily, first_row_daily
 from tests.support.processes import engines_of
 from tests.support.runs import shared_group_run
 from tests.terminal.console import opened
@@ -105,7 +105,7 @@ def recording_is_whole() -> bool:
     return recording.damage is None and sum(map(len, recording.batches())) > 0
 
 
-@pytest.mark.parametrize(("name", "moment"), MOMENTS_OF_COMMANDS)
+@pytest.mark.parametrize(("name", "moment"), first_row_daily(*MOMENTS_OF_COMMANDS))
 def test_ctrl_c_ends_a_command_at_any_moment_without_a_word(name: str, moment: int) -> None:
     with nothing_left():
         command = Command(SCRIPT, str(moment), *COMMANDS[name])
@@ -117,6 +117,7 @@ def test_ctrl_c_ends_a_command_at_any_moment_without_a_word(name: str, moment: i
         assert read(Path("run.mcap")).damage is None
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("moment", [random.Random(seed).randint(1, LATEST // 2) for seed in range(MOMENTS)])
 def test_ctrl_c_ends_a_server_at_any_moment_without_a_word(moment: int) -> None:
     with nothing_left():
@@ -128,6 +129,7 @@ def test_ctrl_c_ends_a_server_at_any_moment_without_a_word(moment: int) -> None:
     assert command.complained == ""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("moment", [random.Random(seed).randint(1, LATEST) for seed in range(MOMENTS)])
 def test_ctrl_c_ends_a_console_that_starts_and_gives_the_terminal_back(moment: int, tmp_path: Path) -> None:
     with (
@@ -181,7 +183,7 @@ def test_ctrl_c_as_an_engine_starts_is_not_the_engines() -> None:
     assert recording_is_whole()
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+@pytest.mark.parametrize("number", first_daily(signal.SIGINT, signal.SIGTERM, signal.SIGHUP))
 def test_a_run_that_is_told_to_end_tells_and_records_what_it_came_to(number: signal.Signals) -> None:
     with nothing_left():
         command = Command("-m", "cbtui", *RUN, "--clock", "real")
@@ -192,6 +194,7 @@ def test_a_run_that_is_told_to_end_tells_and_records_what_it_came_to(number: sig
     assert recording_is_whole()
 
 
+@pytest.mark.slow
 def test_an_engine_that_is_stopped_keeps_nobody_from_ending_its_run() -> None:
     with nothing_left():
         command = Command("-m", "cbtui", *RUN, "--clock", "real")

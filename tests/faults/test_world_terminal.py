@@ -34,6 +34,7 @@ def recording_console(home: Path) -> Iterator[TerminalConsole]:
     assert read(path).damage is None
 
 
+@pytest.mark.slow
 def test_a_console_whose_window_is_closed_ends_and_finishes_its_recording(tmp_path: Path) -> None:
     with recording_console(tmp_path) as console:
         console.close_window()
@@ -48,6 +49,7 @@ def test_a_console_that_is_told_to_hang_up_gives_the_terminal_back(tmp_path: Pat
         assert "Recorded" in console.said()
 
 
+@pytest.mark.slow
 def test_a_console_that_was_stopped_goes_on_and_gives_the_terminal_back(tmp_path: Path) -> None:
     with nothing_left(), opened(80, 24, tmp_path) as console:
         console.until("Split groups")

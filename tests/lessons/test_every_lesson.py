@@ -11,13 +11,14 @@ from cbtui.learning.lesson_lint import faults_of
 from cbtui.learning.lesson_scaffold import TEMPLATE
 from lessons.catalogue import lessons
 from lessons.lesson import Lesson
+from tests.support.daily import first_daily
 
 every_lesson = pytest.mark.parametrize("lesson", lessons(), ids=lambda lesson: lesson.id)
 EXERCISES = [lesson for lesson in lessons() if lesson.exercise is not None]
 
 
 @pytest.mark.parametrize(
-    "folder", [TEMPLATE, *(lesson.folder for lesson in lessons())], ids=lambda path: path.name
+    "folder", first_daily(TEMPLATE, *(lesson.folder for lesson in lessons())), ids=lambda path: path.name
 )
 def test_a_lesson_is_as_it_says(folder: Path) -> None:
     assert list(faults_of(folder)) == []

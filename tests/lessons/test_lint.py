@@ -11,6 +11,7 @@ from cbtui.learning.lesson_lint import faults_in_runs, faults_in_texts, faults_o
 from cbtui.learning.lesson_scaffold import TEMPLATE
 from lessons.judge import Judge
 from lessons.lesson import Lesson, read_lesson
+from tests.support.daily import first_row_daily
 
 
 @pytest.fixture
@@ -27,7 +28,7 @@ def change(path: Path, old: str, new: str) -> None:
 
 @pytest.mark.parametrize(
     ("file", "old", "new", "fault"),
-    [
+    first_row_daily(
         (
             "lesson.toml",
             "number = 1",
@@ -59,7 +60,7 @@ def change(path: Path, old: str, new: str) -> None:
             'solution = ["stale-data"]',
             "solution.py: the diagnosis does not find stale-data, which [diagnoses] declares",
         ),
-    ],
+    ),
 )
 def test_what_does_not_come_out_so_is_told_with_its_file(
     folder: Path, file: str, old: str, new: str, fault: str
@@ -96,6 +97,7 @@ def test_a_text_that_is_at_fault_is_told_with_its_file(
     assert list(faults_in_texts(read_lesson(folder))) == [f"{folder}/{fault}"]
 
 
+@pytest.mark.slow
 def test_a_starter_that_passes_leaves_nothing_to_mend(folder: Path) -> None:
     shutil.copyfile(folder / "solution.py", folder / "starter.py")
     assert list(faults_of(folder)) == [
@@ -104,6 +106,7 @@ def test_a_starter_that_passes_leaves_nothing_to_mend(folder: Path) -> None:
     ]
 
 
+@pytest.mark.slow
 def test_a_solution_that_fails_a_check_is_none(folder: Path) -> None:
     change(folder / "solution.py", "time.sleep(2.0)", "time.sleep(1.0)")
     (fault,) = faults_of(folder)
@@ -120,6 +123,7 @@ def test_of_a_node_that_does_not_run_it_is_told_why(folder: Path) -> None:
     assert "expected ':'" in said
 
 
+@pytest.mark.slow
 def test_a_solution_that_does_not_run_is_said_to_be_so(folder: Path) -> None:
     change(folder / "solution.py", "class Blinker(Node):", "class Blinker(Node)")
     faults = list(faults_of(folder))
@@ -127,6 +131,7 @@ def test_a_solution_that_does_not_run_is_said_to_be_so(folder: Path) -> None:
     assert "expected ':'" in faults[0]
 
 
+@pytest.mark.slow
 def test_a_starter_that_does_not_run_is_something_to_mend(folder: Path) -> None:
     change(folder / "starter.py", "class Blinker(Node):", "class Blinker(Node)")
     change(folder / "lesson.toml", 'starter = ["group-starvation"]', "starter = []")
@@ -140,6 +145,7 @@ def test_a_rule_that_does_not_exist_is_named(folder: Path) -> None:
     )
 
 
+@pytest.mark.slow
 def test_a_node_that_ends_its_process_is_told_once(folder: Path) -> None:
     node = folder / "node.py"
     node.write_text("import os\nos._exit(3)\n" + node.read_text())

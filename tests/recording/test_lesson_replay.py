@@ -111,6 +111,7 @@ def whole(timeline: Timeline) -> tuple[object, ...]:
     )
 
 
+@pytest.mark.slow
 @every_reading
 def test_a_replayed_lesson_is_what_it_was_at_a_thousand_times(
     lesson: Run, recorded: Path, replayed: Callable[[Path], Timeline]

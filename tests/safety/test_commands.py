@@ -119,6 +119,7 @@ def test_names_on_a_command_line_are_shown_and_not_obeyed(
     assert not obeyed(said_by(capsys, *(word.format(_NAME) for word in words)))
 
 
+@pytest.mark.slow
 def test_names_of_learners_files_are_shown_and_not_obeyed(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -15,6 +15,7 @@ from sim.trace.events import AnyEvent
 from tests.safety import hostile
 from tests.safety.hostile import HOSTILE, obeyed
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.daily import first_row_daily
 from tests.support.fake_session import FakeEngines
 
 _NAME = "\x1b[2J\x9b31m\u202e[red]x[/red]\udc9b"
@@ -45,7 +46,9 @@ def nobodys(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setenv(f"XDG_{kind}_HOME", str(tmp_path / "home" / kind))
 
 
-@pytest.mark.parametrize(("size", "told"), [(NARROW, hostile.events), (WIDE, hostile.every_event)])
+@pytest.mark.parametrize(
+    ("size", "told"), first_row_daily((WIDE, hostile.every_event), (NARROW, hostile.events))
+)
 async def test_a_run_full_of_hostile_texts_is_shown_in_every_pane(
     size: tuple[int, int], told: Callable[[], list[AnyEvent]]
 ) -> None:
@@ -57,6 +60,7 @@ async def test_a_run_full_of_hostile_texts_is_shown_in_every_pane(
     assert "[red]r[/red]" in shown
 
 
+@pytest.mark.slow
 async def test_a_hostile_recording_is_shown_whole(tmp_path: Path) -> None:
     app = CbtuiApp(start_recording=read(hostile.recording(tmp_path / "run.mcap")))
     app.animation_level = "none"

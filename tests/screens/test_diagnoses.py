@@ -104,6 +104,7 @@ async def test_closing_leaves_everything_as_it_is(key: str) -> None:
         assert text_of(app) == before
 
 
+@pytest.mark.slow
 async def test_a_run_without_problems_says_so_and_offers_no_way() -> None:
     async with console(seconds=3.0) as (app, pilot):
         assert "problem" not in lines_of(app)[-2]
@@ -151,6 +152,7 @@ async def test_another_run_begins_without_findings() -> None:
         assert "problem" not in text_of(app)
 
 
+@pytest.mark.slow
 async def test_the_rules_look_at_most_once_a_second_whatever_is_drawn(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:

@@ -134,6 +134,7 @@ async def test_a_folder_that_takes_no_file_is_told_of_and_nothing_happens(here: 
         assert told.message == f"{here / FILE} is there already, and is not a file"
 
 
+@pytest.mark.slow
 async def test_a_lesson_without_an_exercise_does_not_offer_one() -> None:
     Progress().see("single-thread")
     app = RecordedConsole("single-thread", [], 0.0)
@@ -175,6 +176,7 @@ async def test_what_is_asked_can_be_read_by_scrolling() -> None:
         assert "The file is the node" in text_of(app)
 
 
+@pytest.mark.slow
 async def test_a_file_that_passes_is_noted_and_the_next_lesson_named() -> None:
     async with console(passing()) as (app, _, _pilot):
         assert "✓ All 5 checks pass: the exercise is done." in text_of(app)

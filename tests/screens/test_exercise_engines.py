@@ -20,6 +20,7 @@ def here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 async def test_the_starter_fails_and_once_mended_it_passes(here: Path) -> None:
     app = ExerciseConsole()
     async with app.run_test(size=NARROW) as pilot:

@@ -96,6 +96,7 @@ async def test_it_can_be_scrubbed_both_ways(tmp_path: Path) -> None:
         assert f"t {timeline.end / 1e9:.3f} s" in status(pilot)
 
 
+@pytest.mark.slow
 async def test_it_plays_at_the_chosen_speed_from_its_beginning_and_stands_at_its_end(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -132,6 +133,7 @@ async def test_nothing_that_needs_an_engine_is_offered_or_done(tmp_path: Path) -
         assert list(tmp_path.iterdir()) == [tmp_path / "run.mcap"]
 
 
+@pytest.mark.slow
 async def test_what_cannot_be_read_is_said_in_one_sentence_and_the_rest_is_shown(tmp_path: Path) -> None:
     whole = tmp_path / "whole.mcap"
     events = shared_group_run().events
@@ -146,6 +148,7 @@ async def test_what_cannot_be_read_is_said_in_one_sentence_and_the_rest_is_shown
         assert "‖ REPLAY" in status(pilot)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("place", first_daily(50, 5, 20, 35, 65, 80, 95))
 async def test_a_damaged_recording_never_ends_the_console(place: int, tmp_path: Path) -> None:
     path = recording(tmp_path).path

@@ -94,6 +94,7 @@ async def test_lanes_diagnosis_and_keys_are_always_on_screen() -> None:
             assert {len(line) for line in lines_of(app)} == {size[0]}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", first_daily("pageup", "pagedown"))
 @pytest.mark.parametrize("window", ["p", "t"], ids=["set-up", "threads"])
 async def test_a_window_that_opened_where_nothing_fits_has_no_pages(window: str, page: str) -> None:

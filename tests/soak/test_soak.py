@@ -72,6 +72,7 @@ def test_a_process_has_a_footprint_until_it_ends() -> None:
     assert footprint(2**22 + 1) is None  # above the highest number of a process
 
 
+@pytest.mark.slow
 def test_a_run_of_the_soak_is_the_same_twice_and_its_messages_add_up() -> None:
     came = run_twice(choose(seed=7, number=2, longest=2.0))
     assert came.troubles == []

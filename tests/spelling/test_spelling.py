@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable, Iterator
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 
@@ -31,6 +32,7 @@ def british_for() -> dict[str, str]:
     return {american.strip(" ,"): british for british, american in pairs}
 
 
+@cache
 def places_of(texts: Texts) -> dict[str, list[str]]:
     """Every word that is read, with where it stands."""
     places: defaultdict[str, list[str]] = defaultdict(list)

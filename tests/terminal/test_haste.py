@@ -7,6 +7,7 @@ import pytest
 
 from cbtui.terminal.ending import FAULT
 from sim.recording import read
+from tests.support.daily import first_daily
 from tests.support.processes import wait_until_gone
 from tests.terminal.console import opened
 
@@ -26,7 +27,9 @@ raise SystemExit(command())
 """
 
 
-@pytest.mark.parametrize("keys", [_OPEN + _LEAVE, _LEAVE + _OPEN, _OPEN * 3 + _LEAVE * 2, _LEAVE * 3])
+@pytest.mark.parametrize(
+    "keys", first_daily(_OPEN * 3 + _LEAVE * 2, _OPEN + _LEAVE, _LEAVE + _OPEN, _LEAVE * 3)
+)
 def test_keys_that_open_and_leave_at_once_do_no_harm(keys: str, tmp_path: Path) -> None:
     with opened(80, 24, tmp_path) as console:
         console.until("Unit 5")
@@ -38,6 +41,7 @@ def test_keys_that_open_and_leave_at_once_do_no_harm(keys: str, tmp_path: Path) 
         assert console.left_on() == set()
 
 
+@pytest.mark.slow
 def test_paging_through_the_palette_before_it_is_shown_does_nothing(tmp_path: Path) -> None:
     with opened(80, 24, tmp_path) as console:
         console.until("Unit 5")

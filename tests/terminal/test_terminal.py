@@ -6,6 +6,7 @@ from signal import SIGTERM
 
 import pytest
 
+from tests.support.daily import first_row_daily
 from tests.support.processes import wait_until_gone
 from tests.terminal.console import opened
 
@@ -17,7 +18,7 @@ _ESCAPE = "\x1b"
 """Out of the question what one expects, without an answer."""
 
 
-@pytest.mark.parametrize(("columns", "rows"), [(80, 24), (140, 40)], ids=["80x24", "140x40"])
+@pytest.mark.parametrize(("columns", "rows"), first_row_daily((80, 24), (140, 40)), ids=["80x24", "140x40"])
 def test_a_lesson_is_chosen_called_paused_scrubbed_and_left_and_nothing_stays(
     columns: int, rows: int, tmp_path: Path
 ) -> None:
@@ -47,6 +48,7 @@ def test_a_lesson_is_chosen_called_paused_scrubbed_and_left_and_nothing_stays(
         wait_until_gone(theirs)
 
 
+@pytest.mark.slow
 def test_a_terminal_is_as_it_was_when_the_console_is_ended_from_outside(tmp_path: Path) -> None:
     with opened(80, 24, tmp_path) as console:
         console.until("Split groups")

@@ -12,6 +12,7 @@ from cbtui.engines.session import ProcessSession
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup
 from sim.trace.events import AnyEvent, CallbackStarted, Notice, Printed, ProcessAppeared, ProcessEnded
 from tests.support.builder import ns
+from tests.support.daily import first_daily, first_row_daily
 from tests.support.engine_runs import Run, program_setup, run_to_end
 
 HEAD = """import sys
@@ -334,7 +335,9 @@ def test_a_traceback_begins_in_the_learners_file(told: Told) -> None:
     assert printed[-1] == "ZeroDivisionError: division by zero"
 
 
-@pytest.mark.parametrize("name", ["no main", "raises several lines", "a binary", "exits with a number"])
+@pytest.mark.parametrize(
+    "name", first_daily("no main", "raises several lines", "a binary", "exits with a number")
+)
 def test_a_file_that_runs_alone_is_told_of_the_same_way_and_fails(
     tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -347,7 +350,7 @@ def test_a_file_that_runs_alone_is_told_of_the_same_way_and_fails(
 
 @pytest.mark.parametrize(
     ("source", "reason"),
-    [
+    first_row_daily(
         ("def main():\n    return", "the program returned"),
         (HEAD + "rclpy.init()\nNode('n')", "the program returned"),
         (
@@ -357,7 +360,7 @@ def test_a_file_that_runs_alone_is_told_of_the_same_way_and_fails(
         ),
         (b"\xef\xbb\xbfprint('byte order mark')", "the program returned"),
         ("# -*- coding: latin-1 -*-\nprint('caf\xe9')".encode("latin-1"), "the program returned"),
-    ],
+    ),
 )
 def test_a_file_that_only_does_too_little_has_not_failed(
     tmp_path: Path, source: str | bytes, reason: str

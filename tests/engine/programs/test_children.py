@@ -53,12 +53,14 @@ def test_a_child_computes_and_prints(tmp_path: Path) -> None:
     assert not ended.ending.failed
 
 
+@pytest.mark.slow
 def test_a_child_that_uses_ros_is_told_that_it_cannot(tmp_path: Path) -> None:
     lines = printed(run(tmp_path, PROGRAM.replace("WHO", "node")))
     assert any("cannot use ROS here, only compute and print" in line for line in lines)
     assert "exit 1" in lines
 
 
+@pytest.mark.slow
 def test_on_virtual_time_there_are_no_children(tmp_path: Path) -> None:
     ended = run(tmp_path, PROGRAM.replace("WHO", "None"), clock="virtual")
     assert "multiprocessing does not live on virtual time; use --clock real" in ended.ending.reason

@@ -16,6 +16,7 @@ from cbtui.runs.setup.lesson_setup import RunRequest
 from sim.engine.commands import Stop
 from sim.engine.programs.ending import GRACE
 from sim.trace.events import AnyEvent, Notice, Printed, RunEnded
+from tests.support.daily import first_daily, first_row_daily
 from tests.support.engine_runs import Run, program_setup, run_program, run_to_end
 
 LEAVES = """
@@ -89,7 +90,7 @@ def check_what_is_left(folder: Path, run: Run) -> None:
 
 
 @pytest.mark.parametrize("clock", ["virtual", "real"])
-@pytest.mark.parametrize("how", ENDINGS)
+@pytest.mark.parametrize("how", first_daily(*ENDINGS))
 def test_files_exit_functions_and_objects_are_seen_to_however_a_program_ends(
     tmp_path: Path, how: str, clock: str
 ) -> None:
@@ -120,7 +121,7 @@ def test_a_run_that_is_stopped_shows_its_programs_ending_to_the_last_line(tmp_pa
     check_what_is_left(tmp_path, run)
 
 
-@pytest.mark.parametrize("number", [SIGINT, SIGTERM])
+@pytest.mark.parametrize("number", first_daily(SIGINT, SIGTERM))
 def test_a_run_in_the_terminal_that_is_ended_shows_it_too(tmp_path: Path, number: int) -> None:
     path = tmp_path / "node.py"
     path.write_text(LEAVES + LAST)
@@ -138,7 +139,9 @@ def test_a_run_in_the_terminal_that_is_ended_shows_it_too(tmp_path: Path, number
 
 @pytest.mark.parametrize(
     ("clock", "ends"),
-    [("virtual", "time.sleep(1000)"), ("real", "time.sleep(1000)"), ("virtual", "while True: pass")],
+    first_row_daily(
+        ("virtual", "time.sleep(1000)"), ("real", "time.sleep(1000)"), ("virtual", "while True: pass")
+    ),
 )
 def test_an_ending_that_does_not_end_is_ended_by_force_and_told_of(
     tmp_path: Path, clock: str, ends: str
@@ -190,6 +193,7 @@ def test_a_callback_that_computes_without_end_hears_of_the_runs_end(tmp_path: Pa
     assert run.ending.reason == "it was stopped"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("clock", ["virtual", "real"])
 def test_an_interrupted_program_is_answered_no_more_and_may_join_and_shut_down(
     tmp_path: Path, clock: str
@@ -225,6 +229,7 @@ finally:
     assert not [event for event in run.events if isinstance(event, Notice)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("typed", ["link.py", "folder/real.py"])
 def test_a_program_behind_a_link_keeps_the_name_that_was_typed(tmp_path: Path, typed: str) -> None:
     real = tmp_path / "real"
@@ -258,6 +263,7 @@ except KeyboardInterrupt:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("clock", ["virtual", "real"])
 def test_a_last_message_fails_as_under_rclpy_once_ctrl_c_has_ended_the_context(
     tmp_path: Path, clock: str

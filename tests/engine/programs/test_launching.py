@@ -7,6 +7,7 @@ import pytest
 from sim.engine.programs.starting import is_launch_file
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup, TimedLine
 from sim.trace.events import LineEnded, LineSaid, Logged, NodeAppeared, Notice, Printed, ProcessEnded
+from tests.support.daily import first_row_daily
 from tests.support.engine_runs import SECOND, Run, run_to_end
 
 NODE = """
@@ -177,13 +178,13 @@ def test_ctrl_c_on_a_launch_line_ends_its_processes(package: Path) -> None:
 
 @pytest.mark.parametrize(
     ("body", "sentence"),
-    [
+    first_row_daily(
         ("Node(package='nothing', executable='x')", "nothing"),
         ("Node(package='counting', executable='x')", "counter"),
         ("Node(package='counting')", "executable"),
         ("1/0", "ZeroDivisionError"),
         ("DeclareLaunchArgument('speed')", "speed"),
-    ],
+    ),
 )
 def test_what_is_wrong_in_a_launch_file_ends_the_run_with_its_line(
     package: Path, body: str, sentence: str
@@ -196,6 +197,7 @@ def test_what_is_wrong_in_a_launch_file_ends_the_run_with_its_line(
     assert result.ending.failed
 
 
+@pytest.mark.slow
 def test_the_same_launch_gives_the_same_trace(package: Path) -> None:
     path = launch_file(package, 'Node(package="counting", executable="counter"),' * 3)
     assert run(path).events == run(path).events

@@ -212,6 +212,7 @@ def live(setup: RunSetup, *keys: Type) -> Run:
     return run
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("source", [ASKING, TELEOP], ids=["lines", "keys"])
 def test_a_run_that_was_typed_to_is_repeated_byte_for_byte(tmp_path: Path, source: str) -> None:
     setup = set_up(tmp_path, source, seconds=3)
@@ -229,6 +230,7 @@ def test_a_run_as_fast_as_it_can_waits_for_whoever_types(tmp_path: Path) -> None
     assert run.ending.t < SECOND
 
 
+@pytest.mark.slow
 def test_many_lines_from_a_pipe_arrive_whole(tmp_path: Path) -> None:
     source = "import sys\nnumbers = [int(line) for line in sys.stdin]\nprint(len(numbers), sum(numbers))"
     text = "".join(f"{number}\n" for number in range(5000))

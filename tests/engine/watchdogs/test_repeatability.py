@@ -44,6 +44,7 @@ def reasons(ended: Run) -> list[str]:
     return [event.text for event in ended.events if isinstance(event, Notice) and event.unrepeatable]
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("fresh_engines")
 def test_whatever_is_random_or_tells_the_time_is_the_same_in_five_runs(tmp_path: Path) -> None:
     rows = [row.body for row in ROWS if row.does in {Does.VIRTUAL, Does.SEEDED}]

@@ -97,6 +97,7 @@ def test_that_time_stands_is_told_once_with_the_place(tmp_path: Path) -> None:
     assert ended.reason == told[0].text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("body", "why"), [("time.sleep(0)", "time stands still"), ("pass", "MainThread does not come to a wait")]
 )
@@ -118,6 +119,7 @@ def test_a_run_that_is_stuck_is_ended(tmp_path: Path, body: str, why: str) -> No
     assert ended.reason.startswith(why)
 
 
+@pytest.mark.slow
 def test_code_in_c_that_comes_to_no_end_is_ended_and_named(tmp_path: Path) -> None:
     path = tmp_path / "node.py"
     path.write_text("def count():\n    return sum(range(10**12))\ncount()\n")

@@ -65,6 +65,7 @@ async def test_a_line_goes_to_the_program_and_is_seen_behind_what_it_asked() -> 
         assert typed(app) == ["0.5s\n", "\x03"]
 
 
+@pytest.mark.slow
 async def test_each_key_goes_to_a_program_that_takes_keys_but_the_one_that_leads_out() -> None:
     async with console(Reading.RAW) as (app, pilot):
         await press(pilot, "i", "w", "space", "q", "enter", "escape", "up", "ctrl+c", "tab", "question_mark")
@@ -75,6 +76,7 @@ async def test_each_key_goes_to_a_program_that_takes_keys_but_the_one_that_leads
         assert typed(app)[-1] == "d"
 
 
+@pytest.mark.slow
 async def test_a_password_is_not_shown() -> None:
     async with console(Reading.SECRET) as (app, pilot):
         await press(pilot, "i", "x", "y", "z")

@@ -68,6 +68,7 @@ async def test_lanes_that_are_more_than_a_screen_are_gone_through_with_the_arrow
         assert "Z excl t25  ▸" in lanes_of(app)
 
 
+@pytest.mark.slow
 async def test_lanes_give_the_panes_their_room_back() -> None:
     async with console(12) as (app, pilot):
         guide, before = app.lesson_screen.query_one(Guide), lanes_of(app)

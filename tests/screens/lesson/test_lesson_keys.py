@@ -24,7 +24,7 @@ from lessons.catalogue import lessons
 from sim.engine.commands import CallService, Pause, ResetWorld, Resume, SetSpeed
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, predict, settle
-from tests.support.daily import first_daily
+from tests.support.daily import first_daily, first_row_daily
 from tests.support.fake_session import FakeSession
 from tests.support.pictures import lines_of, text_of
 from tests.support.runs import dummy_server_run, shared_group_run
@@ -70,6 +70,7 @@ def diagnosis(app: RecordedConsole) -> str:
     return lines_of(app)[-2]
 
 
+@pytest.mark.slow
 async def test_a_run_that_other_terminals_do_not_reach_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(FakeSession, "start", lambda _session: "lines do not reach this run")
     async with console() as (app, _):
@@ -107,6 +108,7 @@ async def test_space_goes_on_after_a_pause() -> None:
         assert app.engines.latest.commands == [Pause(), Resume()]
 
 
+@pytest.mark.slow
 async def test_speed_is_shown_and_ends_where_it_cannot_be_changed_further() -> None:
     async with console() as (app, pilot):
         await press(pilot, *["plus"] * 7)
@@ -114,6 +116,7 @@ async def test_speed_is_shown_and_ends_where_it_cannot_be_changed_further() -> N
         assert len(app.engines.latest.commands) == 5
 
 
+@pytest.mark.slow
 async def test_r_runs_again_after_the_engine_was_lost() -> None:
     async with console() as (app, pilot):
         app.engines.latest.end("the engine was killed by signal 9")
@@ -151,7 +154,7 @@ async def test_what_an_engine_sends_after_its_run_was_replaced_does_not_count() 
         assert not new.stopped
 
 
-@pytest.mark.parametrize(("key", "threads"), [("1", 1), ("8", 8), ("o", None)])
+@pytest.mark.parametrize(("key", "threads"), first_row_daily(("8", 8), ("1", 1), ("o", None)))
 async def test_t_runs_again_with_other_threads(key: str, threads: int | None) -> None:
     async with console() as (app, pilot):
         await press(pilot, "t")
@@ -314,6 +317,7 @@ async def test_zooming_changes_the_stretch_of_time() -> None:
         assert lanes.window.length == ns(20)
 
 
+@pytest.mark.slow
 async def test_keys_that_mean_nothing_now_are_not_offered() -> None:
     async with console(WIDE) as (app, pilot):
         assert "0 live" not in lines_of(app)[-1]

@@ -129,6 +129,7 @@ async def test_a_table_tells_what_came_after_the_window_opened(folder: Path) -> 
     assert 5.0 < max(starts) <= 16.0
 
 
+@pytest.mark.slow
 async def test_the_other_formats_are_written_too() -> None:
     async with console() as (app, pilot):
         report = await exported(app, pilot, "r")
@@ -288,6 +289,7 @@ async def test_one_that_is_not_is_given_up_and_leaves_no_file(
     assert sentence.startswith("The export was given up before shared-group-")
 
 
+@pytest.mark.slow
 async def test_a_recording_is_exported_whole(folder: Path) -> None:
     source = folder / "run.mcap"
     write(source, EVENTS, RecordingMetadata(title="shared-group", clock="virtual"))

@@ -101,6 +101,7 @@ class SlowDisk:
         monkeypatch.setattr(BackgroundRecorder, "close", held_back)
 
 
+@pytest.mark.slow
 async def test_the_console_goes_on_while_the_end_of_a_recording_is_written(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -216,6 +217,7 @@ async def test_what_cannot_be_recorded_is_said_in_a_sentence(
         assert app.engines.latest.commands == []
 
 
+@pytest.mark.slow
 async def test_a_disk_that_fills_up_ends_the_recording_and_not_the_run(
     folder: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

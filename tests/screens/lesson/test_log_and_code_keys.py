@@ -96,6 +96,7 @@ async def test_the_keys_of_the_log_are_offered_on_the_log_and_when_they_mean_som
         assert "f stay  ↑ ↓ line  y copy" in lines_of(app)[-1]
 
 
+@pytest.mark.slow
 async def test_enter_goes_from_the_code_to_the_lane_and_back() -> None:
     async with console(WIDE) as (app, pilot):
         code, lanes = app.screen.query_one(CodeView), app.screen.query_one(Lanes)
@@ -126,6 +127,7 @@ async def test_a_click_on_a_callback_selects_its_lane_and_stays_at_the_code() ->
         assert code.has_focus
 
 
+@pytest.mark.slow
 async def test_what_is_copied_goes_to_the_terminals_clipboard() -> None:
     async with console() as (app, pilot):
         await press(pilot, "slash", *"SLEEPING==3", "enter", "y")

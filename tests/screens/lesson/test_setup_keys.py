@@ -17,6 +17,7 @@ from cbtui.screens.setup import SetupScreen
 from sim.engine.setup import GroupChange, PeriodChange
 from sim.trace.events import AnyEvent
 from tests.support.console import NARROW, WIDE, RecordedConsole, predict, settle
+from tests.support.daily import first_row_daily
 from tests.support.fake_session import FakeEngines, FakeSession
 from tests.support.pictures import lines_of, text_of
 from tests.support.runs import dummy_server_run, ns, shared_group_run
@@ -82,12 +83,12 @@ async def test_g_gives_the_selected_callback_another_group_and_keeps_the_run_bef
 
 @pytest.mark.parametrize(
     ("key", "code"),
-    [
+    first_row_daily(
         ("o", "self.odom_group = MutuallyExclusiveCallbackGroup()"),
         ("s", "self.shared_group = MutuallyExclusiveCallbackGroup()"),
         ("r", "self.reentrant_group = ReentrantCallbackGroup()"),
         ("d", "self.odom_callback, …)  # no group named"),
-    ],
+    ),
 )
 async def test_each_group_shows_its_code_and_has_its_key(key: str, code: str) -> None:
     wishes = {"o": "own", "s": "shared", "r": "reentrant", "d": "default"}
@@ -156,6 +157,7 @@ async def test_nothing_typed_is_the_program_s_own_number() -> None:
         assert app.lesson_screen.live_run.setup.periods == ()
 
 
+@pytest.mark.slow
 async def test_a_lesson_s_own_number_and_the_sensors_rate_can_be_changed() -> None:
     async with console(WIDE, "exclusive-2-threads", dummy_server_run().events, 5.2) as (app, pilot):
         await press(pilot, "p", "down", "enter", *"2.5", "enter")
@@ -170,6 +172,7 @@ async def test_a_lesson_s_own_number_and_the_sensors_rate_can_be_changed() -> No
 # several at once
 
 
+@pytest.mark.slow
 async def test_several_changes_make_one_run_that_is_compared_with_the_one_before_all() -> None:
     async with console() as (app, pilot):
         await press(pilot, "g", "enter", "o", "up", "enter", "4", "r")
@@ -219,7 +222,7 @@ async def test_running_again_keeps_the_changes_and_another_lesson_drops_them() -
         assert not app.lesson_screen.live_run.setup.groups
 
 
-@pytest.mark.parametrize(("size", "row"), [(NARROW, 8), (WIDE, 1)])
+@pytest.mark.parametrize(("size", "row"), first_row_daily((NARROW, 8), (WIDE, 1)))
 async def test_the_screen_says_what_is_changed(size: tuple[int, int], row: int) -> None:
     async with console(size) as (app, pilot):
         assert "changed:" not in text_of(app)

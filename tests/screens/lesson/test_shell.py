@@ -11,6 +11,7 @@ from sim.engine.commands import CompleteLine, InterruptLine, RunLine
 from sim.trace.events import AnyEvent, LineCompleted, LineEnded, LineGiven, LineSaid
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
+from tests.support.daily import first_daily
 from tests.support.pictures import lines_of, text_of
 from tests.support.runs import dummy_server_run
 
@@ -61,6 +62,7 @@ async def test_a_line_goes_to_the_engine_and_other_keys_do_not_act_while_typing(
         assert prompt(app).value == ""
 
 
+@pytest.mark.slow
 async def test_what_lines_wrote_is_shown_with_control_characters_made_visible() -> None:
     async with console() as (app, pilot):
         await press(pilot, "6")
@@ -144,7 +146,7 @@ async def test_ctrl_c_interrupts_the_last_line_and_escape_gives_the_keys_back() 
         assert not app.screen.query_one(ShellOutput).has_focus
 
 
-@pytest.mark.parametrize("size", [NARROW, WIDE], ids=["80x24", "140x40"])
+@pytest.mark.parametrize("size", first_daily(NARROW, WIDE), ids=["80x24", "140x40"])
 async def test_the_prompt_has_a_line_of_its_own(size: tuple[int, int]) -> None:
     async with console(size) as (app, pilot):
         await press(pilot, "colon")
@@ -152,6 +154,7 @@ async def test_the_prompt_has_a_line_of_its_own(size: tuple[int, int]) -> None:
         assert any(line.strip(" │").startswith("ros2") for line in lines_of(app))
 
 
+@pytest.mark.slow
 async def test_the_line_of_keys_shows_what_works_while_typing() -> None:
     async with console(WIDE) as (app, pilot):
         await press(pilot, "colon")

@@ -118,6 +118,7 @@ async def test_an_answer_that_is_only_highlighted_is_none() -> None:
         assert app.kept().answers == ()
 
 
+@pytest.mark.slow
 async def test_a_given_answer_stays_and_is_not_asked_for_again() -> None:
     async with console() as (app, pilot):
         await press(pilot, "2", "enter", "q")
@@ -140,6 +141,7 @@ async def test_who_goes_back_from_the_questions_has_started_nothing() -> None:
         assert not any(session.started for session in opened)
 
 
+@pytest.mark.slow
 async def test_a_run_without_predicting_can_be_predicted_later() -> None:
     async with console() as (app, pilot):
         await press(pilot, "escape")
@@ -171,6 +173,7 @@ async def test_the_questions_are_asked_beside_what_gives_nothing_away() -> None:
         assert "## Why" not in app.page
 
 
+@pytest.mark.slow
 async def test_a_page_that_was_not_predicted_gives_nothing_away() -> None:
     async with console() as (app, pilot):
         await press(pilot, "escape")
@@ -193,6 +196,7 @@ async def test_a_predicted_page_tells_what_to_watch_for_and_not_what_is_true() -
 # see and explain
 
 
+@pytest.mark.slow
 async def test_a_key_holds_the_prediction_against_a_run_and_explains() -> None:
     async with console(observe=the_lessons_own_run()) as (app, pilot):
         await press(pilot, "1", "enter", "1", "enter", "a")
@@ -309,6 +313,7 @@ def test_a_run_that_nobody_wants_any_more_comes_to_its_end() -> None:
     assert run.trouble == "node.py was broken off at 0.000 s"
 
 
+@pytest.mark.slow
 async def test_who_has_watched_a_lesson_gets_straight_to_its_run() -> None:
     Progress().see(LESSON.id)
     async with console() as (app, pilot):
@@ -374,6 +379,7 @@ async def test_the_solution_is_shown_when_it_is_wanted_and_asked_about_once() ->
 # the file that keeps it
 
 
+@pytest.mark.slow
 async def test_progress_that_cannot_be_read_is_told_of_and_the_lesson_goes_on(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

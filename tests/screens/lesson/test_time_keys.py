@@ -85,6 +85,7 @@ async def test_going_to_a_moment_to_come_lets_the_run_go_on_until_then() -> None
         assert "t 14.500 s" in status(app)
 
 
+@pytest.mark.slow
 async def test_what_is_no_moment_is_asked_for_again_and_escape_stays() -> None:
     async with console() as (app, pilot):
         await press(pilot, "G", *"soon", "enter")
@@ -95,6 +96,7 @@ async def test_what_is_no_moment_is_asked_for_again_and_escape_stays() -> None:
         assert app.lesson_screen.live_run.alive
 
 
+@pytest.mark.slow
 async def test_a_moment_past_the_end_of_a_run_that_is_over_is_its_end() -> None:
     async with console() as (app, pilot):
         app.engines.latest.end("gone")
@@ -112,6 +114,7 @@ def test_seconds_are_read_as_people_type_them(text: str, seconds: float | None) 
     assert seconds_in(text) == seconds
 
 
+@pytest.mark.slow
 async def test_on_the_real_clock_a_pause_says_that_computing_goes_on(tmp_path: Path) -> None:
     file = tmp_path / "my_node.py"
     file.write_text("")

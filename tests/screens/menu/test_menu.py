@@ -118,6 +118,7 @@ async def test_a_click_opens_a_lesson() -> None:
         assert opened(app) == lessons()[2].id
 
 
+@pytest.mark.slow
 async def test_a_click_on_a_key_does_what_the_key_does() -> None:
     app = menu()
     async with app.run_test(size=NARROW) as pilot:

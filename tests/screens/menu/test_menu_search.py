@@ -53,6 +53,7 @@ async def test_digits_are_words_too_and_enter_opens_what_is_highlighted() -> Non
         assert app.screen.subject.lesson.id == "reentrant-2-threads"
 
 
+@pytest.mark.slow
 async def test_a_search_stays_when_a_lesson_is_left_until_it_is_ended() -> None:
     app = menu()
     async with app.run_test(size=NARROW) as pilot:

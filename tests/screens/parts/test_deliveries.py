@@ -64,6 +64,7 @@ async def test_after_each_part_a_session_rests_for_as_long_as_the_machine_let_it
         assert len(screen.live_run.timeline.logs) == logs + len(batch)
 
 
+@pytest.mark.slow
 async def test_a_session_may_deliver_a_long_batch_to_a_screen_that_is_gone() -> None:
     app = RecordedConsole("shared-group", shared_group_run().events, 5.0)
     async with app.run_test(size=WIDE) as pilot:

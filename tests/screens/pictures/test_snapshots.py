@@ -6,7 +6,7 @@ from textual.pilot import Pilot
 from cbtui.app import CbtuiApp
 from sim.trace.events import AnyEvent
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
-from tests.support.daily import first_daily
+from tests.support.daily import first_daily, first_row_daily
 from tests.support.fake_session import FakeEngines
 from tests.support.runs import dummy_server_run, shared_group_run, split_groups_run
 
@@ -23,11 +23,11 @@ def test_the_menu_looks_as_it_did(snap_compare: Compare, size: tuple[int, int]) 
 @SIZES
 @pytest.mark.parametrize(
     ("lesson", "events", "seconds"),
-    [
+    first_row_daily(
         ("shared-group", shared_group_run().events, 14.25),
         ("split-groups", split_groups_run().events, 9.412),
         ("reentrant-2-threads", dummy_server_run().events, 5.2),
-    ],
+    ),
     ids=["shared-group", "split-groups", "reentrant-2-threads"],
 )
 def test_a_lesson_at_a_moment_looks_as_it_did(
@@ -37,7 +37,7 @@ def test_a_lesson_at_a_moment_looks_as_it_did(
     assert snap_compare(app, terminal_size=size, run_before=settle)
 
 
-@pytest.mark.parametrize("key", ["2", "3", "4", "5"], ids=["code", "factory", "robot", "log"])
+@pytest.mark.parametrize("key", first_daily("2", "3", "4", "5"), ids=["code", "factory", "robot", "log"])
 def test_a_pane_of_a_narrow_screen_looks_as_it_did(snap_compare: Compare, key: str) -> None:
     app = RecordedConsole("shared-group", shared_group_run().events, 14.25)
 
@@ -45,19 +45,23 @@ def test_a_pane_of_a_narrow_screen_looks_as_it_did(snap_compare: Compare, key: s
 
 
 @pytest.mark.parametrize(
-    "key", ["question_mark", "t", "d", "p", "G"], ids=["help", "threads", "diagnoses", "set-up", "moment"]
+    "key",
+    first_daily("question_mark", "t", "d", "p", "G"),
+    ids=["help", "threads", "diagnoses", "set-up", "moment"],
 )
 def test_a_window_over_a_lesson_looks_as_it_did(snap_compare: Compare, key: str) -> None:
     app = RecordedConsole("shared-group", shared_group_run().events, 14.25)
     assert snap_compare(app, terminal_size=NARROW, press=[key], run_before=settle)
 
 
+@pytest.mark.slow
 def test_a_theme_of_high_contrast_looks_as_it_did(snap_compare: Compare) -> None:
     app = RecordedConsole("shared-group", shared_group_run().events, 14.25)
     app.theme = "high-contrast"
     assert snap_compare(app, terminal_size=WIDE, run_before=settle)
 
 
+@pytest.mark.slow
 def test_a_console_without_colours_looks_as_it_did(
     snap_compare: Compare, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -73,15 +77,15 @@ def test_an_ascii_console_looks_as_it_did(snap_compare: Compare) -> None:
 
 @pytest.mark.parametrize(
     "keys",
-    [
+    first_daily(
+        ("enter", "down", "down"),
         ("space",),
         ("left_square_bracket",) * 4,
         ("less_than_sign",) * 4,
         ("greater_than_sign",) * 4,
-        ("enter", "down", "down"),
         ("z",),
-    ],
-    ids=["paused", "looking-back", "zoomed-out", "zoomed-in", "selected", "enlarged"],
+    ),
+    ids=["selected", "paused", "looking-back", "zoomed-out", "zoomed-in", "enlarged"],
 )
 @SIZES
 def test_what_keys_make_of_a_lesson_looks_as_it_did(
@@ -91,6 +95,7 @@ def test_what_keys_make_of_a_lesson_looks_as_it_did(
     assert snap_compare(app, terminal_size=size, press=keys, run_before=settle)
 
 
+@pytest.mark.slow
 @SIZES
 def test_a_lost_engine_looks_as_it_did(snap_compare: Compare, size: tuple[int, int]) -> None:
     app = RecordedConsole("shared-group", shared_group_run().events, 14.25)

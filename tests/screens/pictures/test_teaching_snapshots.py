@@ -46,7 +46,7 @@ def test_a_right_and_a_wrong_prediction_look_as_they_did(
 
 
 @pytest.mark.parametrize(
-    "keys", [("h",), ("H",), ("H", "enter")], ids=["hint", "solution-asked-about", "solution"]
+    "keys", first_daily(("h",), ("H",), ("H", "enter")), ids=["hint", "solution-asked-about", "solution"]
 )
 def test_help_with_an_exercise_looks_as_it_did(snap_compare: Compare, keys: tuple[str, ...]) -> None:
     Progress().see(WITH_EXERCISE.id)
@@ -54,7 +54,7 @@ def test_help_with_an_exercise_looks_as_it_did(snap_compare: Compare, keys: tupl
     assert snap_compare(app, terminal_size=NARROW, run_before=pressed(*keys))
 
 
-@pytest.mark.parametrize("file", [STARTER, SOLUTION], ids=["failing", "passing"])
+@pytest.mark.parametrize("file", first_daily(STARTER, SOLUTION), ids=["failing", "passing"])
 def test_the_checks_of_an_exercise_look_as_they_did(
     snap_compare: Compare, file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -48,6 +48,7 @@ async def test_a_lesson_and_its_windows_are_readable(theme: str) -> None:
             assert hard_to_read(app, LEAST[theme]) == {}, keys
 
 
+@pytest.mark.slow
 @THEME
 async def test_what_lies_after_the_cursor_is_readable_too(theme: str) -> None:
     app = RecordedConsole("shared-group", shared_group_run().events, 14.25, theme=theme)
@@ -58,6 +59,7 @@ async def test_what_lies_after_the_cursor_is_readable_too(theme: str) -> None:
         assert hard_to_read(app, LEAST[theme] * 2 / 3) == {}
 
 
+@pytest.mark.slow
 async def test_the_lanes_follow_the_theme() -> None:
     app = RecordedConsole("shared-group", shared_group_run().events, 14.25)
     async with app.run_test(size=WIDE) as pilot:
