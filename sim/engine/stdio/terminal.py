@@ -4,25 +4,29 @@ The kernel's line discipline does what it does for any terminal: it gathers line
 a program has asked for that. What waits for keys, waits on the run's clock.
 """
 
+import builtins
 import errno
 import fcntl
 import io
 import os
 import re
 import select
+import selectors
 import struct
 import sys
 import termios
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from sim.clock import Clock, Signal, VirtualClock
 from sim.engine.commands import END_OF_INPUT, INTERRUPT
 from sim.engine.setup import Keyboard
 from sim.engine.stdio.output import ProcessStream
+from sim.engine.stdio.polling import Polling
 from sim.engine.watchdogs.wait_descriptions import WaitProblem
 from sim.marks import waits_for_keyboard
 from sim.probes.own_code import place_of_caller
@@ -44,6 +48,9 @@ _KEY = re.compile(r"\x1b\[[0-9;]*[A-Za-z~]|\x1bO.|.", re.DOTALL)
 """What one press of a key sends: a character, or a sequence such as that of an arrow key."""
 _LONGEST = 4000
 """Characters of a line that the kernel is handed at once; it holds no more than 4,095 bytes."""
+_CONTROLLING = "/dev/tty"
+"""What a program opens to read from its terminal whatever its standard input is."""
+FoundT = TypeVar("FoundT")
 _Files: TypeAlias = Iterable[Any]
 _Ready: TypeAlias = tuple[list[Any], list[Any], list[Any]]
 
@@ -76,15 +83,21 @@ class Terminal:
         self._lock = _allocate_lock()
 
     def put_in_place(self) -> None:
-        """Have the programs of this process read from it: ``sys.stdin``, ``os.read`` and ``select.select``.
+        """Have this process's programs read from it: ``sys.stdin``, ``os.read``, ``select``, ``/dev/tty``.
 
         Call it once, when a clock has put its own functions in the place of Python's.
         """
-        stream = io.TextIOWrapper(io.BufferedReader(_Keys(self)), encoding="utf-8")
-        sys.stdin = sys.__stdin__ = stream  # type: ignore[misc]
-        modules: Any = (os, select)
-        modules[0].read = self._reading(os.read)
-        modules[1].select = self._selecting(select.select)
+        sys.stdin = sys.__stdin__ = self._stream("r")  # type: ignore[misc]
+        modules: Any = (os, select, selectors, io, builtins)
+        system, selects, kinds, files, python = modules
+        system.read = self._reading(os.read)
+        files.open = python.open = self._opening(io.open)
+        selects.select = self._selecting(select.select)
+        kinds.SelectSelector._select = staticmethod(select.select)
+        of_file = self._is_read_by, self._wait_with
+        selects.poll = kinds.PollSelector._selector_cls = partial(Polling, *of_file, select.poll, 1e3)
+        epoll = partial(Polling, *of_file, select.epoll, 1.0)
+        selects.epoll = kinds.EpollSelector._selector_cls = epoll
 
     def type(self, text: str, *, ends: bool = False, scheduled: bool = False) -> None:
         """Type text, at a moment of the run; ``ends``: it is the last."""
@@ -271,18 +284,35 @@ class Terminal:
             if not ours or (timeout is not None and timeout < 0):
                 return select(reads, writes, errors, timeout)
             others = [each for each in reads if each not in ours]
-            deadline = None if timeout is None else self._clock.now() + wait_ns(timeout)
 
-            def look() -> _Ready:
-                return select(others, writes, errors, 0) if others or writes or errors else ([], [], [])
+            def look() -> _Ready | None:
+                ready: Any = select(others, writes, errors, 0) if others or writes or errors else ()
+                return ready if any(ready) else None
 
-            ready = look()
-            typed = self.wait(self._clock.now() if any(ready) else deadline)
-            found, writable, failed = ready if any(ready) else look()
+            ready, typed = self._wait_with(look, timeout)
+            found, writable, failed = ready or ([], [], [])
             readable = [each for each in reads if each in found or (typed and each in ours)]
             return readable, writable, failed
 
         return select_here
+
+    def _wait_with(self, look: Callable[[], FoundT], timeout: float | None) -> tuple[FoundT, bool]:
+        """Wait for keys unless ``look`` finds something; returns that, and whether there are keys."""
+        deadline = None if timeout is None else self._clock.now() + wait_ns(timeout)
+        found = look()
+        typed = self.wait(self._clock.now() if found else deadline)
+        return found or look(), typed
+
+    def _opening(self, open_: Callable[..., Any]) -> Callable[..., Any]:
+        def open_here(file: Any, mode: str = "r", *rest: Any, **named: Any) -> Any:
+            is_terminal = file in (_CONTROLLING, Path(_CONTROLLING)) and "r" in mode and "+" not in mode
+            return self._stream(mode) if is_terminal else open_(file, mode, *rest, **named)
+
+        return open_here
+
+    def _stream(self, mode: str) -> Any:
+        buffered = io.BufferedReader(_Keys(self))
+        return buffered if "b" in mode else io.TextIOWrapper(buffered, encoding="utf-8")
 
     def _is_read_by(self, file: Any) -> bool:
         """Whether the calling thread, which lives on the run's clock, means this terminal by ``file``."""

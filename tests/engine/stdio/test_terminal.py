@@ -79,6 +79,63 @@ for timeout in (0.1, 0.25, 0, 3):
     ]
 
 
+WAITS = {
+    "poll": "waits = select.poll(); waits.register(sys.stdin, select.POLLIN)\nwait = lambda: waits.poll(400)",
+    "epoll": "waits = select.epoll(); waits.register(0, select.EPOLLIN)\nwait = lambda: waits.poll(0.4)",
+    "selectors": (
+        "waits = selectors.DefaultSelector(); waits.register(sys.stdin, selectors.EVENT_READ)\n"
+        "wait = lambda: waits.select(0.4)"
+    ),
+    "PollSelector": (
+        "waits = selectors.PollSelector(); waits.register(0, selectors.EVENT_READ)\n"
+        "wait = lambda: waits.select(0.4)"
+    ),
+    "SelectSelector": (
+        "waits = selectors.SelectSelector(); waits.register(0, selectors.EVENT_READ)\n"
+        "wait = lambda: waits.select(0.4)"
+    ),
+}
+
+
+@pytest.mark.parametrize("way", WAITS)
+def test_whatever_looks_for_keys_finds_them_in_the_runs_time(tmp_path: Path, way: str) -> None:
+    source = f"""
+import select, selectors, sys, time, tty
+{WAITS[way]}
+tty.setcbreak(0)
+for _ in range(4):
+    key = sys.stdin.read(1) if wait() else 'none'
+    print(f'{{time.monotonic():.2f}}', key)
+"""
+    run = typing(set_up(tmp_path, source), (0.5, "ab"))
+    assert printed(run) == ["0.40 none", "0.50 a", "0.50 b", "0.90 none"]
+    assert not [event for event in run.events if isinstance(event, Notice)]
+
+
+def test_keys_and_a_socket_are_looked_at_together(tmp_path: Path) -> None:
+    source = """
+import select, socket, sys
+near, far = socket.socketpair()
+waits = select.poll()
+for each in (near, sys.stdin):
+    waits.register(each, select.POLLIN)
+print(waits.poll(0))
+far.send(b'x')
+print(waits.poll(9000) == [(near.fileno(), select.POLLIN)])
+waits.unregister(near)
+print(waits.poll(9000) == [(0, select.POLLIN)])
+waits.unregister(0)
+print(waits.poll(0))
+"""
+    assert printed(typing(set_up(tmp_path, source), (1, "x\n"))) == ["[]", "True", "True", "[]"]
+
+
+@pytest.mark.parametrize("opened", ["open('/dev/tty')", "open('/dev/tty', 'rb', 0)"])
+def test_a_program_may_open_the_terminal_by_its_name(tmp_path: Path, opened: str) -> None:
+    source = f"import termios\nwith {opened} as tty:\n    termios.tcgetattr(tty)\n    print(tty.readline())"
+    assert "two" in printed(typing(set_up(tmp_path, source), (1, "two\n")))[0]
+
+
 @pytest.mark.parametrize("clock", ["virtual", "real"])
 def test_input_holds_its_own_thread_only_and_its_prompt_is_seen_at_once(tmp_path: Path, clock: str) -> None:
     run = typing(set_up(tmp_path, ASKING, clock=clock), (1.2, "1\n"), (2.2, "2\nq\n"))
