@@ -143,7 +143,8 @@ def diagnosis_at(
 
 
 def _of_keyboard(asked: KeyboardAsked, keymap: Keymap) -> str:
-    return f"{asked.program} waits for input from the keyboard; press {_key('type', keymap)} and type"
+    way = _key("type", keymap)
+    return f"{asked.program} waits for input from the keyboard; type it in the shell pane ({way})"
 
 
 def call_note(timeline: Timeline, at: Nanoseconds) -> str:

@@ -50,7 +50,7 @@ class Descriptors:
     def _read(self, pipe: int, error: bool) -> None:
         with os.fdopen(pipe, "rb") as stream:
             while line := stream.readline(_LONGEST):
-                self._take(line.decode(errors="replace").removesuffix("\n"), error)
+                self._take(line.decode(errors="replace").removesuffix("\n").removesuffix("\r"), error)
 
 
 def leave_terminal() -> None:

@@ -53,7 +53,7 @@ class _ByteStream(io.RawIOBase):
 
 
 class LineSink(_TextStream):
-    """A text stream that hands on whole lines."""
+    """A text stream that hands on whole lines; these may end as in a terminal in raw mode, by CR and LF."""
 
     def __init__(self, take: Callable[[str], None]) -> None:
         self._take = take
@@ -63,7 +63,7 @@ class LineSink(_TextStream):
         """Take text; complete lines are handed on."""
         *lines, last = (self._rest + text).split("\n")
         for line in lines:
-            for piece in _pieces(line) or [""]:
+            for piece in _pieces(line.removesuffix("\r")) or [""]:
                 self._take(piece)
         *whole, self._rest = _pieces(last) or [""]
         for piece in whole:

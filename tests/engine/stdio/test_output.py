@@ -14,6 +14,10 @@ def test_a_line_is_handed_on_when_it_is_complete_and_the_last_one_at_the_end() -
     assert lines_of("a", "b\nc\n", "\n", "d") == ["ab", "c", "", "d"]
 
 
+def test_lines_may_end_as_in_a_terminal_in_raw_mode() -> None:
+    assert lines_of("one\r\ntwo\r", "\n", "50 %\r100 %\n") == ["one", "two", "50 %\r100 %"]
+
+
 def test_bytes_are_text_too_and_those_that_are_none_are_spelt_out() -> None:
     lines: list[str] = []
     sink = LineSink(lines.append)

@@ -48,7 +48,7 @@ def typed(app: RecordedConsole) -> list[str]:
 @pytest.mark.parametrize("size", first_daily(WIDE, NARROW))
 async def test_it_is_said_who_reads_and_where_to_type(size: tuple[int, int]) -> None:
     async with console(Reading.LINES, size) as (app, pilot):
-        assert "teleop.py waits for input from the keyboard; press i and type" in text_of(app)
+        assert "teleop.py waits for input from the keyboard; type it in the shell pane (i)" in text_of(app)
         await press(pilot, "i")
         assert "teleop.py reads a line: type here; ^] goes back" in text_of(app)
 
