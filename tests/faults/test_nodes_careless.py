@@ -60,7 +60,7 @@ FAULTS = {
         "keys: b''",
     ),
     "the terminal is opened": GoesOn(
-        "try: open('/dev/tty')\nexcept OSError as error: print('no', error.filename)", line="no /dev/tty"
+        "try: open('/dev/tty', 'w')\nexcept OSError as error: print('no', error.filename)", line="no /dev/tty"
     ),
     "the folder is changed": GoesOn("os.chdir('/')\nprint('in', os.getcwd())", line="in /"),
     "signals are ignored": GoesOn(

@@ -54,7 +54,7 @@ class Descriptors:
 
 
 def leave_terminal() -> None:
-    """Have a session of one's own: there is no ``/dev/tty`` to be opened, and Ctrl-C in it is the console's.
+    """Have a session of one's own: it has no ``/dev/tty`` to be written to, and Ctrl-C is the console's.
 
     The console starts engines with SIGINT blocked; what came of it until now was not meant for them.
     """
