@@ -63,7 +63,7 @@ def _tell(error: BaseException, function: Callable[..., object]) -> None:
         exc_type=type(error),
         exc_value=error,
         exc_traceback=error.__traceback__,
-        err_msg="Exception ignored in atexit callback",
+        err_msg="Exception ignored in an exit function",
         object=function,
     )
     sys.unraisablehook(unraisable)
