@@ -61,4 +61,4 @@ def _start_when_used(
 
         start_robot(host, record, build, setup.sensor_rate)
 
-    host.network.when_wanted(NAMES, start)
+    host.network.on_first_use(NAMES, start)

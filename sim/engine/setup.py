@@ -76,7 +76,7 @@ class GroupChange(msgspec.Struct, frozen=True):
     """Another callback group for one callback of a node ("": of any), by their names on the trace.
 
     ``wish`` is ``own``, ``shared``, ``reentrant`` or ``default``, see
-    ``sim.ros.middleware.tuning.GroupWish``. For what has no callback, ``callback`` is its topic or service.
+    ``sim.ros.middleware.tuning.GroupChoice``. For what has no callback, ``callback`` is its topic or service.
     """
 
     node: str

@@ -68,7 +68,7 @@ class Session:
     def want(self, name: str) -> None:
         """Tell the network that the line is about to use a topic or service."""
         with self.host.lock:
-            self._context.network.want(name)
+            self._context.network.announce_use(name)
 
     @property
     def node(self) -> Node:

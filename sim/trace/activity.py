@@ -7,20 +7,20 @@ from sim.trace.model import Nanoseconds
 from sim.units import SECOND
 
 _LATE: Nanoseconds = SECOND
-"""How much later than others an event may be told of."""
+"""How late an event may arrive, in nanoseconds."""
 
 
 class Activity:
-    """When each entity was last active, in that order.
+    """The time at which each entity was last active, in that order.
 
-    A run may have thousands of entities, few of them active: this finds those without looking at the others.
+    A run may have thousands of entities, few of them active: those are found without a scan of all.
     """
 
     def __init__(self) -> None:
         self._latest: dict[EntityId, Nanoseconds] = {}
 
     def note(self, entity: EntityId, at: Nanoseconds) -> None:
-        """An entity was active."""
+        """Note that an entity was active."""
         self._latest[entity] = max(at, self._latest.pop(entity, at))
 
     def since(self, at: Nanoseconds) -> Iterator[EntityId]:

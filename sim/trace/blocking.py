@@ -1,11 +1,12 @@
-"""The times in which threads were blocked in a service call."""
+"""The intervals in which threads were blocked in a service call."""
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
 from sim.trace.events import CallBlocked, CallUnblocked, EntityId, ThreadId
+from sim.trace.lazy import LazySequence
 from sim.trace.model import Blocked, Nanoseconds, Window
-from sim.trace.storage.intervals import Intervals, Lane, LazySequence, RowId, end_or_none
+from sim.trace.storage.intervals import Intervals, Lane, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
 
 
@@ -22,7 +23,7 @@ class Blocking(Intervals):
         self._standing: dict[ThreadId, RowId] = {}
 
     def start(self, event: CallBlocked) -> None:
-        """A thread blocks."""
+        """Start an interval."""
         self.go_on(event.thread, event.t)
         service = self._services.setdefault(event.service, len(self._services))
         row = self.open(event.t, event.thread, event.entity, event.call, service)
@@ -31,13 +32,13 @@ class Blocking(Intervals):
         self._standing[event.thread] = row
 
     def finish(self, event: CallUnblocked) -> None:
-        """A call returned; ignored if its thread is not blocked in it."""
+        """End the interval of a call; ignored if its thread is not blocked in it."""
         row = self._standing.get(event.thread)
         if row is not None and self.table.cell(row, self.CALL) == event.call:
             self.go_on(event.thread, event.t)
 
     def go_on(self, thread: ThreadId, at: Nanoseconds) -> None:
-        """A thread runs again, so it is no longer blocked even if the event of its return was lost."""
+        """End a thread's interval, since it runs again; the event of its return may be lost."""
         row = self._standing.pop(thread, None)
         if row is not None:
             self.close(row, at)

@@ -7,7 +7,7 @@ from sim.trace.timeline import Timeline
 
 
 def why_waiting(wait: Wait, timeline: Timeline | Participants) -> str:
-    """The reason of a wait in words: ``group A held by timer_callback``."""
+    """The reason of a wait as text: ``group A held by timer_callback``."""
     if wait.reason is not Reason.GROUP_HELD:
         return wait.reason.value
     waiting = timeline.entities.get(wait.entity)

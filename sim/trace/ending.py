@@ -1,4 +1,4 @@
-"""Leaves out what a program does after it was told to end, which no check or figure should count."""
+"""Drops what a program does after it was told to end, so that checks and figures do not count it."""
 
 from collections.abc import Iterable, Iterator
 
@@ -11,20 +11,20 @@ _KEPT = (Logged, Notice, Printed, RunEnded)
 
 
 class UntilEnding:
-    """Ends a run's events at the time at which its program was told to end.
+    """Cuts a run's events at the time at which its program was told to end.
 
-    What it logs and prints from there on, notices and the end of the run are kept, as of that moment.
+    Later log lines, printed lines, notices and the end of the run are kept, with that time.
     """
 
     def __init__(self) -> None:
-        self._told_at: Nanoseconds | None = None
+        self._ending_at: Nanoseconds | None = None
 
     def cut(self, events: Iterable[AnyEvent]) -> Iterator[AnyEvent]:
-        """Return those of the next events that count."""
+        """Yield the next events without those that are cut."""
         for event in events:
-            if self._told_at is None:
+            if self._ending_at is None:
                 yield event
                 if isinstance(event, RunEnding):
-                    self._told_at = event.t
+                    self._ending_at = event.t
             elif isinstance(event, _KEPT):
-                yield msgspec.structs.replace(event, t=min(event.t, self._told_at))
+                yield msgspec.structs.replace(event, t=min(event.t, self._ending_at))

@@ -14,15 +14,16 @@ from sim.trace.events import (
     MessageId,
     ThreadId,
 )
+from sim.trace.lazy import LazySequence
 from sim.trace.model import Nanoseconds, Span, Window
-from sim.trace.storage.intervals import OPEN, Intervals, Lane, Layer, LazySequence, RowId, end_or_none
+from sim.trace.storage.intervals import OPEN, Intervals, Lane, Layer, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import Table
 
 ALWAYS = Window(-OPEN, OPEN)
 
-LATELY = 64
-"""Among so many last calls the one is looked for that took a message which is told of late."""
+LATEST_SEARCHED = 64
+"""The latest calls that are searched for the one that took a message whose event comes late."""
 
 
 class Spans(Intervals):
@@ -48,19 +49,19 @@ class Spans(Intervals):
         return self.table.append([at, OPEN, entity, thread, message, age, 0, resumed])
 
     def entity(self, row: RowId) -> EntityId:
-        """Whose call it is."""
+        """The entity of a span."""
         return self.table.cell(row, self.ENTITY)
 
     def taken(self, row: RowId) -> tuple[MessageId, Nanoseconds]:
-        """The message that was taken, and its age then."""
+        """The message that a span's call took, and its age then."""
         return self.table.cell(row, self.MESSAGE), self.table.cell(row, self.AGE)
 
     def was_resumed(self, row: RowId) -> bool:
-        """Whether the span is that of a call that went on, and not of one that began."""
+        """Whether the span begins with a resumption."""
         return bool(self.table.cell(row, self.RESUMED))
 
     def fail(self, row: RowId, error: str) -> None:
-        """The call of a span raised."""
+        """Set the error of a span."""
         if error not in self._error_of:
             self._error_of[error] = len(self._errors)
             self._errors.append(error)
@@ -73,7 +74,7 @@ class Spans(Intervals):
 
 
 class ThreadSpans(Lane):
-    """The spans of a thread. As they only overlap by nesting, the first layer is all the time it ran any."""
+    """The spans of a thread. They overlap only by nesting, so the first layer covers all its busy time."""
 
     __slots__ = ("_busy", "_busy_before", "_latest", "stack")
 
@@ -111,9 +112,9 @@ class ThreadSpans(Lane):
 class Execution:
     """Every call of a callback: on its thread, of its entity, in its group.
 
-    A coroutine callback that is suspended leaves its thread and keeps its group: its call is several spans
-    with gaps between them. Events do not tell apart simultaneous suspended calls of one entity; the one
-    suspended first is taken to be the one that goes on.
+    A suspended coroutine callback leaves its thread and keeps its group: its call is several spans with gaps
+    between them. Events do not distinguish suspended calls of one entity: the one suspended first is taken to
+    resume first.
     """
 
     def __init__(self, spill: SpillFile) -> None:
@@ -126,23 +127,23 @@ class Execution:
         self._suspended: defaultdict[EntityId, Lane] = defaultdict(lambda: Lane(self._gaps))
         self._awaiting: defaultdict[EntityId, deque[tuple[RowId, RowId]]] = defaultdict(deque)
         self._resumed_at: defaultdict[EntityId, Table] = defaultdict(lambda: Table(spill, 1))
-        self._doubtful = 0
+        self._uncertain_below = 0
         self._newest_taken: MessageId = -1
 
-    # folding
+    # events
 
     def join(self, entity: EntityId, group: GroupId) -> None:
-        """From now on the entity's calls count as its group's, and those it has had already."""
+        """Count the entity's calls, past and future, as its group's."""
         self._group_of[entity] = self._groups[group]
         for row in sorted(self._entities[entity].overlapping(ALWAYS)):
             self._groups[group].add(row)
 
     def start(self, event: CallbackStarted) -> None:
-        """A callback begins."""
+        """Start a call."""
         self._begin(event.t, event.entity, event.thread, event.message, event.age)
 
     def finish(self, event: CallbackEnded) -> None:
-        """A callback ends; one that is suspended can end without being resumed."""
+        """End a call; a suspended one can end without being resumed."""
         row = self._leave(event.entity, event.thread)
         if row is not None:
             self._spans.close(row, event.t)
@@ -151,7 +152,7 @@ class Execution:
             self._gaps.close(gap, event.t)
 
     def suspend(self, event: CallbackSuspended) -> None:
-        """A coroutine callback leaves its thread."""
+        """Suspend a coroutine's call."""
         row = self._leave(event.entity, event.thread)
         if row is None:
             return
@@ -161,7 +162,7 @@ class Execution:
         self._awaiting[event.entity].append((gap, row))
 
     def resume(self, event: CallbackResumed) -> None:
-        """A coroutine callback goes on; its message and age stay what they were."""
+        """Resume a coroutine's call, with its message and age."""
         message = age = 0
         if self._awaiting[event.entity]:
             gap, row = self._awaiting[event.entity].popleft()
@@ -171,17 +172,17 @@ class Execution:
         self._begin(event.t, event.entity, event.thread, message, age, resumed=1)
 
     def fail(self, event: CallbackFailed) -> None:
-        """A callback that runs has raised."""
+        """Set the error of the running call."""
         for row in reversed(self._threads[event.thread].stack):
             if self._spans.entity(row) == event.entity:
                 self._spans.fail(row, event.error)
                 return
 
-    def doubt(self) -> None:
-        """Events were lost: what runs now may have ended, and has when its thread begins another call."""
-        self._doubtful = len(self._spans)
+    def mark_uncertain(self) -> None:
+        """Note that events were lost: a running call is over when its thread starts another."""
+        self._uncertain_below = len(self._spans)
 
-    # answers
+    # queries
 
     def on(self, thread: ThreadId, window: Window) -> Sequence[Span]:
         """Spans of a thread."""
@@ -203,12 +204,12 @@ class Execution:
         return self._made(self._groups[group], window)
 
     def innermost(self, thread: ThreadId, at: Nanoseconds) -> Span | None:
-        """What a thread runs at ``at``: of nested calls the innermost."""
+        """The innermost call that a thread runs at ``at``."""
         rows = self._threads[thread].covering(at)
         return self._spans.span(rows[-1]) if rows else None
 
     def holders(self, at: Nanoseconds) -> set[EntityId]:
-        """The entities of which a callback runs or is suspended at ``at``."""
+        """The entities with a running or suspended call at ``at``."""
         rows = [row for lane in self._threads.values() for row in lane.covering(at)]
         suspended = {entity for entity, lane in self._suspended.items() if lane.covering(at)}
         return suspended.union(map(self._spans.entity, rows))
@@ -229,14 +230,14 @@ class Execution:
         yield from self._entities[entity].starts_beside(at, step)
         yield from self._entities[entity].ends_beside(at, step)
 
-    def taken_lately(self, message: MessageId) -> Span | None:
-        """That of the last calls which took a message."""
+    def latest_taker(self, message: MessageId) -> Span | None:
+        """The one of the latest calls that took a message."""
         if message > self._newest_taken:
             return None
-        lately = self._spans.table.newest(Spans.MESSAGE, LATELY)
-        if message not in lately:
+        latest = self._spans.table.newest(Spans.MESSAGE, LATEST_SEARCHED)
+        if message not in latest:
             return None
-        return self._spans.span(len(self._spans) - len(lately) + lately.index(message))
+        return self._spans.span(len(self._spans) - len(latest) + latest.index(message))
 
     def _begin(
         self,
@@ -249,7 +250,7 @@ class Execution:
     ) -> None:
         self._newest_taken = max(self._newest_taken, message)
         lane = self._threads[thread]
-        while lane.stack and lane.stack[-1] < self._doubtful:
+        while lane.stack and lane.stack[-1] < self._uncertain_below:
             self._spans.close(lane.stack.pop(), at)
         row = self._spans.begin(at, entity, thread, message, age, resumed)
         lane.add(row)
@@ -258,7 +259,7 @@ class Execution:
             self._group_of[entity].add(row)
 
     def _leave(self, entity: EntityId, thread: ThreadId) -> RowId | None:
-        """Take the innermost call of the entity off the thread."""
+        """Remove the innermost call of the entity from the thread."""
         stack = self._threads[thread].stack
         for place in range(len(stack) - 1, -1, -1):
             if self._spans.entity(stack[place]) == entity:

@@ -1,4 +1,4 @@
-"""Long computations in small steps, so that a screen can answer keys in between."""
+"""Long computations in small steps, so that a screen can handle keys in between."""
 
 from collections.abc import Generator, Iterable, Iterator
 from typing import TypeAlias, TypeVar
@@ -35,7 +35,7 @@ def collect(things: Iterable[T]) -> Incremental[list[T]]:
 
 
 def split(window: Window, things: int) -> Iterator[Window]:
-    """Split a window that has so many things into windows with about one step's worth of them each."""
+    """Split a window with ``things`` items into windows of about one step's worth of items each."""
     step = window.length // (things // STEP_SIZE + 1) + 1
     yield Window(window.start, min(window.start + step, window.end))
     for start in range(window.start + step, window.end, step):

@@ -1,4 +1,4 @@
-"""What a timeline knows about a run: participants, what ran, what waited, and one moment of it all."""
+"""The values that a timeline returns: participants, calls, waits, queues and moments."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -23,7 +23,7 @@ Nanoseconds: TypeAlias = int
 
 @dataclass(frozen=True, slots=True)
 class Window:
-    """A stretch of time, ``start`` inclusive to ``end`` exclusive, in nanoseconds."""
+    """An interval of time, ``start`` inclusive to ``end`` exclusive, in nanoseconds."""
 
     start: Nanoseconds
     end: Nanoseconds
@@ -36,9 +36,9 @@ class Window:
 
 @dataclass(frozen=True, slots=True)
 class Thread:
-    """A thread, named as rclpy names it; ``process`` is its program's, of several.
+    """A thread, named as in rclpy; ``process`` is its program's, if there are several.
 
-    ``executor`` is the one whose worker it is, 0 for one that the program itself started.
+    ``executor`` is the one whose worker it is, 0 for a thread that the program started.
     """
 
     id: ThreadId
@@ -59,7 +59,7 @@ class Executor:
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """A callback group; ``letter`` (A, B, …, Z, A2, …) is given in order of appearance."""
+    """A callback group; letters (A, B, …, Z, A2, …) are assigned in order of appearance."""
 
     id: GroupId
     node: NodeId
@@ -86,14 +86,14 @@ class Entity:
 
     @property
     def label(self) -> str:
-        """The shortest name a person would call it by: its topic or service, else its callback."""
+        """A short name: the last part of its topic or service, else its callback."""
         return self.name.rsplit("/", 1)[-1] or self.callback
 
     @property
     def spoken_name(self) -> str:
-        """The function a person wrote, else the topic, service or action, else what kind of thing it is.
+        """The callback's function, else the topic, service or action, else the kind.
 
-        What a client waits to take is a reply: by its service's name alone it would be taken for the service.
+        A client is named after the reply that it takes, so that it is not mistaken for the service.
         """
         if self.kind is EntityKind.CLIENT and self.name and not self.callback:
             return f"reply of {self.name}"
@@ -113,15 +113,15 @@ class Span:
     error: str = ""
 
     def end_at(self, now: Nanoseconds) -> Nanoseconds:
-        """The end, or ``now`` for a call that still runs."""
+        """The end; ``now`` for a running call."""
         return now if self.end is None else self.end
 
 
 @dataclass(slots=True)
 class Wait:
-    """A stretch in which a ready callback did not run, for one reason; ``end`` is None while it lasts.
+    """An interval in which a ready callback did not run, for one reason; ``end`` is None while it lasts.
 
-    ``since`` is when the callback became ready: waits that follow each other for changing reasons share it.
+    ``since`` is when the callback became ready: a series of waits with changing reasons has one ``since``.
     """
 
     start: Nanoseconds
@@ -135,9 +135,9 @@ class Wait:
 
 @dataclass(slots=True)
 class Blocked:
-    """A stretch in which a thread stood still in ``Client.call``; ``end`` is None while it does.
+    """An interval in which ``Client.call`` blocked a thread; ``end`` is None while it lasts.
 
-    ``entity`` is the callback that called (0: none), ``service`` the one that is to answer ``call``.
+    ``entity`` is the calling callback (0: none), ``service`` the one that was called.
     """
 
     start: Nanoseconds
@@ -150,7 +150,7 @@ class Blocked:
 
 @dataclass(frozen=True, slots=True)
 class Publication:
-    """How a message was published: by which node (0: the robot) and in which callback (0: none)."""
+    """The publication of a message: its node (0: the robot) and callback (0: none)."""
 
     at: Nanoseconds
     node: NodeId
@@ -159,22 +159,22 @@ class Publication:
 
 @dataclass(frozen=True, slots=True)
 class QueuedMessage:
-    """What waits in a queue: a message of a topic, or the request or reply of a call."""
+    """An item of a queue: a message of a topic, or the request or reply of a call."""
 
     id: MessageId | CallId
     since: Nanoseconds
-    """When it was published or sent, or when it arrived if that is not known."""
+    """When it was published or sent; if that is unknown, when it arrived."""
 
     def age(self, at: Nanoseconds) -> Nanoseconds:
-        """How old it was at ``at``."""
+        """Its age at ``at``."""
         return at - self.since
 
 
 @dataclass(frozen=True, slots=True)
 class Queue:
-    """A queue at one moment: how many messages wait and how many the run has lost there so far.
+    """A queue at one moment: the number of queued messages and of those lost so far.
 
-    ``messages`` are those that wait, the next one first; fewer than ``depth`` where the trace lost some.
+    ``messages`` are the queued ones, the next one first; fewer than ``depth`` if the trace lost events.
     """
 
     depth: int
@@ -183,7 +183,7 @@ class Queue:
 
     @property
     def oldest(self) -> Nanoseconds | None:
-        """Since when the message that is next is under way; None for an empty queue."""
+        """The origin time of the next message; None for an empty queue."""
         return self.messages[0].since if self.messages else None
 
 
@@ -203,7 +203,7 @@ class Call:
 
 @dataclass(frozen=True, slots=True)
 class AxisMark:
-    """A point in time worth a sign on the axis: a command given, a call, a reply, a notice."""
+    """A point on the time axis: a command, a call, a reply, a notice or an error."""
 
     at: Nanoseconds
     kind: str
@@ -212,9 +212,9 @@ class AxisMark:
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """All that a screen shows of one instant ``at``: who runs, who waits and why, what is queued.
+    """The state of a run at ``at``: running and waiting callbacks, queues, pending calls.
 
-    ``log_position`` is how many log lines had been written.
+    ``log_position`` is the number of log lines written by then.
     """
 
     at: Nanoseconds

@@ -30,7 +30,7 @@ class Participants:
     def __init__(self) -> None:
         self.processes: dict[ProcessId, str] = {}
         self.ended: dict[ProcessId, Nanoseconds] = {}
-        """When programs ended, in a run of several."""
+        """The end times of programs, in a run of several."""
         self.threads: dict[ThreadId, Thread] = {}
         self.executors: dict[ExecutorId, Executor] = {}
         self.nodes: dict[NodeId, str] = {}

@@ -1,4 +1,4 @@
-"""When each message of a run was published, and by which callback of which node."""
+"""The publications of a run: time, node and callback of each message."""
 
 from sim.trace.events import MessageId, Published
 from sim.trace.model import Nanoseconds, Publication
@@ -18,7 +18,7 @@ class Publications:
         self._latest: MessageId | None = None
 
     def add(self, event: Published) -> None:
-        """Add a publication; of a message that is published twice the first one counts."""
+        """Add a publication; the first of a message counts."""
         row = [event.message, event.t, event.node, event.entity]
         if self._latest is None or event.message > self._latest:
             self._latest = event.message
@@ -27,12 +27,12 @@ class Publications:
             self._table.add(row)
 
     def time_of(self, message: MessageId) -> Nanoseconds | None:
-        """When a message was published; None for an unknown message."""
+        """When a message was published; None if it is unknown."""
         place = self._place_of(message)
         return None if place is None else self._table.cell(place, _TIME)
 
     def of(self, message: MessageId) -> Publication | None:
-        """How a message was published; None for an unknown message."""
+        """The publication of a message; None if it is unknown."""
         place = self._place_of(message)
         if place is None:
             return None

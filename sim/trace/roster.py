@@ -1,4 +1,4 @@
-"""The callbacks of a run by their groups, as far as anybody could look at them; the rest is counted."""
+"""The callbacks of a run by group, up to a number that can be shown; the others are counted."""
 
 from collections.abc import Iterator
 from itertools import islice
@@ -20,23 +20,23 @@ HOUSEKEEPING = frozenset(
         "set_parameters_atomically",
     )
 )
-"""Last names of the topics and services that every node brings along; they have no lanes."""
+"""Last names of the topics and services that every node has; they get no lanes."""
 
-MOST = 100
-"""Lanes of groups and callbacks that are looked at, more than a terminal has rows: a node that makes timers
-without end must not make a picture dear."""
+MOST_LANES = 100
+"""The number of lanes that can be shown, more than a terminal has rows: a node that creates timers endlessly
+must not slow the display down."""
 
 
 class Roster:
-    """Groups with their members, the first ``MOST`` lanes of them, and places; grows with its timeline."""
+    """Groups with their members, up to ``MOST_LANES``, and source places; grows with its timeline."""
 
     def __init__(self) -> None:
         self.lanes = 0
-        """How many lanes all of them would have: one a callback, and one more for a group of several."""
+        """The number of lanes of all callbacks: one each, and one more for a group of several."""
         self.services: set[str] = set()
         """The names of the services that the run itself offers."""
         self.places: dict[tuple[str, int], EntityId] = {}
-        """The first entity for each place in the source: many may share a callback."""
+        """The first entity of each place in the source: several may share a callback."""
         self._sizes: dict[GroupId, int] = {}
         self._members: dict[GroupId, list[Entity]] = {}
         self._seen = 0
@@ -51,8 +51,8 @@ class Roster:
         return self._sizes.get(group, 0)
 
     def staged(self, timeline: Timeline) -> Iterator[tuple[Group, list[Entity]]]:
-        """The groups that have members, with these, in order, until they would have ``MOST`` lanes."""
-        left = MOST
+        """The groups with their members, in order, up to ``MOST_LANES`` lanes."""
+        left = MOST_LANES
         for group in timeline.groups.values():
             members = self._members.get(group.id)
             if members:
@@ -62,7 +62,7 @@ class Roster:
                     return
 
     def renewed(self, timeline: Timeline) -> "Roster":
-        """Take in the entities that have come."""
+        """Add the entities that have appeared since, and return itself."""
         if len(timeline.entities) != self._seen:
             for entity in islice(timeline.entities.values(), self._seen, None):
                 self.places.setdefault((entity.file, entity.first_line), entity.id)
@@ -77,7 +77,7 @@ class Roster:
         self.lanes += 2 if size == 1 else 1
         if entity.kind is EntityKind.SERVICE:
             self.services.add(entity.name)
-        if size < MOST:
+        if size < MOST_LANES:
             self._members.setdefault(entity.group, []).append(entity)
 
 
@@ -85,5 +85,5 @@ _rosters: WeakKeyDictionary[Timeline, Roster] = WeakKeyDictionary()
 
 
 def roster_of(timeline: Timeline) -> Roster:
-    """The roster of a timeline as it is known now. Of the thread that owns the timeline."""
+    """The up-to-date roster of a timeline; call it on the timeline's thread."""
     return _rosters.setdefault(timeline, Roster()).renewed(timeline)

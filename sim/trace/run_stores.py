@@ -1,4 +1,4 @@
-"""Folds the events of a run into the stores that a timeline queries."""
+"""The stores of a run: what its events add up to, and what a timeline queries."""
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable
@@ -21,8 +21,8 @@ from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import Table
 from sim.trace.waiting import Waiting
 
-_BEFORE_ASKED = 60
-"""Lines of the log among which the first question to the keyboard is looked for."""
+_LINES_BEFORE_PROMPT = 60
+"""The latest log lines that may belong to the first prompt for the keyboard."""
 
 ShellEvent: TypeAlias = ev.LineGiven | ev.LineSaid | ev.LineEnded | ev.KeyboardAsked | ev.Typed | ev.Printed
 
@@ -30,7 +30,7 @@ ShellEvent: TypeAlias = ev.LineGiven | ev.LineSaid | ev.LineEnded | ev.KeyboardA
 class RunStores:
     """The stores of a run, one for each kind of data; ``end`` is the time of the latest event.
 
-    Events may come a little late: the stores stay in order of time. They keep older data in one temporary
+    Events may arrive slightly late: the stores stay in order of time. Older data is kept in one temporary
     file, so that memory does not grow with the run.
     """
 
@@ -62,25 +62,25 @@ class RunStores:
         self.robot: History[ev.RobotMoved] = History(attrgetter("t"), ev.RobotMoved, spill)
         self.velocities: History[ev.VelocityCommanded] = History(attrgetter("t"), ev.VelocityCommanded, spill)
         self.scans = Scans(spill)
-        self._fold: dict[type, Callable[[Any], object]] = self._folding()
+        self._handlers: dict[type, Callable[[Any], object]] = self._make_handlers()
 
     def extend(self, events: Iterable[AnyEvent]) -> None:
-        """Take in a batch; state after batches is the state after one batch of them all."""
-        fold = self._fold
+        """Add a batch of events; the size of batches makes no difference."""
+        handlers = self._handlers
         end = self.end
         for event in events:
-            known = fold.get(event.__class__)
-            if known is not None:
-                known(event)
+            handle = handlers.get(event.__class__)
+            if handle is not None:
+                handle(event)
             end = max(end, event.t)
         self.end = end
 
     def queue(self, entity: EntityId, at: Nanoseconds) -> Queue:
         """The queue of an entity."""
-        return self.queues[entity].queue(at, self._born(entity))
+        return self.queues[entity].queue(at, self._origin_time(entity))
 
-    def _born(self, entity: EntityId) -> OriginTime:
-        """When came to be what an entity's queue holds; messages and calls are numbered apart."""
+    def _origin_time(self, entity: EntityId) -> OriginTime:
+        """The origin times of what an entity's queue holds; messages and calls are numbered separately."""
         if self._takes_messages(entity):
             return self.publications.time_of
         if self.participants.entities[entity].kind is EntityKind.SERVICE:
@@ -91,7 +91,7 @@ class RunStores:
         known = self.participants.entities.get(entity)
         return known is None or known.kind is EntityKind.SUBSCRIPTION
 
-    def _folding(self) -> dict[type, Callable[[Any], object]]:
+    def _make_handlers(self) -> dict[type, Callable[[Any], object]]:
         return {
             ev.RunStarted: self._run_started,
             ev.RunEnded: self._run_ended,
@@ -204,7 +204,7 @@ class RunStores:
 
     def _scanned(self, event: ev.Scanned) -> None:
         self.scans.add(event)
-        taken = self.execution.taken_lately(event.message)
+        taken = self.execution.latest_taker(event.message)
         if taken is not None and self._takes_messages(taken.entity):
             self.scans.take(taken.start, event.message)
 
@@ -217,10 +217,10 @@ class RunStores:
             self.shell.add(event)
 
     def _keyboard_asked(self, event: ev.KeyboardAsked) -> None:
-        """From the first time on, the shell is the program's terminal, and shows what it prints."""
+        """Add a prompt; from the first one on, the shell shows what the program prints."""
         if not self.asked:
             since = self.shell[-1].t if self.shell else 0
-            for each in self.logs[-_BEFORE_ASKED:]:
+            for each in self.logs[-_LINES_BEFORE_PROMPT:]:
                 if isinstance(each, ev.Printed) and each.t >= since:
                     self.shell.add(each)
         self.asked.add(event)
@@ -239,11 +239,11 @@ class RunStores:
 
     def _events_lost(self, event: ev.EventsLost) -> None:
         self.lost = max(self.lost, event.count)
-        self.execution.doubt()
+        self.execution.mark_uncertain()
 
     def _contents_lost(self, event: ev.ContentsLost) -> None:
         self.contents_lost = max(self.contents_lost, event.count)
 
 
 def _unknown(_: object) -> None:
-    """A reply counts from its arrival, and so does what an action has of messages and calls together."""
+    """No origin time: replies, and an action's messages and calls, count from their arrival."""

@@ -1,4 +1,4 @@
-"""The laser scans of a run, and which of them callbacks had taken."""
+"""The laser scans of a run, and the times at which callbacks took them."""
 
 from collections import OrderedDict
 from operator import attrgetter
@@ -11,8 +11,8 @@ from sim.trace.storage.table import Table
 
 SCANS_IN_BLOCK = 32
 
-LATEST_KNOWN = 1024
-"""Of so many scans the messages are known without a search."""
+SCANS_CACHED = 1024
+"""The number of latest scans whose messages are kept in a cache."""
 
 
 class Scans:
@@ -22,36 +22,36 @@ class Scans:
         self._scans: History[Scanned] = History(attrgetter("t"), Scanned, spill, SCANS_IN_BLOCK)
         self._times = Table(spill, 2)
         self._latest: OrderedDict[MessageId, None] = OrderedDict()
-        self._oldest_known: MessageId = 0
-        self._seen = Table(spill, 2)
+        self._oldest_cached: MessageId = 0
+        self._taken = Table(spill, 2)
 
     def add(self, event: Scanned) -> None:
         """Add a scan."""
         self._scans.add(event)
         self._times.add([event.message, event.t])
         self._latest[event.message] = None
-        if len(self._latest) > LATEST_KNOWN:
+        if len(self._latest) > SCANS_CACHED:
             forgotten, _ = self._latest.popitem(last=False)
-            self._oldest_known = max(self._oldest_known, forgotten + 1)
+            self._oldest_cached = max(self._oldest_cached, forgotten + 1)
 
     def carried_by(self, message: MessageId) -> bool:
         """Whether a message carried a scan."""
         if message in self._latest:
             return True
-        return message < self._oldest_known and self._time_of(message) is not None
+        return message < self._oldest_cached and self._time_of(message) is not None
 
     def take(self, at: Nanoseconds, message: MessageId) -> None:
-        """A callback takes a message that carries a scan."""
-        self._seen.add([at, message])
+        """Note that a callback took a message with a scan."""
+        self._taken.add([at, message])
 
     def latest(self, at: Nanoseconds) -> Scanned | None:
         """The last scan at or before ``at``."""
         return self._scans.latest(at)
 
-    def seen(self, at: Nanoseconds) -> Scanned | None:
-        """The scan that a callback took last, at or before ``at``."""
-        place = self._seen.until(at)
-        return self._of(self._seen.cell(place - 1, 1)) if place else None
+    def taken(self, at: Nanoseconds) -> Scanned | None:
+        """The latest scan that a callback had taken at ``at``."""
+        place = self._taken.until(at)
+        return self._of(self._taken.cell(place - 1, 1)) if place else None
 
     def _of(self, message: MessageId) -> Scanned | None:
         time = self._time_of(message)

@@ -1,11 +1,12 @@
-"""The service calls of a run and which of them were without a reply at a moment."""
+"""The service calls of a run, and those pending at any moment."""
 
 from collections.abc import Collection, Sequence
 
 from sim.trace.events import CallId, RequestLost, ServiceCalled, ServiceReplied
+from sim.trace.lazy import LazySequence
 from sim.trace.model import Call, Nanoseconds, Window
 from sim.trace.storage.history import History
-from sim.trace.storage.intervals import Intervals, Lane, LazySequence, RowId, end_or_none
+from sim.trace.storage.intervals import Intervals, Lane, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import Table
 
@@ -13,7 +14,7 @@ NEWEST_KEPT = 1024
 
 
 class ServiceCalls(Intervals):
-    """The table of all calls; ``Call`` objects of the newest are kept, the others made for answers."""
+    """The table of all calls, with a cache of ``Call`` objects for the newest."""
 
     CALL, CALLER, SERVICE, LOST, RESPONSE = range(2, 7)
 
@@ -30,7 +31,7 @@ class ServiceCalls(Intervals):
         self._newest: dict[RowId, Call] = {}
 
     def send(self, event: ServiceCalled) -> None:
-        """A request leaves."""
+        """Add a call."""
         service = self._services.setdefault(event.service, len(self._services))
         row = self.open(event.t, event.call, event.entity, service, 0, 0)
         self._requests.add(event.request)
@@ -42,7 +43,7 @@ class ServiceCalls(Intervals):
         self._newest.pop(row - NEWEST_KEPT, None)
 
     def reply(self, event: ServiceReplied) -> None:
-        """An answer comes; one to no known call is passed over."""
+        """Add the reply of a call; ignored for an unknown call."""
         row = self._pending.pop(event.call, None)
         if row is None:
             return
@@ -54,7 +55,7 @@ class ServiceCalls(Intervals):
             self._newest[row].response = event.response
 
     def lose(self, event: RequestLost) -> None:
-        """Nobody was there to take the request."""
+        """Note that a request was lost, as nobody offered the service."""
         row = self._pending.get(event.call)
         if row is not None:
             self.table.change(row, self.LOST, 1)
@@ -71,18 +72,18 @@ class ServiceCalls(Intervals):
         return LazySequence(self._in_order.column(1, range(len(self._in_order))), self._call)
 
     def sent_at(self, call: CallId) -> Nanoseconds | None:
-        """When a request was sent; None for one that is not known to have been."""
+        """When a request was sent; None if it is unknown."""
         place = self._numbered.until(call) - 1
         if place < 0 or self._numbered.cell(place, 0) != call:
             return None
         return self.started_at(self._numbered.cell(place, 1))
 
     def within(self, window: Window) -> Sequence[Call]:
-        """The calls that were out at some time in the window, in order of sending."""
+        """The calls that were pending at some time in the window, in order of sending."""
         return LazySequence(self._lane.overlapping(window), self._call)
 
     def pending(self, at: Nanoseconds) -> tuple[Call, ...]:
-        """The calls that had been sent and not answered at ``at``."""
+        """The calls that were pending at ``at``."""
         return tuple(map(self._call, self._lane.covering(at)))
 
     def _call(self, row: RowId) -> Call:
@@ -103,9 +104,9 @@ class ServiceCalls(Intervals):
 
 
 def _texts(spill: SpillFile) -> History[str]:
-    return History(_at_once, str, spill)
+    return History(_no_time, str, spill)
 
 
-def _at_once(_: str) -> Nanoseconds:
-    """Texts have no time: they stay in order of arrival."""
+def _no_time(_: str) -> Nanoseconds:
+    """Texts have no time: they are kept in order of arrival."""
     return 0

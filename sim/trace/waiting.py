@@ -4,8 +4,9 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
 from sim.trace.events import EntityId, Reason, WaitStarted
+from sim.trace.lazy import LazySequence
 from sim.trace.model import Nanoseconds, Wait, Window
-from sim.trace.storage.intervals import OPEN, Intervals, Lane, LazySequence, RowId, end_or_none
+from sim.trace.storage.intervals import OPEN, Intervals, Lane, RowId, end_or_none
 from sim.trace.storage.spill_file import SpillFile
 
 _REASONS = tuple(Reason)
@@ -23,10 +24,10 @@ class Waiting(Intervals):
         self._none = Lane(self)
         self._open: set[EntityId] = set()
         self._changed: Nanoseconds = 0
-        """When the latest wait began or ended."""
+        """When a wait last started or ended."""
 
     def start(self, event: WaitStarted) -> None:
-        """An entity begins to wait, or goes on waiting for another reason."""
+        """Start a wait, or continue one for another reason."""
         latest = self._latest.get(event.entity)
         begun = min(event.since, event.t)
         if latest is not None and self._goes_on(latest, event.since):
@@ -40,7 +41,7 @@ class Waiting(Intervals):
         self._changed = max(self._changed, event.t)
 
     def finish(self, entity: EntityId, at: Nanoseconds) -> None:
-        """An entity waits no longer."""
+        """End the wait of an entity."""
         latest = self._latest.get(entity)
         if latest is not None and self.ended_at(latest) == OPEN:
             self.close(latest, at)
@@ -57,7 +58,7 @@ class Waiting(Intervals):
         return self._wait(rows[-1]) if rows else None
 
     def waiting(self, at: Nanoseconds) -> Sequence[EntityId]:
-        """The entities that may wait at ``at``, in order: of the latest moment those only that do."""
+        """The entities that may wait at ``at``, in order; for the latest moment exactly those that do."""
         return sorted(self._open if at >= self._changed else self._lanes)
 
     def beside(self, entity: EntityId, at: Nanoseconds, step: int) -> Iterator[Nanoseconds]:

@@ -16,7 +16,7 @@ from cbtui.runs.live.live_run import LiveRun
 from cbtui.widgets.lanes import LOOKS_PER_FRAME, LanePainter
 from sim.engine.setup import RunSetup
 from sim.trace.model import Window
-from sim.trace.roster import MOST
+from sim.trace.roster import MOST_LANES
 from tests.benchmarks import scenes
 from tests.benchmarks.crowd import Drawn, call, timers
 from tests.benchmarks.drawing import FRAME, long_run
@@ -82,7 +82,7 @@ def test_a_callback_costs_the_same_among_five_hundred_entities_as_alone() -> Non
 )
 @pytest.mark.parametrize("part", ["lanes", "factory", "sentence", "code", "rules"])
 def test_a_frame_with_two_thousand_timers_costs_what_fits_on_screen(part: str, in_groups: bool) -> None:
-    assert of_a_frame(2000, in_groups)[part] < 1.2 * of_a_frame(MOST + 20, in_groups)[part]
+    assert of_a_frame(2000, in_groups)[part] < 1.2 * of_a_frame(MOST_LANES + 20, in_groups)[part]
     assert of_a_frame(2000, in_groups)[part] < 8 * of_a_frame(20, in_groups)[part]
 
 

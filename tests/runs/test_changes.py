@@ -19,7 +19,7 @@ from cbtui.runs.setup.shown_program import of_lesson
 from cbtui.screens.setup_rows import rows_of
 from lessons.catalogue import find, lessons
 from sim.engine.setup import GroupChange, PeriodChange, RobotUse, RunSetup
-from sim.ros.middleware.tuning import GroupWish
+from sim.ros.middleware.tuning import GroupChoice
 from sim.trace.events import EntityKind
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, dummy_server_run, shared_group_run
@@ -105,7 +105,7 @@ def test_a_recording_of_before_there_were_changes_is_still_known() -> None:
 
 
 def test_the_wishes_are_those_that_the_engine_knows() -> None:
-    assert [*GROUP_CHOICES] == [wish.value for wish in GroupWish]
+    assert [*GROUP_CHOICES] == [wish.value for wish in GroupChoice]
 
 
 # one change after another

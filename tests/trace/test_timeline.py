@@ -34,7 +34,7 @@ def test_an_empty_timeline_knows_nothing_and_says_so() -> None:
     assert empty.busy(1, Window(0, 10)) == 0.0
     assert (empty.dropped(5), empty.drops_of(1, ALWAYS), empty.calls_of(1, ALWAYS)) == (0, 0, 0)
     assert (empty.robot(5), empty.command(5), empty.scan(5), empty.scan_seen(5)) == (None,) * 4
-    assert (empty.published_at(1), empty.neighbour(5, None, 1), empty.neighbour(5, 1, -1)) == (None,) * 3
+    assert (empty.publication(1), empty.neighbour(5, None, 1), empty.neighbour(5, 1, -1)) == (None,) * 3
     assert not empty.group_members(1)
     assert not any((empty.threads, empty.executors, empty.nodes, empty.groups, empty.entities))
     assert not any(
@@ -83,7 +83,9 @@ def test_every_kind_of_event_is_understood() -> None:
     assert timeline.command(ns(2.4)) == ev.VelocityCommanded(ns(2.4), 0.08, -0.2)
     assert [each.t for each in timeline.commands(Window(ns(2.4), timeline.end))][:1] == [ns(2.4)]
     assert list(timeline.commands(Window(0, ns(2.4)))) == []
-    assert timeline.published_at(7) == ns(1.5)
+    published = timeline.publication(7)
+    assert published is not None
+    assert published.at == ns(1.5)
 
 
 def test_marks_are_the_points_worth_a_sign() -> None:
@@ -291,7 +293,7 @@ def test_drops_that_are_recorded_late_count_from_their_own_time() -> None:
 def test_messages_may_be_recorded_in_another_order_than_they_were_numbered() -> None:
     timeline = Timeline()
     timeline.extend([ev.Published(t, message, "/odom", 0, 0) for t, message in ((10, 5), (9, 3), (11, 4))])
-    assert [timeline.published_at(message) for message in range(2, 7)] == [None, 9, 11, 10, None]
+    assert [each and each.at for each in map(timeline.publication, range(2, 7))] == [None, 9, 11, 10, None]
 
 
 def test_a_scan_recorded_after_a_callback_took_its_message_counts_as_seen() -> None:

@@ -5,7 +5,7 @@ from typing import TypeAlias
 
 from sim.trace.events import EntityId, GroupId, ThreadId
 from sim.trace.model import Entity, Group, Nanoseconds, Thread, Window
-from sim.trace.roster import MOST, roster_of
+from sim.trace.roster import MOST_LANES, roster_of
 from sim.trace.timeline import Timeline
 from sim.units import SECOND
 
@@ -53,7 +53,7 @@ Lane: TypeAlias = ThreadLane | GroupLane | MemberLane | SoleLane | ServiceLane
 def all_lanes(timeline: Timeline, service: str) -> list[Lane]:
     """Return the lanes of a run: threads, then groups with their members, then services of others.
 
-    Of groups and members it is the first ``MOST``; ``lanes_beyond`` counts the others. ``service`` is one
+    Groups and members are the first ``MOST_LANES``; ``lanes_beyond`` counts the rest. ``service`` is one
     that has a lane before its first call; "" for none.
     """
     roster = roster_of(timeline)
@@ -145,7 +145,7 @@ class _LanePriority:
         return 9 if busy >= 0.5 else 7 if busy > 0 else 2
 
     def _group_waits(self, group: GroupId) -> bool:
-        return any(self._waits_long(member.id) for member in self.timeline.group_members(group)[:MOST])
+        return any(self._waits_long(member.id) for member in self.timeline.group_members(group)[:MOST_LANES])
 
     def _waits_long(self, entity: EntityId) -> bool:
         latest = self.timeline.waits_of(entity, self.window)[-_LATEST:]

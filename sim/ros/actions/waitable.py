@@ -83,7 +83,7 @@ class ActionWaitable(Entity):
 
     def _add_client(self, srv_type: Any, part: str, qos_profile: QoSProfile, handler: Handler) -> ClientPart:
         name = self._node.resolve_service_name(f"{self.name}/_action/{part}")
-        self._node.context.network.want(name)
+        self._node.context.network.announce_use(name)
         client = ClientPart(self, srv_type, name, qos_profile)
         self._add_part(client, handler)
         return client

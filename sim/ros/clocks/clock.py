@@ -17,7 +17,7 @@ from sim.ros.time.time import Time
 
 if TYPE_CHECKING:
     from sim.clock import Signal
-    from sim.ros.middleware.endpoints import Lifetime
+    from sim.ros.middleware.endpoints import ContextLifetime
 
 __all__ = [
     "Clock",
@@ -97,7 +97,7 @@ class Clock:
             clock=self, threshold=threshold, pre_callback=pre_callback, post_callback=post_callback
         )
 
-    def sleep_until(self, until: Time, context: Lifetime | None = None) -> bool:
+    def sleep_until(self, until: Time, context: ContextLifetime | None = None) -> bool:
         """Sleep until a time of this clock has come; False if the context ended first, or the source changed.
 
         Raises:
@@ -110,7 +110,7 @@ class Clock:
         if until.clock_type != self._clock_type:
             raise ValueError("until's clock type does not match this clock's type")
         event = ClockEvent()
-        chosen._wake_at_end(event.set)
+        chosen.wake_at_end(event.set)
         changes: list[TimeJump] = []
 
         def on_jump(jump: TimeJump) -> None:
@@ -129,7 +129,7 @@ class Clock:
                 self._host.clock.poll()
         return chosen.ok() and not changes
 
-    def sleep_for(self, rel_time: Duration, context: Lifetime | None = None) -> bool:
+    def sleep_for(self, rel_time: Duration, context: ContextLifetime | None = None) -> bool:
         """Sleep for a length of time of this clock; otherwise as ``sleep_until``."""
         return self.sleep_until(self.now() + rel_time, context)
 

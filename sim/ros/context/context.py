@@ -161,7 +161,7 @@ class Context:
             raise TypeError("callback should be a callable, got {}", type(callback))
         self._call_at_end(callback, by_signal=False)
 
-    def _wake_at_end(self, callback: Callable[[], None]) -> None:
+    def wake_at_end(self, callback: Callable[[], None]) -> None:
         """Have ``callback``, a bound method held weakly, run however it ends."""
         self._call_at_end(callback, by_signal=True)
 

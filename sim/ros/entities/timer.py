@@ -304,7 +304,7 @@ class Rate:
         self._destroyed = False
         self._timer = timer
         timer.callback = self.tick
-        context._wake_at_end(self._let_all_go)
+        context.wake_at_end(self._let_all_go)
 
     def tick(self) -> None:
         """The timer's callback: let the sleepers go on."""

@@ -58,7 +58,7 @@ class BareClient(BareEntity, Client):
         owner: Node = node.owner
         name, profile = owner.resolve_service_name(srv_name), _as_profile(qos_profile)
         with owner.context.host.lock:
-            owner.context.network.want(name)
+            owner.context.network.announce_use(name)
             super().__init__(owner, srv_type, name, profile, ReentrantCallbackGroup(), srv_name=srv_name)
 
     def service_server_is_available(self) -> bool:

@@ -1,1 +1,1 @@
-"""The machine: host, processes, network, and what is on its way; knows endpoints by small protocols."""
+"""The machine: host, processes, network and deliveries; it knows endpoints by small protocols."""

@@ -1,4 +1,4 @@
-"""What published messages hold, on its way to the trace."""
+"""The contents of published messages, on their way to the trace."""
 
 from collections.abc import Callable
 from typing import Any, cast
@@ -20,12 +20,12 @@ from sim.trace.events import (
     escape_surrogates,
 )
 
-_BOUND = 32_000_000
-"""Bytes of messages, as far as can be told, that may wait to be encoded."""
+_MOST_WAITING = 32_000_000
+"""Estimated bytes of messages that may wait to be encoded."""
 
 
-class _Topic:
-    """A topic's number, and how long its last message was."""
+class _ContentTopic:
+    """A topic's number, and the size of its last message."""
 
     __slots__ = ("number", "size")
 
@@ -35,17 +35,17 @@ class _Topic:
 
 
 class _Content:
-    """A message of a topic that nobody changes any more."""
+    """A message of a topic that does not change any more."""
 
     __slots__ = ("message", "topic")
 
-    def __init__(self, message: Message, topic: _Topic) -> None:
+    def __init__(self, message: Message, topic: _ContentTopic) -> None:
         self.message = message
         self.topic = topic
 
 
 class _MessageWaiting(Event, frozen=True, tag="message"):
-    """A ``MessageSent`` whose data are not encoded yet: packed, the two are the same."""
+    """A ``MessageSent`` whose data is not encoded yet; both are packed alike."""
 
     message: MessageId
     topic: TopicId
@@ -55,10 +55,10 @@ class _MessageWaiting(Event, frozen=True, tag="message"):
 class Contents:
     """Turns messages into events with their contents, while ``wanted``.
 
-    On the real clock encoding would hold up the thread that publishes, so it happens in ``pack``, on the
-    thread that sends the events; what does not fit meanwhile is thrown away and counted. ``make_room`` is
-    given on virtual time: nothing is thrown away, since it has waiting events sent, and messages are encoded
-    at once, which costs no virtual time and saves a copy.
+    On the real clock encoding would delay the publishing thread, so it happens in ``pack``, on the thread
+    that sends the events; contents that exceed the queue meanwhile are dropped and counted. On virtual time
+    ``make_room`` is given, which has queued events sent: nothing is dropped, and messages are encoded at
+    once, which takes no virtual time and saves a copy.
 
     ``events`` is called with the host's lock held, ``pack`` on one thread at a time.
     """
@@ -67,37 +67,37 @@ class Contents:
         self.wanted = wanted
         self._make_room = make_room
         self._encoder = msgspec.msgpack.Encoder(enc_hook=_encode)
-        self._topics: dict[tuple[str, type[Message]], _Topic] = {}
+        self._topics: dict[tuple[str, type[Message]], _ContentTopic] = {}
         # Two counters, each with a thread of its own that sets it.
-        self._taken = 0
-        self._packed = 0
+        self._queued = 0
+        self._encoded = 0
         self._lost = 0
 
     @property
     def keeps_messages(self) -> bool:
-        """Whether messages are looked at later, so that nobody may be handed them to change."""
+        """Whether messages are encoded later, so that no callback may get the same object to change."""
         return self.wanted and self._make_room is None
 
     def events(
         self, now: int, message: MessageId, topic: str, data: Message, qos: QoSProfile
     ) -> list[AnyEvent]:
-        """What goes on the trace besides the publication; ``qos`` is what its publisher offers."""
-        if self._taken - self._packed > _BOUND and self._make_room is not None:
+        """The events besides the publication; ``qos`` is the publisher's offer."""
+        if self._queued - self._encoded > _MOST_WAITING and self._make_room is not None:
             self._make_room()
-        if self._taken - self._packed > _BOUND:
+        if self._queued - self._encoded > _MOST_WAITING:
             self._lost += 1
             return [ContentsLost(now, self._lost)]
         known = self._topics.get((topic, type(data)))
         if known is None:
-            known = self._topics[topic, type(data)] = _Topic(len(self._topics) + 1)
+            known = self._topics[topic, type(data)] = _ContentTopic(len(self._topics) + 1)
             return [
                 _appeared(now, known.number, topic, type(data), qos),
                 self._sent(now, message, known, data),
             ]
         return [self._sent(now, message, known, data)]
 
-    def _sent(self, now: int, message: MessageId, topic: _Topic, data: Message) -> AnyEvent:
-        self._taken += topic.size
+    def _sent(self, now: int, message: MessageId, topic: _ContentTopic, data: Message) -> AnyEvent:
+        self._queued += topic.size
         if self._make_room is None:
             return cast("AnyEvent", _MessageWaiting(now, message, topic.number, _Content(data, topic)))
         packed = _cdr(data)
@@ -105,13 +105,13 @@ class Contents:
         return MessageSent(now, message, topic.number, packed)
 
     def pack(self, events: list[AnyEvent]) -> bytes:
-        """Do what ``sim.trace.events.encode`` does, for events among which are some of ``events``."""
-        taken = self._taken
+        """Encode events, as ``sim.trace.events.encode``, including those of ``events``."""
+        queued = self._queued
         try:
             packed = self._encoder.encode(events)
         except UnicodeEncodeError:
             packed = self._encoder.encode(escape_surrogates(events))
-        self._packed = taken
+        self._encoded = queued
         return packed
 
 

@@ -1,4 +1,4 @@
-"""Messages and requests on their way."""
+"""Messages and requests in transit."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import msgspec
 
 
 class Delivery(msgspec.Struct, frozen=True):
-    """A message on its way, the ``number``-th of its publisher.
+    """A message in transit, the ``number``-th of its publisher.
 
-    ``shared`` tells that other subscriptions get the same object.
+    ``shared``: other subscriptions get the same object.
     """
 
     data: Any
@@ -22,15 +22,15 @@ class Delivery(msgspec.Struct, frozen=True):
 
 
 class ExpiringDelivery(Delivery, frozen=True):
-    """A message that nobody gets any more from the moment ``expires`` on."""
+    """A message with a lifespan, which ends at ``expires``."""
 
     expires: int = 0
 
 
 class Request(msgspec.Struct, frozen=True):
-    """A service request on its way; ``answer`` takes the response to whoever asked.
+    """A service request in transit; ``answer`` takes the response.
 
-    ``client`` is the gid of the client that asked: zeros for the person at the console.
+    ``client`` is the gid of the client: zeros for the person at the console.
     """
 
     data: Any

@@ -1,4 +1,4 @@
-"""Domains: nodes of different ones share a machine and do not see each other."""
+"""Domains: nodes of different domains share a machine and do not see each other."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ DOMAIN_VARIABLE = "ROS_DOMAIN_ID"
 
 
 def domain_of(environment: Mapping[str, str]) -> int:
-    """The domain that an environment names; 0 without one.
+    """The domain of an environment; 0 by default.
 
     Raises:
         RCLError: ``ROS_DOMAIN_ID`` is no number, or a negative one.
@@ -25,7 +25,7 @@ def domain_of(environment: Mapping[str, str]) -> int:
 
 
 def domain_of_machine() -> int:
-    """The domain of whatever is not a program; 0 if the environment names none that can be read."""
+    """The domain outside programs; 0 if the environment has no valid one."""
     try:
         return domain_of(os.environ)
     except RCLError:

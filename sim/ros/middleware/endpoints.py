@@ -1,6 +1,6 @@
-"""What the network knows of nodes, publishers, subscriptions and services: names, types, and what to call.
+"""Protocols of nodes, publishers, subscriptions and services, as the network uses them.
 
-All is called with the host's lock held.
+Call everything with the host's lock held.
 """
 
 from __future__ import annotations
@@ -12,27 +12,27 @@ from sim.ros.middleware.delivery import Delivery, Request
 from sim.ros.qos.qos import QoSProfile
 
 
-class Lifetime(Protocol):
-    """A context, as far as what waits has to know of it."""
+class ContextLifetime(Protocol):
+    """A context, as far as waiting code uses it."""
 
     def ok(self) -> bool:
-        """Whether it has begun and not ended."""
+        """Whether it is initialised and not shut down."""
 
-    def _wake_at_end(self, callback: Callable[[], None]) -> None:
-        """Have ``callback`` run however it ends."""
+    def wake_at_end(self, callback: Callable[[], None]) -> None:
+        """Call ``callback`` when it ends."""
 
 
-class EndpointEvents(Protocol):
-    """Who hears of the matches of a publisher or subscription."""
+class MatchListener(Protocol):
+    """The listener for matches of a publisher or subscription."""
 
     def type_refused(self, warning: str) -> None:
-        """There is no match for the type of the messages."""
+        """A match failed because of the message type."""
 
     def qos_refused(self, policy: str, warning: str) -> None:
-        """There is no match for a policy."""
+        """A match failed because of a policy."""
 
 
-class TopicEnd(Protocol):
+class TopicEndpoint(Protocol):
     """A publisher or a subscription."""
 
     gid: bytes
@@ -44,25 +44,25 @@ class TopicEnd(Protocol):
         """The topic's full name."""
 
     @property
-    def events(self) -> EndpointEvents:
-        """Who hears of its matches."""
+    def events(self) -> MatchListener:
+        """The listener for its matches."""
 
 
-class SubscriptionEnd(TopicEnd, Protocol):
-    """Where messages arrive."""
+class SubscriptionEndpoint(TopicEndpoint, Protocol):
+    """A subscription."""
 
     def deliver(self, delivery: Delivery) -> None:
-        """A message arrived."""
+        """Queue a message."""
 
     def found(self, publisher: Any) -> None:
-        """A publisher reaches it."""
+        """A publisher was matched."""
 
     def lost(self, publisher: Any) -> None:
-        """A publisher that reached it is gone."""
+        """A matched publisher is gone."""
 
 
-class PublisherEnd(TopicEnd, Protocol):
-    """Where messages come from."""
+class PublisherEndpoint(TopicEndpoint, Protocol):
+    """A publisher."""
 
     def reach(self, subscription: Any) -> None:
         """Send to ``subscription`` from now on."""
@@ -74,32 +74,32 @@ class PublisherEnd(TopicEnd, Protocol):
         """Send to ``subscription`` no more."""
 
     def catch_up(self, subscription: Any) -> None:
-        """Give a late subscription what was kept for it."""
+        """Send a late subscription the kept messages."""
 
     def incompatible_with(self, subscription: Any, policy: str) -> None:
-        """Both sides tell that they do not match."""
+        """Report on both sides that they are incompatible."""
 
 
-class ServiceEnd(Protocol):
-    """Where requests arrive."""
+class ServiceEndpoint(Protocol):
+    """A service."""
 
     name: str
     srv_type: Any
 
     @property
     def is_shown(self) -> bool:
-        """Whether it is part of a program that is on the trace."""
+        """Whether its program is traced."""
 
     def deliver(self, request: Request) -> None:
-        """A request arrived."""
+        """Queue a request."""
 
 
 class NetworkNode(Protocol):
     """A node, as the network knows it."""
 
     @property
-    def context(self) -> Lifetime:
-        """The context that it lives in."""
+    def context(self) -> ContextLifetime:
+        """Its context."""
 
     def get_name(self) -> str:
         """Its name without namespace."""

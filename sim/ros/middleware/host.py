@@ -1,7 +1,7 @@
-"""The machine that nodes run on: its clock, its network, its trace, and what the run was set up with.
+"""The machine that nodes run on: its clock, network and trace, and the settings of the run.
 
-An engine installs a host before the learner's program is imported; without one, the first use makes a host
-on wall time that keeps no trace, so that the model works as a plain library too.
+An engine installs a host before the learner's program is imported. Without one, the first use creates a host
+on wall time without a trace, so that the model also works as a plain library.
 """
 
 import threading
@@ -25,13 +25,12 @@ _RLock = threading.RLock
 
 @dataclass(eq=False)
 class Host:
-    """What every context of this process shares.
+    """The state that all contexts of this process share.
 
-    ``lock`` guards all state of executors, groups and queues; it is never held while something waits or
-    while a callback runs. ``threads`` replaces the number of threads of every executor made (None: as the
-    program says), ``tuning`` is what else was changed about the programs. ``default_domain`` is that of
-    whatever is no program. ``takes_signals`` tells that the whole process is the program's, so that rclpy's
-    signal handlers may be installed in it.
+    ``lock`` guards all state of executors, groups and queues; it is never held during a wait or a callback.
+    ``threads`` replaces the number of threads of every executor (None: the program's own), ``tuning`` has the
+    other changes to the programs. ``default_domain`` is used outside programs. ``takes_signals``: the whole
+    process is the program's, so rclpy's signal handlers may be installed.
     """
 
     clock: Clock
@@ -59,13 +58,13 @@ class Host:
             return self._networks.setdefault(domain, Network())
 
     def new_gid(self) -> bytes:
-        """16 bytes that no other publisher, subscription or client has; the same in every run alike."""
+        """16 bytes that identify a publisher, subscription or client; the same in every run."""
         return next(self._gids).to_bytes(16, "little")
 
     def explain_waits(self) -> int | None:
-        """Put on the trace which callbacks wait now, and why; call it before time passes.
+        """Record which callbacks wait now, and why; call it before time passes.
 
-        Returns when the next timer falls due: whether it has to wait shows only then.
+        Returns when the next timer is due: whether it has to wait is known only then.
         """
         with self.lock:
             waiters = [each for reference in self._waiters if (each := reference()) is not None]
@@ -73,16 +72,16 @@ class Host:
         return min((due for due in dues if due is not None), default=None)
 
     def explain_waits_of(self, waiter: "WaitsExplained") -> None:
-        """Ask ``waiter`` too, after those that came before it, for as long as it lives."""
+        """Include ``waiter`` from now on, as long as it lives."""
         with self.lock:
             self._waiters.append(ref(waiter, self._waiters.remove))
 
 
 class WaitsExplained(Protocol):
-    """Something that can tell why its callbacks wait."""
+    """Something that can explain why its callbacks wait."""
 
     def explain_waits(self) -> int | None:
-        """Record the waits that began or whose reason changed; returns when the next timer falls due.
+        """Record waits that started or whose reason changed; return when the next timer is due.
 
         Called with the host's lock held.
         """

@@ -1,4 +1,4 @@
-"""The lock of a host: one that nobody queues up for, and one around which threads switch."""
+"""The lock of a host: a polling lock, and one that is a switch point of explored runs."""
 
 import threading
 import time
@@ -11,28 +11,28 @@ from sim.clock import Clock, VirtualClock
 _RLock = threading.RLock
 _sleep = time.sleep
 
-_ASIDE = 50e-6
-"""Seconds for which a thread that finds the host's lock taken stands aside."""
+_RETRY = 50e-6
+"""Seconds between two attempts to take the lock."""
 
 
 class HostLock(type(_RLock())):  # type: ignore[misc]
-    """A lock that is never queued up for: whoever finds it taken stands aside and tries again.
+    """A lock without a queue: a thread that finds it taken sleeps and tries again.
 
-    Its holder is then a thread that the interpreter has switched away from in the middle of a few quick
-    lines. Threads that queued up for the lock would from then on hand it to each other at every use, each
-    time with a switch between threads.
+    It is held only for a few lines, so it is found taken only when the interpreter switched threads
+    meanwhile. Queued threads would pass the lock on at every use from then on, each time with a thread
+    switch.
     """
 
     def __enter__(self) -> bool:
         while not self.acquire(False):
-            _sleep(_ASIDE)
+            _sleep(_RETRY)
         return True
 
 
 class SwitchedLock:
-    """A host's lock on a virtual clock that explores orders: threads switch in front of it and behind it.
+    """A host's lock on a virtual clock that explores orders: threads switch before and after it.
 
-    They never switch while one holds it: whoever finds it taken waits outside virtual time. Reentrant.
+    They never switch while one holds it: a thread that finds it taken waits outside virtual time. Reentrant.
     """
 
     def __init__(self, clock: VirtualClock) -> None:
@@ -56,5 +56,5 @@ class SwitchedLock:
 
 
 def lock_on(clock: Clock) -> AbstractContextManager[bool]:
-    """The lock of a host with that clock."""
+    """Make the lock of a host with that clock."""
     return SwitchedLock(clock) if isinstance(clock, VirtualClock) and clock.explores else HostLock()

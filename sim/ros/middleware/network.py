@@ -9,7 +9,7 @@ from collections import defaultdict
 from collections.abc import Callable, Iterable
 
 from sim.ros.middleware.delivery import Request
-from sim.ros.middleware.endpoints import NetworkNode, PublisherEnd, ServiceEnd, SubscriptionEnd
+from sim.ros.middleware.endpoints import NetworkNode, PublisherEndpoint, ServiceEndpoint, SubscriptionEndpoint
 from sim.ros.qos.qos import mismatches
 
 
@@ -18,20 +18,20 @@ class Network:
 
     def __init__(self) -> None:
         self._nodes: list[NetworkNode] = []
-        self._publishers: defaultdict[str, list[PublisherEnd]] = defaultdict(list)
-        self._subscriptions: defaultdict[str, list[SubscriptionEnd]] = defaultdict(list)
-        self._services: defaultdict[str, list[ServiceEnd]] = defaultdict(list)
-        self._awaited: dict[str, Callable[[], None]] = {}
+        self._publishers: defaultdict[str, list[PublisherEndpoint]] = defaultdict(list)
+        self._subscriptions: defaultdict[str, list[SubscriptionEndpoint]] = defaultdict(list)
+        self._services: defaultdict[str, list[ServiceEndpoint]] = defaultdict(list)
+        self._demand_actions: dict[str, Callable[[], None]] = {}
 
-    def when_wanted(self, names: Iterable[str], action: Callable[[], None]) -> None:
-        """Call ``action`` once, as soon as something wants a topic or service of one of these names."""
-        self._awaited = dict.fromkeys(names, action)
+    def on_first_use(self, names: Iterable[str], action: Callable[[], None]) -> None:
+        """Call ``action`` once, at the first use of a topic or service of one of these names."""
+        self._demand_actions = dict.fromkeys(names, action)
 
-    def want(self, name: str) -> None:
-        """Something is about to use a topic or service, or asks who offers it."""
-        action = self._awaited.get(name)
+    def announce_use(self, name: str) -> None:
+        """Announce that a topic or service is used or looked up."""
+        action = self._demand_actions.get(name)
         if action is not None:
-            self._awaited.clear()
+            self._demand_actions.clear()
             action()
 
     def nodes(self) -> tuple[NetworkNode, ...]:
@@ -39,77 +39,77 @@ class Network:
         return tuple(self._nodes)
 
     def join_node(self, node: NetworkNode) -> None:
-        """A node came up."""
+        """Add a node."""
         self._nodes.append(node)
 
     def leave_node(self, node: NetworkNode) -> None:
-        """A node went away."""
+        """Remove a node."""
         self._nodes.remove(node)
 
-    def publishers(self, topic: str) -> tuple[PublisherEnd, ...]:
+    def publishers(self, topic: str) -> tuple[PublisherEndpoint, ...]:
         """The publishers on a topic."""
-        self.want(topic)
+        self.announce_use(topic)
         return tuple(self._publishers.get(topic, ()))
 
-    def subscriptions(self, topic: str) -> tuple[SubscriptionEnd, ...]:
+    def subscriptions(self, topic: str) -> tuple[SubscriptionEndpoint, ...]:
         """The subscriptions to a topic."""
-        self.want(topic)
+        self.announce_use(topic)
         return tuple(self._subscriptions.get(topic, ()))
 
-    def services(self, srv_type: type) -> tuple[ServiceEnd, ...]:
-        """The services of a type, in the order in which their names came up."""
+    def services(self, srv_type: type) -> tuple[ServiceEndpoint, ...]:
+        """The services of a type, in order of their names' first appearance."""
         return tuple(each for them in self._services.values() for each in them if each.srv_type is srv_type)
 
     def has_service(self, name: str, srv_type: type) -> bool:
-        """Whether somebody offers a service of that name and type."""
-        return self._server(name, srv_type) is not None
+        """Whether there is a service of that name and type."""
+        return self._service(name, srv_type) is not None
 
-    def join_publisher(self, publisher: PublisherEnd) -> None:
-        """A publisher came up: it is matched with every subscription that can hear it."""
-        self.want(publisher.topic_name)
+    def join_publisher(self, publisher: PublisherEndpoint) -> None:
+        """Add a publisher, and match it with the subscriptions."""
+        self.announce_use(publisher.topic_name)
         self._publishers[publisher.topic_name].append(publisher)
         for subscription in self._subscriptions.get(publisher.topic_name, ()):
             self._match(publisher, subscription)
 
-    def join_subscription(self, subscription: SubscriptionEnd) -> None:
-        """A subscription came up: matched, and given what transient-local publishers have kept."""
-        self.want(subscription.topic_name)
+    def join_subscription(self, subscription: SubscriptionEndpoint) -> None:
+        """Add a subscription, match it, and send it the messages that transient-local publishers kept."""
+        self.announce_use(subscription.topic_name)
         self._subscriptions[subscription.topic_name].append(subscription)
         for publisher in self._publishers.get(subscription.topic_name, ()):
             if self._match(publisher, subscription):
                 publisher.catch_up(subscription)
 
-    def join_service(self, service: ServiceEnd) -> None:
-        """A service came up."""
+    def join_service(self, service: ServiceEndpoint) -> None:
+        """Add a service."""
         self._services[service.name].append(service)
 
-    def leave_publisher(self, publisher: PublisherEnd) -> None:
-        """A publisher went away."""
+    def leave_publisher(self, publisher: PublisherEndpoint) -> None:
+        """Remove a publisher."""
         self._publishers[publisher.topic_name].remove(publisher)
 
-    def leave_subscription(self, subscription: SubscriptionEnd) -> None:
-        """A subscription went away; nobody sends to it any more."""
+    def leave_subscription(self, subscription: SubscriptionEndpoint) -> None:
+        """Remove a subscription from the network and from its publishers."""
         self._subscriptions[subscription.topic_name].remove(subscription)
         for publisher in self._publishers.get(subscription.topic_name, ()):
             publisher.forget(subscription)
 
-    def leave_service(self, service: ServiceEnd) -> None:
-        """A service went away."""
+    def leave_service(self, service: ServiceEndpoint) -> None:
+        """Remove a service."""
         self._services[service.name].remove(service)
 
     def send_request(self, name: str, srv_type: type, request: Request) -> bool:
-        """Take a request to the service; without one it is lost (False)."""
-        server = self._server(name, srv_type)
-        if server is None:
+        """Deliver a request to the service; False if there is none, and the request is lost."""
+        service = self._service(name, srv_type)
+        if service is None:
             return False
-        server.deliver(request)
+        service.deliver(request)
         return True
 
-    def _server(self, name: str, srv_type: type) -> ServiceEnd | None:
-        self.want(name)
+    def _service(self, name: str, srv_type: type) -> ServiceEndpoint | None:
+        self.announce_use(name)
         return next((each for each in self._services.get(name, ()) if each.srv_type is srv_type), None)
 
-    def _match(self, publisher: PublisherEnd, subscription: SubscriptionEnd) -> bool:
+    def _match(self, publisher: PublisherEndpoint, subscription: SubscriptionEndpoint) -> bool:
         if publisher.msg_type is not subscription.msg_type:
             refused = f"Incompatible type on topic '{publisher.topic_name}', no messages will be"
             publisher.events.type_refused(f"{refused} sent to it.")

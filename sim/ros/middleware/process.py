@@ -1,8 +1,8 @@
-"""What an operating system's process is to rclpy: a program's arguments, and what modules keep globally.
+"""Simulated processes: a program's arguments, and the state that rclpy keeps in module globals.
 
-Programs that would be processes of their own on a real machine run here on threads of one process. Each has
-its own default context, global executor, loggers and arguments all the same: whatever rclpy keeps in a
-module is kept by ``of_process`` instead. A thread belongs to the process of the thread that made it.
+Programs that would be separate processes on a real machine run on threads of one process. Each has its own
+default context, global executor, loggers and arguments: rclpy's module globals are kept per process by
+``of_process``. A thread belongs to the process of the thread that started it.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from itertools import count
 from typing import Any, Self, SupportsIndex, TypeVar
 
 from sim.probes.probe import Probe
-from sim.ros.middleware.endpoints import Lifetime
+from sim.ros.middleware.endpoints import ContextLifetime
 from sim.ros.middleware.host import Host, current_host
 
 KeptT = TypeVar("KeptT")
@@ -27,17 +27,13 @@ KeptT = TypeVar("KeptT")
 class Process:
     """One program on the host. Thread-safe.
 
-    ``number`` and ``label`` tell it from others on the trace, 0 and empty for the only one. ``arguments``
-    is what its ``sys.argv`` shows, ``environment`` the variables that differ from the others'. ``probe`` None
-    stands for the host's; ``shows_stdout`` tells whether what it prints is for the person to see.
-    ``take_output`` gets every line that it prints or logs, and whether it belongs on stderr, in place of the
-    run; None: the run has them.
-    ``has_keyboard`` tells whether it gets what is typed at the run's terminal.
-    ``default_context`` is what functions use that are given none; None before it is first asked for and
-    after its end.
-    ``pool_numbers`` numbers its thread pools in the order of their making; ``callbacks`` and ``spins`` count
-    the callbacks made and the spins begun so far; ``shut_down_at`` is where one of its own callbacks shut
-    rclpy down, empty as long as none did.
+    ``number`` and ``label`` identify it on the trace, 0 and empty for the only one. ``arguments`` is its
+    ``sys.argv``, ``environment`` has the variables that differ from the machine's. ``probe`` None: the
+    host's. ``shows_stdout``: whether its output is shown. ``take_output`` gets every line that it prints or
+    logs, and whether it is for stderr, instead of the run; None: the run gets them. ``has_keyboard``: whether
+    it reads the run's terminal. ``default_context`` is None before its first use and after its end.
+    ``pool_numbers`` numbers its thread pools; ``callbacks`` and ``spins`` count the callbacks made and the
+    spins started; ``shut_down_at`` is the place of the callback that shut rclpy down, or empty.
     """
 
     host: Host
@@ -49,7 +45,7 @@ class Process:
     shows_stdout: bool = True
     take_output: Callable[[str, bool], None] | None = None
     has_keyboard: bool = True
-    default_context: Lifetime | None = None
+    default_context: ContextLifetime | None = None
     pool_numbers: Iterator[int] = field(default_factory=count)
     callbacks: int = 0
     spins: int = 0
@@ -57,7 +53,7 @@ class Process:
     _kept: dict[Callable[[], Any], Any] = field(default_factory=dict)
 
     def keep(self, make: Callable[[], KeptT]) -> KeptT:
-        """What ``make`` made for this process, now or when first asked."""
+        """The value of ``make`` for this process, made on first access."""
         if make not in self._kept:
             with self.host.lock:
                 self._kept.setdefault(make, make())
@@ -65,7 +61,7 @@ class Process:
         return kept
 
     def enter(self) -> None:
-        """Have the calling thread, and all that it starts from now on, belong to this process."""
+        """Assign the calling thread, and the threads that it starts from now on, to this process."""
         _here().ros_process = self
 
     def start_thread(self, target: Callable[[], None], name: str) -> None:
@@ -82,18 +78,18 @@ _main: Process | None = None
 
 
 def current_process() -> Process:
-    """The process that the calling thread belongs to: the host's first unless it was told otherwise."""
+    """The calling thread's process: the host's main one by default."""
     return process_of(_here())
 
 
 def process_of(thread: threading.Thread) -> Process:
-    """The process that a thread belongs to."""
+    """The process of a thread."""
     process: Process | None = getattr(thread, "ros_process", None)
     return _main_process() if process is None else process
 
 
 def of_process(make: Callable[[], KeptT]) -> KeptT:
-    """What ``make`` made for the calling thread's process, now or when first asked."""
+    """The value of ``make`` for the calling thread's process, made on first access."""
     return current_process().keep(make)
 
 
@@ -110,10 +106,10 @@ def _here() -> Any:
 
 
 def share_machine() -> None:
-    """Let several processes live in this one.
+    """Make several simulated processes possible.
 
-    Threads inherit theirs; ``sys.argv`` is each one's own, and ``os.environ`` shows its own variables first.
-    The threads that belong to none keep the present arguments. Call it once, with the host installed.
+    Threads inherit their process; ``sys.argv`` and the changed variables of ``os.environ`` are those of the
+    process. Other threads keep the present arguments. Call it once, with the host installed.
     """
     _main_process()
     make: Any = threading.Thread.__init__
@@ -129,10 +125,10 @@ def share_machine() -> None:
 
 
 class _Arguments(UserList[str]):
-    """The arguments of whichever process asks."""
+    """The arguments of the calling thread's process."""
 
     def __init__(self) -> None:
-        """Take over nothing: the processes hold the arguments."""
+        """Copy nothing: the processes have the arguments."""
 
     @property
     def data(self) -> list[str]:  # type: ignore[override]
@@ -148,7 +144,7 @@ class _Arguments(UserList[str]):
 
 
 class _Environment(MutableMapping[str, str]):
-    """The environment of whichever process asks: the machine's, with the process's own variables over it."""
+    """The environment of the calling thread's process: its own variables over the machine's."""
 
     def __init__(self, machine: MutableMapping[str, str]) -> None:
         self._machine = machine

@@ -1,4 +1,4 @@
-"""What a person changed about a program without touching its text: callback groups, and timers' periods."""
+"""Changes to a program without editing it: callback groups, and periods of timers."""
 
 from __future__ import annotations
 
@@ -7,52 +7,54 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 from typing import TypeAlias
 
-Tuned: TypeAlias = tuple[str, str]
-"""A node's full name ("" for any node) and a callback's name; the topic's or service's for what has none."""
+CallbackKey: TypeAlias = tuple[str, str]
+"""A node's full name ("" for any node) and a callback's name, or else its topic's or service's."""
 
 
-class GroupWish(StrEnum):
-    """Which callback group a callback is to be in."""
+class GroupChoice(StrEnum):
+    """The callback group chosen for a callback."""
 
     OWN = "own"
-    """A mutually exclusive one that has no other member."""
+    """A mutually exclusive group of its own."""
     SHARED = "shared"
-    """The one mutually exclusive group of all callbacks of the node with this wish."""
+    """A mutually exclusive group of all callbacks of the node with this choice."""
     REENTRANT = "reentrant"
-    """The one reentrant group of all callbacks of the node with this wish."""
+    """A reentrant group of all callbacks of the node with this choice."""
     DEFAULT = "default"
     """The node's default group."""
 
 
 @dataclass
 class Tuning:
-    """The changes; ``periods`` are nanoseconds. What is not named stays as the program says.
+    """The changes; ``periods`` are nanoseconds. Everything else stays as in the program.
 
-    A change for a node goes before one for any node. Used with the host's lock held.
+    A change for a node takes precedence over one for any node. Use it with the host's lock held.
     """
 
-    groups: Mapping[Tuned, GroupWish] = field(default_factory=dict)
-    periods: Mapping[Tuned, int] = field(default_factory=dict)
-    _callbacks: dict[Tuned, None] = field(default_factory=dict)
-    _timers: dict[Tuned, None] = field(default_factory=dict)
+    groups: Mapping[CallbackKey, GroupChoice] = field(default_factory=dict)
+    periods: Mapping[CallbackKey, int] = field(default_factory=dict)
+    _callbacks: dict[CallbackKey, None] = field(default_factory=dict)
+    _timers: dict[CallbackKey, None] = field(default_factory=dict)
 
-    def wish(self, node: str, callback: str) -> GroupWish | None:
-        """The group that is wished for a callback that a node has now, None for the program's own."""
+    def group_choice(self, node: str, callback: str) -> GroupChoice | None:
+        """Register a callback and return the group chosen for it; None: the program's own."""
         self._callbacks[node, callback] = None
         return self.groups.get((node, callback), self.groups.get(("", callback)))
 
     def period(self, node: str, callback: str, asked: int) -> int:
-        """The period of a timer that a node has now, in nanoseconds."""
+        """Register a timer and return its period, in nanoseconds."""
         self._timers[node, callback] = None
         return self.periods.get((node, callback), self.periods.get(("", callback), asked))
 
     def unmet(self) -> Iterator[str]:
-        """Sentences on the changes that no callback was there for, up to now."""
+        """Sentences on the changes that no callback has matched so far."""
         yield from _unmet(self.groups, self._callbacks, "callback")
         yield from _unmet(self.periods, self._timers, "timer callback")
 
 
-def _unmet(changes: Mapping[Tuned, object], there: Mapping[Tuned, None], kind: str) -> Iterator[str]:
+def _unmet(
+    changes: Mapping[CallbackKey, object], there: Mapping[CallbackKey, None], kind: str
+) -> Iterator[str]:
     names = dict.fromkeys(callback for _, callback in there if callback)
     for node, callback in changes:
         if (node, callback) in there or (not node and callback in names):

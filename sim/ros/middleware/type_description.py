@@ -1,4 +1,4 @@
-"""Types of messages described as messages, and the hashes by which ROS 2 tells them apart.
+"""Message types described as messages, and the hashes that identify them in ROS 2.
 
 Source: REP 2016 and rosidl's generator of type descriptions (RIHS01: the SHA-256 of the description as JSON).
 """
@@ -30,7 +30,7 @@ from sim.ros.middleware.type_hash import TypeHash
 _PACKAGE = "type_description_interfaces"
 _VERSION = 1
 _FILLER = ("structure_needs_at_least_one_member", BasicType("uint8"))
-"""The field of a type that has none, as ROS 2's IDL gives it."""
+"""The field that ROS 2's IDL gives an empty type."""
 
 
 @cache
@@ -49,7 +49,7 @@ def type_description(msg_type: type[Message]) -> Any:
 
 
 def contained_types(msg_type: type[Message]) -> list[type[Message]]:
-    """Every type that a type contains, however deep, in the order of their names."""
+    """All types that a type contains, directly or not, sorted by name."""
     found: dict[str, type[Message]] = {}
     waiting = [msg_type]
     while waiting:

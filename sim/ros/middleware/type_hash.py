@@ -1,10 +1,10 @@
-"""Hashes of message types, by which ROS 2 tells whether two programs mean the same type."""
+"""Hashes of message types, by which ROS 2 checks that two programs use the same type."""
 
 from __future__ import annotations
 
 
 class TypeHash:
-    """A hash and the version of its making; without a version it is not known."""
+    """A hash and the version of its algorithm; unknown without a version."""
 
     _TYPE_HASH_SIZE = 32
 

@@ -246,7 +246,7 @@ class NodeEntities:
         name = self._node.resolve_service_name(srv_name)
         with self._agenda.host.lock:
             group = self._chosen_group(callback_group, name)
-            self._context.network.want(name)
+            self._context.network.announce_use(name)
             client = Client(self._node, srv_type, name, qos_profile, group, srv_name=srv_name)
             self._agenda.add(client)
         return client

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from sim.ros.middleware.tuning import GroupWish, Tuning
+from sim.ros.middleware.tuning import GroupChoice, Tuning
 from sim.ros.scheduling.callback_groups import (
     CallbackGroup,
     MutuallyExclusiveCallbackGroup,
@@ -16,7 +16,7 @@ class TunedNode:
     def __init__(self, node: str, tuning: Tuning) -> None:
         self._node = node
         self._tuning = tuning
-        self._shared: dict[GroupWish, CallbackGroup] = {}
+        self._shared: dict[GroupChoice, CallbackGroup] = {}
 
     def period(self, callback: str, asked: int) -> int:
         """The period of a timer, in nanoseconds."""
@@ -24,14 +24,14 @@ class TunedNode:
 
     def group(self, callback: str, asked: CallbackGroup, default: CallbackGroup) -> CallbackGroup:
         """The group of a callback for which the program asked for another; ``default`` is the node's."""
-        match self._tuning.wish(self._node, callback):
+        match self._tuning.group_choice(self._node, callback):
             case None:
                 return asked
-            case GroupWish.OWN:
+            case GroupChoice.OWN:
                 return MutuallyExclusiveCallbackGroup()
-            case GroupWish.SHARED as wish:
+            case GroupChoice.SHARED as wish:
                 return self._shared.setdefault(wish, MutuallyExclusiveCallbackGroup())
-            case GroupWish.REENTRANT as wish:
+            case GroupChoice.REENTRANT as wish:
                 return self._shared.setdefault(wish, ReentrantCallbackGroup())
-            case GroupWish.DEFAULT:
+            case GroupChoice.DEFAULT:
                 return default

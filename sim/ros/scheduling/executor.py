@@ -59,7 +59,7 @@ class Executor:
         self._waiting = False
         self._spinning = False
         self._is_shutdown = False
-        self._context._wake_at_end(self.wake)
+        self._context.wake_at_end(self.wake)
         self.trace_id = self._probe.executor_made(type(self).__name__, self.threads)
 
     # Public

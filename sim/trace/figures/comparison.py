@@ -1,4 +1,4 @@
-"""Two runs side by side: the figures of the same window of both, callback by callback."""
+"""Two runs callback by callback: the figures of the same window of both, callback by callback."""
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Sequence
@@ -15,12 +15,12 @@ from sim.trace.model import Entity, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
 
 Key: TypeAlias = tuple[str, str, str, str, int]
-"""What a callback is in any run: node, kind, callback, topic or service, and its number among equals."""
+"""Identifies a callback in any run: node, kind, callback, topic or service, and number among equals."""
 
 
 @dataclass(frozen=True, slots=True)
 class WaitFigures:
-    """How a ready callback was kept waiting in a window; ``why`` is what kept it most of that time."""
+    """The waits of a ready callback in a window; ``why`` is the reason of most of that time."""
 
     longest: Nanoseconds
     total: Nanoseconds
@@ -29,26 +29,26 @@ class WaitFigures:
 
 @dataclass(frozen=True, slots=True)
 class CallbackInRun:
-    """What one of the runs says of a callback; ``waits`` None: it ran as soon as it was ready."""
+    """A callback's figures in one run; ``waits`` None: it ran as soon as it was ready."""
 
     figures: CallbackStatistics
     waits: WaitFigures | None
 
     @property
     def longest_wait(self) -> Nanoseconds:
-        """The longest that a call had waited, or that the callback waited in the window without one."""
+        """The longest wait, whether or not a call followed it in the window."""
         of_calls = self.figures.wait.most if self.figures.wait else 0
         return max(of_calls, self.waits.longest if self.waits else 0)
 
     @property
     def idle(self) -> bool:
-        """Whether nothing became of the callback in the window."""
+        """Whether the callback had no calls, losses or waits in the window."""
         return not (self.figures.calls or self.figures.drops or self.waits)
 
 
 @dataclass(frozen=True, slots=True)
 class CallbackPair:
-    """A callback in both runs; None where a run has no such callback."""
+    """A callback in both runs; None if a run does not have it."""
 
     name: str
     first: CallbackInRun | None
@@ -57,10 +57,10 @@ class CallbackPair:
 
 @dataclass(frozen=True, slots=True)
 class RunFigures:
-    """A run in the window: threads that ran callbacks, the most at one moment, and what the robot did.
+    """A run in the window: threads that ran callbacks, the most at one moment, and the robot's figures.
 
-    ``end`` is how far the whole run is known; ``collisions`` are the times that the robot touched something,
-    one that had begun before the window included.
+    ``end`` is the end of the whole run; ``collisions`` counts contacts of the robot, including one that began
+    before the window.
     """
 
     end: Nanoseconds
@@ -74,8 +74,7 @@ class RunFigures:
 class Comparison:
     """The same window of two runs.
 
-    Callbacks are in the order of appearance, the first run's first; what neither run used in the window is
-    left out.
+    Callbacks are in order of appearance, the first run's first, without those that are idle in both.
     """
 
     window: Window
@@ -87,23 +86,23 @@ class Comparison:
 def compare(first: Timeline, second: Timeline, window: Window) -> Comparison:
     """Compare a window of two runs; callbacks match by node, kind, function and topic or service.
 
-    Those that have no such partner match without their node, if that leaves no doubt. Takes time in
-    proportion to the calls and waits in the window.
+    The others match without their node, where that is unambiguous. Takes time in proportion to the calls and
+    waits in the window.
     """
     return run_to_end(compare_incrementally(first, second, window))
 
 
 def compare_incrementally(first: Timeline, second: Timeline, window: Window) -> Incremental[Comparison]:
-    """The same in small pieces. The runs may go on in between: what comes after the window plays no part."""
-    of_first = yield from _sides(first, window)
-    of_second = yield from _sides(second, window)
+    """The same, step by step. The runs may go on meanwhile: events after the window have no effect."""
+    of_first = yield from _callbacks_of(first, window)
+    of_second = yield from _callbacks_of(second, window)
     partners = _partners(of_first, of_second)
     pairs: list[tuple[Key, CallbackInRun | None, CallbackInRun | None]] = [
-        (key, side, of_second.get(partners.get(key, key))) for key, side in of_first.items()
+        (key, callback, of_second.get(partners.get(key, key))) for key, callback in of_first.items()
     ]
     taken = {*of_first, *partners.values()}
-    pairs += [(key, None, side) for key, side in of_second.items() if key not in taken]
-    used = [pair for pair in pairs if any(side and not side.idle for side in pair[1:])]
+    pairs += [(key, None, callback) for key, callback in of_second.items() if key not in taken]
+    used = [pair for pair in pairs if any(callback and not callback.idle for callback in pair[1:])]
     short = Counter(_short_name(key) for key, *_ in used)
     return Comparison(
         window,
@@ -117,7 +116,7 @@ def compare_incrementally(first: Timeline, second: Timeline, window: Window) -> 
 
 
 def _partners(first: Iterable[Key], second: Iterable[Key]) -> dict[Key, Key]:
-    """Which callbacks of the first run are the second's with another node's name."""
+    """Match callbacks of the first run with those of the second that differ only in the node's name."""
     alone, others = set(first) - set(second), set(second) - set(first)
     nodeless = Counter(key[1:] for key in alone), Counter(key[1:] for key in others)
     found = {key[1:]: key for key in others if nodeless[1][key[1:]] == 1}
@@ -135,16 +134,16 @@ def _long_name(key: Key) -> str:
     return f"{_short_name(key)} ({place}{f' #{number}' if number > 1 else ''})"
 
 
-def _sides(timeline: Timeline, window: Window) -> Incremental[dict[Key, CallbackInRun]]:
+def _callbacks_of(timeline: Timeline, window: Window) -> Incremental[dict[Key, CallbackInRun]]:
     equals: Counter[tuple[str, str, str, str]] = Counter()
-    sides: dict[Key, CallbackInRun] = {}
+    callbacks: dict[Key, CallbackInRun] = {}
     for entity in tuple(timeline.entities.values()):
         alike = _description(entity, timeline)
         equals[alike] += 1
         waits = yield from _wait_figures(timeline.waits_of(entity.id, window), timeline, window)
         figures = yield from statistics_incrementally(timeline, entity.id, window)
-        sides[*alike, equals[alike]] = CallbackInRun(figures, waits)
-    return sides
+        callbacks[*alike, equals[alike]] = CallbackInRun(figures, waits)
+    return callbacks
 
 
 def _description(entity: Entity, timeline: Timeline) -> tuple[str, str, str, str]:
@@ -154,10 +153,10 @@ def _description(entity: Entity, timeline: Timeline) -> tuple[str, str, str, str
 def _wait_figures(
     waits: Sequence[Wait], timeline: Timeline, window: Window
 ) -> Incremental[WaitFigures | None]:
-    """Lengths are of what lies in the window; the waits of one series share the time since when they are."""
+    """The figures of waits, each clipped to the window; a series of waits has one ``since``."""
     shares: defaultdict[str, int] = defaultdict(int)
     lengths = yield from collect(
-        (wait.since, why_waiting(wait, timeline), _part(wait, timeline, window)) for wait in waits
+        (wait.since, why_waiting(wait, timeline), _length_in(wait, timeline, window)) for wait in waits
     )
     longest = length = latest = 0
     for number, (since, why, part) in enumerate(lengths):
@@ -172,8 +171,8 @@ def _wait_figures(
     return WaitFigures(longest, sum(shares.values()), max(shares, key=shares.__getitem__))
 
 
-def _part(wait: Wait, timeline: Timeline, window: Window) -> Nanoseconds:
-    """How long a wait lasted in the window."""
+def _length_in(wait: Wait, timeline: Timeline, window: Window) -> Nanoseconds:
+    """The length of a wait within the window."""
     end = timeline.end if wait.end is None else wait.end
     return max(0, min(end, window.end) - max(wait.start, window.start))
 

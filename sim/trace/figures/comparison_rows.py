@@ -13,7 +13,7 @@ from sim.trace.figures.summary import RobotFigures
 from sim.trace.model import Window
 
 RUNS = ("run A", "run B")
-"""What the runs are called in a table: groups have single letters."""
+"""Names of the runs in a table: single letters are callback groups."""
 DIFFERENCE = "B against A"
 NOTHING = "-"
 
@@ -29,7 +29,7 @@ class Assessment(Enum):
 
 @dataclass(frozen=True, slots=True)
 class ComparisonRow:
-    """One figure of both runs, and the difference in words: ``-392 fewer``."""
+    """One figure of both runs, and the difference in wording: ``-392 fewer``."""
 
     label: str
     figures: tuple[str, str]
@@ -50,16 +50,16 @@ Figure: TypeAlias = float | None
 
 
 class _Spread(NamedTuple):
-    """The usual value and the highest one."""
+    """The median and the maximum."""
 
     median: Figure
     most: float
 
 
-class _Words(NamedTuple):
-    """How figures of a kind are written, what a higher and a lower one is called, and what they mean."""
+class _Wording(NamedTuple):
+    """How to format figures of a kind, and to word and assess a difference."""
 
-    write: Callable[[float], str]
+    format: Callable[[float], str]
     higher: str
     lower: str
     more_is_worse: bool = False
@@ -81,17 +81,17 @@ def _radians(radians: float) -> str:
     return f"{radians:.1f} rad"
 
 
-_COUNTS = _Words(_count, "more", "fewer")
+_COUNTS = _Wording(_count, "more", "fewer")
 _LOSSES = _COUNTS._replace(more_is_worse=True)
-_WAITS = _Words(_length, "longer", "shorter", more_is_worse=True)
-_AGES = _Words(_length, "older", "fresher", more_is_worse=True)
-_LATENESS = _Words(_length, "later", "sooner", more_is_worse=True)
-_DISTANCES = _Words(_metres, "farther", "less far")
-_ANGLES = _Words(_radians, "more", "less")
+_WAITS = _Wording(_length, "longer", "shorter", more_is_worse=True)
+_AGES = _Wording(_length, "older", "fresher", more_is_worse=True)
+_LATENESS = _Wording(_length, "later", "sooner", more_is_worse=True)
+_DISTANCES = _Wording(_metres, "farther", "less far")
+_ANGLES = _Wording(_radians, "more", "less")
 
 
 def sections(comparison: Comparison) -> tuple[Section, ...]:
-    """The whole comparison: callback by callback, then the threads and what the robot did."""
+    """The whole comparison: callback by callback, then the threads and the robot."""
     return (
         *(_section(pair) for pair in comparison.callbacks),
         Section("whole program", tuple(_whole(comparison.first, comparison.second))),
@@ -99,7 +99,7 @@ def sections(comparison: Comparison) -> tuple[Section, ...]:
 
 
 def extent(comparison: Comparison) -> str:
-    """Which part of the runs is compared: ``0 to 12.4 s; run A goes on to 20 s``."""
+    """The compared part of the runs: ``0 to 12.4 s; run A goes on to 20 s``."""
     window = comparison.window
     parts = [stretch(window)]
     for name, run in zip(RUNS, (comparison.first, comparison.second), strict=True):
@@ -109,7 +109,7 @@ def extent(comparison: Comparison) -> str:
 
 
 def stretch(window: Window) -> str:
-    """A window in words: ``0 to 12.4 s``."""
+    """A window as text: ``0 to 12.4 s``."""
     return f"{_seconds(window.start)} to {_seconds(window.end)} s"
 
 
@@ -122,8 +122,8 @@ def _whole(first: RunFigures, second: RunFigures) -> Iterator[ComparisonRow]:
     yield _row("at once", first.threads_at_once, second.threads_at_once, _COUNTS)
     if first.robot is None and second.robot is None:
         return
-    for label, figure, words in _ROBOT_FIGURES:
-        yield _row(label, _asked(figure, first.robot), _asked(figure, second.robot), words)
+    for label, figure, wording in _ROBOT_FIGURES:
+        yield _row(label, _apply(figure, first.robot), _apply(figure, second.robot), wording)
     yield _row("collisions", _collisions(first), _collisions(second), _LOSSES)
     yield _place(first.robot, second.robot)
     yield _heading(first.robot, second.robot)
@@ -133,7 +133,7 @@ def _collisions(run: RunFigures) -> Figure:
     return None if run.robot is None else run.collisions
 
 
-_ROBOT_FIGURES: tuple[tuple[str, Callable[[RobotFigures], Figure], _Words], ...] = (
+_ROBOT_FIGURES: tuple[tuple[str, Callable[[RobotFigures], Figure], _Wording], ...] = (
     ("robot travelled", lambda robot: robot.travelled, _DISTANCES),
     ("robot turned", lambda robot: robot.turned, _ANGLES),
     ("turns", lambda robot: robot.turns, _COUNTS),
@@ -141,7 +141,7 @@ _ROBOT_FIGURES: tuple[tuple[str, Callable[[RobotFigures], Figure], _Words], ...]
 
 
 def _place(first: RobotFigures | None, second: RobotFigures | None) -> ComparisonRow:
-    figures = _of_both(lambda robot: f"{_places(robot.x)} {_places(robot.y)} m", first, second)
+    figures = _format_both(lambda robot: f"{_places(robot.x)} {_places(robot.y)} m", first, second)
     label = "robot at x y"
     if first is None or second is None:
         return ComparisonRow(label, figures)
@@ -153,12 +153,12 @@ def _place(first: RobotFigures | None, second: RobotFigures | None) -> Compariso
 
 
 def _places(metres: float) -> str:
-    """Two places; what rounds to nothing has no minus."""
+    """Two decimals; zero has no minus sign."""
     return f"{round(metres, 2) + 0.0:.2f}"
 
 
 def _heading(first: RobotFigures | None, second: RobotFigures | None) -> ComparisonRow:
-    figures = _of_both(lambda robot: f"{_degrees(robot.yaw)}°", first, second)
+    figures = _format_both(lambda robot: f"{_degrees(robot.yaw)}°", first, second)
     if first is None or second is None:
         return ComparisonRow("heading", figures)
     turned = _degrees(math.remainder(second.yaw - first.yaw, math.tau))
@@ -171,10 +171,12 @@ def _degrees(radians: float) -> int:
     return round(math.degrees(radians))
 
 
-_Told = TypeVar("_Told")
+_Result = TypeVar("_Result")
 
 
-def _of_both(write: Callable[[_Told], str], first: _Told | None, second: _Told | None) -> tuple[str, str]:
+def _format_both(
+    write: Callable[[_Result], str], first: _Result | None, second: _Result | None
+) -> tuple[str, str]:
     return (
         NOTHING if first is None else write(first),
         NOTHING if second is None else write(second),
@@ -195,21 +197,21 @@ def _section(pair: CallbackPair) -> Section:
 
 
 def _rows(first: CallbackInRun | None, second: CallbackInRun | None) -> Iterator[ComparisonRow]:
-    for label, figure, words in _FIGURES:
-        one, other = _asked(figure, first), _asked(figure, second)
+    for label, figure, wording in _FIGURES:
+        one, other = _apply(figure, first), _apply(figure, second)
         if one is not None or other is not None:
-            yield _row(label, one, other, words)
-    for label, spread, words in _SPREADS:
-        of_first, of_second = _asked(spread, first), _asked(spread, second)
+            yield _row(label, one, other, wording)
+    for label, spread, wording in _SPREADS:
+        of_first, of_second = _apply(spread, first), _apply(spread, second)
         if of_first or of_second:
-            yield _spread_row(label, of_first, of_second, words)
+            yield _spread_row(label, of_first, of_second, wording)
 
 
-_Asked = TypeVar("_Asked")
+_Value = TypeVar("_Value")
 
 
-def _asked(question: Callable[[_Asked], _Told | None], asked: _Asked | None) -> _Told | None:
-    return None if asked is None else question(asked)
+def _apply(function: Callable[[_Value], _Result | None], value: _Value | None) -> _Result | None:
+    return None if value is None else function(value)
 
 
 def _waited(side: CallbackInRun) -> _Spread | None:
@@ -223,52 +225,54 @@ def _spread(values: Distribution | None) -> _Spread | None:
     return None if values is None else _Spread(values.median, values.most)
 
 
-_FIGURES: tuple[tuple[str, Callable[[CallbackInRun], Figure], _Words], ...] = (
+_FIGURES: tuple[tuple[str, Callable[[CallbackInRun], Figure], _Wording], ...] = (
     ("calls", lambda side: side.figures.calls, _COUNTS),
     ("errors", lambda side: side.figures.errors or None, _LOSSES),
     ("drops", lambda side: side.figures.drops if side.figures.entity.depth else None, _LOSSES),
 )
-_SPREADS: tuple[tuple[str, Callable[[CallbackInRun], _Spread | None], _Words], ...] = (
+_SPREADS: tuple[tuple[str, Callable[[CallbackInRun], _Spread | None], _Wording], ...] = (
     ("wait med/max", _waited, _WAITS),
     ("age med/max", lambda side: _spread(side.figures.age), _AGES),
     ("late med/max", lambda side: _spread(side.figures.late), _LATENESS),
 )
 
 
-def _row(label: str, first: Figure, second: Figure, words: _Words) -> ComparisonRow:
-    figures = _of_both(words.write, first, second)
+def _row(label: str, first: Figure, second: Figure, wording: _Wording) -> ComparisonRow:
+    figures = _format_both(wording.format, first, second)
     if first is None or second is None:
         return ComparisonRow(label, figures)
-    return ComparisonRow(label, figures, *_difference(first, second, words))
+    return ComparisonRow(label, figures, *_difference(first, second, wording))
 
 
-def _spread_row(label: str, first: _Spread | None, second: _Spread | None, words: _Words) -> ComparisonRow:
-    """A row of two spreads; what differs is told of the highest, and of the usual if only that differs."""
-    figures = _of_both(lambda spread: _spread_text(spread, words), first, second)
+def _spread_row(
+    label: str, first: _Spread | None, second: _Spread | None, wording: _Wording
+) -> ComparisonRow:
+    """A row of two spreads; the difference is that of the maxima, or of the medians if only these differ."""
+    figures = _format_both(lambda spread: _spread_text(spread, wording), first, second)
     if first is None or second is None:
         return ComparisonRow(label, figures)
     which = "max"
-    text, assessment = _difference(first.most, second.most, words)
+    text, assessment = _difference(first.most, second.most, wording)
     if assessment is Assessment.SAME and first.median is not None and second.median is not None:
         which = "med"
-        text, assessment = _difference(first.median, second.median, words)
+        text, assessment = _difference(first.median, second.median, wording)
     return ComparisonRow(
         label, figures, text if assessment is Assessment.SAME else f"{which} {text}", assessment
     )
 
 
-def _spread_text(spread: _Spread, words: _Words) -> str:
-    median = NOTHING if spread.median is None else words.write(spread.median)
-    return f"{median} / {words.write(spread.most)}"
+def _spread_text(spread: _Spread, wording: _Wording) -> str:
+    median = NOTHING if spread.median is None else wording.format(spread.median)
+    return f"{median} / {wording.format(spread.most)}"
 
 
-def _difference(first: float, second: float, words: _Words) -> tuple[str, Assessment]:
-    """In words, as exactly as the figures themselves are written."""
-    if words.write(first) == words.write(second):
+def _difference(first: float, second: float, wording: _Wording) -> tuple[str, Assessment]:
+    """The difference as text, with the precision of the figures."""
+    if wording.format(first) == wording.format(second):
         return "same", Assessment.SAME
     step = second - first
-    sign, word = ("+", words.higher) if step > 0 else ("-", words.lower)
+    sign, word = ("+", wording.higher) if step > 0 else ("-", wording.lower)
     assessment = Assessment.OTHER
-    if words.more_is_worse:
+    if wording.more_is_worse:
         assessment = Assessment.WORSE if step > 0 else Assessment.BETTER
-    return f"{sign}{words.write(abs(step))} {word}", assessment
+    return f"{sign}{wording.format(abs(step))} {word}", assessment

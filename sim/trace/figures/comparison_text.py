@@ -1,4 +1,4 @@
-"""A comparison of two runs as plain text: a column for each and one for what differs."""
+"""A comparison of two runs as plain text: a column for each and one for the difference."""
 
 from collections.abc import Iterator
 
@@ -9,7 +9,7 @@ _GAP = "  "
 
 
 def comparison_text(comparison: Comparison, first: str, second: str) -> str:
-    """The whole comparison, ending in a newline; ``first`` and ``second`` are what the runs are called."""
+    """The whole comparison, ending in a newline; ``first`` and ``second`` are the runs' names."""
     shown = sections(comparison)
     head = ComparisonRow("", RUNS, DIFFERENCE)
     rows = [head, *(row for section in shown for row in section.rows)]

@@ -1,4 +1,4 @@
-"""How many threads of a run were ever needed at once."""
+"""The highest number of threads that a run needed at once."""
 
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
@@ -11,13 +11,13 @@ from sim.trace.timeline import Timeline
 from sim.units import SECOND
 
 _SETTLED_AFTER: Nanoseconds = SECOND
-"""How long threads of a real-clock run may report out of order; younger calls are looked at again."""
+"""How far threads of a real-clock run may report out of order; younger calls are checked again."""
 
 
 class Concurrency:
     """The highest number of threads that ran callbacks at the same moment, up to any moment of a run.
 
-    Looks at every call once, and at the youngest ones again.
+    Checks every call once, and the youngest ones again.
     """
 
     def __init__(self, timeline: Timeline) -> None:
@@ -27,13 +27,13 @@ class Concurrency:
         self._fresh: list[tuple[Nanoseconds, int]] = []
 
     def peak(self, at: Nanoseconds) -> int:
-        """Return the most threads at once until ``at``."""
-        self._look()
+        """Return the highest number of threads up to ``at``."""
+        self._update()
         peaks = [*self._peaks, *self._fresh]
         place = bisect_right(peaks, at, key=itemgetter(0))
         return peaks[place - 1][1] if place else 0
 
-    def _look(self) -> None:
+    def _update(self) -> None:
         end = self._timeline.end
         best = self._peaks[-1][1] if self._peaks else 0
         found = _rises(self._timeline, Window(self._settled, end + 1), best)
@@ -44,12 +44,12 @@ class Concurrency:
 
 
 def threads_at_once(timeline: Timeline, window: Window) -> int:
-    """Return the most threads that ran callbacks at one moment of the window."""
+    """Return the highest number of threads that ran callbacks at one moment of the window."""
     return run_to_end(threads_incrementally(timeline, window))
 
 
 def threads_incrementally(timeline: Timeline, window: Window) -> Incremental[int]:
-    """The same in small pieces."""
+    """The same, change by change."""
     best = 0
     for part in split(window, sum(timeline.calls_of(entity, window) for entity in timeline.entities)):
         rises = _rises(timeline, part, best)
@@ -59,47 +59,47 @@ def threads_incrementally(timeline: Timeline, window: Window) -> Incremental[int
 
 
 def _rises(timeline: Timeline, window: Window, best: int) -> list[tuple[Nanoseconds, int]]:
-    """Return when more than ``best`` threads ran at once, and how many, each time a record is broken.
+    """Return the times at which the maximum rises above ``best``, each with the new maximum.
 
-    A call that took no time needs a thread beside those that began before it and last longer. What else
-    happened at the same instant may have come before or after it, so it is not counted as at once.
+    A call that took no time needs a thread besides those of calls around it. Other calls of the same instant
+    may have come before or after it, so they do not count.
     """
     running = 0
     rises: list[tuple[Nanoseconds, int]] = []
-    for at, step in sorted(_steps(timeline, window)):
-        needed = running + (step is not _Step.END)
+    for at, change in sorted(_changes(timeline, window)):
+        needed = running + (change is not _Change.END)
         if needed > best:
             best = needed
             rises.append((at, best))
-        running += {_Step.END: -1, _Step.INSTANT: 0, _Step.BEGIN: 1}[step]
+        running += {_Change.END: -1, _Change.INSTANT: 0, _Change.BEGIN: 1}[change]
     return rises
 
 
-class _Step(IntEnum):
-    """What happens on a thread, in the order in which it counts at one instant."""
+class _Change(IntEnum):
+    """Changes of a thread, in the order in which they count at one instant."""
 
     END = 0
     INSTANT = 1
     BEGIN = 2
 
 
-def _steps(timeline: Timeline, window: Window) -> Iterator[tuple[Nanoseconds, _Step]]:
+def _changes(timeline: Timeline, window: Window) -> Iterator[tuple[Nanoseconds, _Change]]:
     for thread in timeline.threads:
         for start, end in _busy(timeline.spans_on(thread, window), window):
             if start == end:
-                yield start, _Step.INSTANT
+                yield start, _Change.INSTANT
             else:
-                yield start, _Step.BEGIN
-                yield end, _Step.END
+                yield start, _Change.BEGIN
+                yield end, _Change.END
 
 
 def _busy(spans: Sequence[Span], window: Window) -> list[tuple[Nanoseconds, Nanoseconds]]:
-    """Return the stretches in which a thread ran anything, nested and following calls joined."""
-    stretches: list[tuple[Nanoseconds, Nanoseconds]] = []
+    """Return a thread's busy intervals; nested and adjacent calls are merged."""
+    intervals: list[tuple[Nanoseconds, Nanoseconds]] = []
     for span in spans:
         end = span.end_at(window.end)
-        if stretches and span.start <= stretches[-1][1]:
-            stretches[-1] = (stretches[-1][0], max(end, stretches[-1][1]))
+        if intervals and span.start <= intervals[-1][1]:
+            intervals[-1] = (intervals[-1][0], max(end, intervals[-1][1]))
         else:
-            stretches.append((span.start, end))
-    return stretches
+            intervals.append((span.start, end))
+    return intervals

@@ -1,7 +1,7 @@
 """Statistics of callbacks in a window of time: how often, how long, how regularly, and with how old data.
 
-Every distribution takes its percentiles by nearest rank: the p-th is the smallest value that at least p
-per cent of the values do not exceed. So each figure is one that occurred.
+Percentiles are nearest-rank: the p-th is the smallest value that at least p per cent of the values do not
+exceed. So each figure is a value that occurred.
 """
 
 from array import array
@@ -26,7 +26,7 @@ _Ranked: TypeAlias = np.ndarray[Any, np.dtype[np.int64]]
 
 @dataclass(frozen=True, slots=True)
 class Distribution:
-    """How values in nanoseconds are distributed; ``count`` is at least 1."""
+    """The distribution of values in nanoseconds; ``count`` is at least 1."""
 
     count: int
     least: Nanoseconds
@@ -37,22 +37,19 @@ class Distribution:
 
 @dataclass(frozen=True, slots=True)
 class CallbackStatistics:
-    """What a callback's calls in a window were like. A distribution without values is None.
+    """The statistics of a callback's calls in a window. A distribution without values is None.
 
-    - ``calls``: how many began in the window. Going on after a suspension begins no call.
-    - ``duration``: from start to end of each that began in the window and has ended. A coroutine's call that
-      was suspended is several stretches on threads, and counts each.
-    - ``wait``: of each call that began in the window, how long the callback had been ready: the length of the
-      last series of waits that ended in the window, was over when the call began and is no earlier call's. 0
-      for a call without one: it ran as soon as it was ready.
-    - ``jitter``: how regular it was, as absolute deviations. Timers: time between the starts of a call and of
-      the one before it, less the period. Subscriptions: time between the publications of the message that a
-      call takes and of the one before, less the median of these times. Both calls begin in the window. None
-      for other entities.
+    - ``calls``: the number that started in the window. A resumption starts no call.
+    - ``duration``: of those that started in the window and have ended; of a suspended call, each segment.
+    - ``wait``: how long the callback had been ready before each call: the length of the last series of waits
+      that ended in the window and before the call, and belongs to no earlier call. 0 if there is none.
+    - ``jitter``: absolute deviations. Timers: time between the starts of consecutive calls less the period.
+      Subscriptions: time between the publications of consecutive messages less the median of these times.
+      None for other entities.
     - ``drops``: messages that its queue lost in the window.
-    - ``age``: age of the message, request or reply when a call takes it; None for timers.
-    - ``late``: how late each call of a timer was; None for others.
-    - ``errors``: calls that began in the window and raised.
+    - ``age``: age of the message, request or reply at the start of each call; None for timers.
+    - ``late``: the lateness of each call of a timer; None for others.
+    - ``errors``: calls that started in the window and raised.
     """
 
     entity: Entity
@@ -68,11 +65,11 @@ class CallbackStatistics:
 
 @dataclass(frozen=True, slots=True)
 class Statistics:
-    """A window in figures: its callbacks, and how busy its threads were.
+    """The statistics of a window: its callbacks, and the load of its threads.
 
     ``callbacks`` has the entities whose callbacks ran, waited or lost messages, in order of appearance.
-    ``busy`` is the share (0 to 1) of the window in which each thread ran callbacks, standing still in them
-    included; ``threads_at_once`` the most that did so at any one moment.
+    ``busy`` is the share (0 to 1) of the window in which each thread ran callbacks, blocked ones included;
+    ``threads_at_once`` the highest number of such threads at one moment.
     """
 
     window: Window
@@ -82,7 +79,7 @@ class Statistics:
 
 
 def statistics(timeline: Timeline, window: Window | None = None) -> Statistics:
-    """The statistics of a window, or of all that is known.
+    """The statistics of a window, or of the whole run.
 
     Takes time in proportion to the calls and waits in the window.
     """
@@ -108,14 +105,14 @@ def statistics_of(timeline: Timeline, entity: EntityId, window: Window) -> Callb
 def statistics_incrementally(
     timeline: Timeline, entity: EntityId, window: Window
 ) -> Incremental[CallbackStatistics]:
-    """The same in small pieces; the run may go on in between, after the window.
+    """The same, step by step; the run may go on meanwhile, after the window.
 
     Raises:
         KeyError: the timeline knows no such entity.
     """
-    about = timeline.entities[entity]
-    is_timer = about.kind is EntityKind.TIMER
-    # Numbers and no spans: hundreds of thousands of objects would keep the garbage collector busy.
+    known = timeline.entities[entity]
+    is_timer = known.kind is EntityKind.TIMER
+    # Arrays instead of spans: hundreds of thousands of objects would slow the garbage collector down.
     lengths, starts, ages = array("q"), array("q"), array("q")
     errors = 0
     for part in split(window, timeline.calls_of(entity, window)):
@@ -128,11 +125,11 @@ def statistics_incrementally(
         yield
     of_ages = yield from _distributed(ages)
     return CallbackStatistics(
-        entity=about,
+        entity=known,
         calls=len(starts),
         duration=(yield from _distributed(lengths)),
         wait=(yield from _waited(timeline, entity, starts, window)),
-        jitter=(yield from _jitter(about, starts, ages)),
+        jitter=(yield from _jitter(known, starts, ages)),
         drops=timeline.drops_of(entity, window),
         age=None if is_timer else of_ages,
         late=of_ages if is_timer else None,
@@ -154,7 +151,7 @@ def _distributed(values: Iterable[Nanoseconds]) -> Incremental[Distribution | No
 
 
 def _ranked(values: Iterable[Nanoseconds]) -> Incremental[_Ranked]:
-    """Values in ascending order; an hour's are sorted within milliseconds."""
+    """Values in ascending order."""
     found = array("q")
     for value in values:
         found.append(value)
@@ -169,41 +166,41 @@ def percentile(ranked: Sequence[Nanoseconds] | _Ranked, per_cent: int) -> Nanose
 
 
 def _known(timeline: Timeline, window: Window) -> Window:
-    """The window without what lies after the end of the run."""
+    """The window up to the end of the run."""
     return Window(window.start, min(window.end, max(timeline.end, window.start)))
 
 
 def _waited(
     timeline: Timeline, entity: EntityId, starts: Sequence[Nanoseconds], window: Window
 ) -> Incremental[Distribution | None]:
-    """How long the callback had been ready before each call."""
+    """The time that the callback had been ready before each call."""
     if not starts:
         return None
     # A wait that ends with the window's first moment is one for a call that begins then.
     waits = timeline.waits_of(entity, Window(window.start - 1, window.end))
     known = yield from collect((wait.since, wait.end) for wait in waits)
-    over = yield from collect(_over(known))
-    return (yield from _distributed(_waits(starts, over)))
+    finished = yield from collect(_finished_series(known))
+    return (yield from _distributed(_waits(starts, finished)))
 
 
 def _waits(
-    starts: Sequence[Nanoseconds], over: Sequence[tuple[Nanoseconds, Nanoseconds]]
+    starts: Sequence[Nanoseconds], finished: Sequence[tuple[Nanoseconds, Nanoseconds]]
 ) -> Iterator[Nanoseconds]:
-    """How long the callback had been ready; a series of waits belongs to one call at most."""
+    """The time ready before each start; a series of waits belongs to at most one call."""
     place = 0
     for start in starts:
         waited = 0
-        while place < len(over) and over[place][0] <= start:
-            ended, since = over[place]
+        while place < len(finished) and finished[place][0] <= start:
+            ended, since = finished[place]
             waited = ended - since
             place += 1
         yield waited
 
 
-def _over(
+def _finished_series(
     waits: Iterable[tuple[Nanoseconds, Nanoseconds | None]],
 ) -> Iterator[tuple[Nanoseconds, Nanoseconds]]:
-    """End and ``since`` of each series of waits that is over; in a series only the reason changes."""
+    """End and ``since`` of each finished series of waits; within a series only the reason changes."""
     for since, series in groupby(waits, key=itemgetter(0)):
         *_, (_, end) = series
         if end is not None:
@@ -225,11 +222,10 @@ def _jitter(
 
 
 def ages_used(timeline: Timeline, timer: Entity, window: Window) -> dict[EntityId, Distribution]:
-    """How old the newest message of each subscription of its node was when a timer's calls began.
+    """The age of each subscription's newest message, of the timer's node, at the start of the timer's calls.
 
-    Of the messages that the subscription's callback had taken by then (at that moment included) the newest is
-    the one published last. Calls before the first message count nowhere. Looks at all calls of the
-    subscriptions before the window's end.
+    The newest message is the one published last of those taken at or before that time. Calls before the first
+    message do not count. Reads all calls of the subscriptions before the window's end.
     """
     starts_of_timer = [call.start for call in timeline.calls_begun(timer.id, window)]
     used: dict[EntityId, Distribution] = {}

@@ -1,4 +1,4 @@
-"""What a run comes to in figures: its callbacks, threads, service calls and the robot."""
+"""The summary of a run in figures: callbacks, threads, service calls and the robot."""
 
 from collections import Counter, defaultdict
 from collections.abc import Iterable, Iterator
@@ -13,17 +13,17 @@ from sim.trace.model import Call, Entity, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
 
 TURNING = 0.02
-"""From how many rad/s on the robot counts as turning, and not as drifting while it drives straight."""
+"""Rad/s from which on the robot counts as turning; slower is drift."""
 TURN = 0.5
-"""From how many radians in one direction on it counts as a turn."""
+"""Radians in one direction from which on it counts as a turn."""
 
 _BETWEEN_POSES: Nanoseconds = 20_000_000
-"""About how long it is from one pose of the robot to the next."""
+"""Approximate time between two poses of the robot."""
 
 
 @dataclass(frozen=True, slots=True)
 class LongestWait:
-    """The longest that a ready callback was kept from running; ``why`` is what kept it most of that time."""
+    """The longest wait of a ready callback; ``why`` is the reason of most of that time."""
 
     length: Nanoseconds
     why: str
@@ -31,10 +31,10 @@ class LongestWait:
 
 @dataclass(frozen=True, slots=True)
 class CallbackFigures:
-    """What became of one callback.
+    """The figures of one callback.
 
-    ``running`` is the share (0 upwards; above 1 if calls overlap) of the run that its calls took;
-    ``late`` the age of the oldest message it took, or how late a timer was at worst.
+    ``running`` is the share (0 upwards; above 1 if calls overlap) of the run that its calls took; ``late``
+    the age of the oldest message it took, or a timer's greatest lateness.
     """
 
     entity: Entity
@@ -50,7 +50,7 @@ class CallbackFigures:
 
 @dataclass(frozen=True, slots=True)
 class ServiceFigures:
-    """Calls of one service; ``round_trips`` are the times from request to reply of those answered."""
+    """Calls of one service; ``round_trips`` are the times from request to reply."""
 
     service: str
     calls: int
@@ -59,7 +59,7 @@ class ServiceFigures:
 
 @dataclass(frozen=True, slots=True)
 class RobotFigures:
-    """How the robot got about: turns with their radians in all, metres travelled, and where it is now."""
+    """The robot's motion: turns and their total radians, metres travelled, and the last pose."""
 
     turns: int
     turned: float
@@ -71,7 +71,7 @@ class RobotFigures:
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """A run in figures; ``robot`` is None for a run without one."""
+    """The figures of a run; ``robot`` is None for a run without one."""
 
     target: str
     clock: str
@@ -86,7 +86,7 @@ class Summary:
 
 
 def summarise(timeline: Timeline) -> Summary:
-    """The figures of a run as far as its timeline goes."""
+    """Summarise a whole timeline."""
     whole = Window(0, timeline.end + 1)
     spans = [timeline.spans_on(thread, whole) for thread in timeline.threads]
     return Summary(
@@ -127,7 +127,7 @@ def _callbacks(timeline: Timeline, whole: Window) -> Iterator[CallbackFigures]:
 
 
 def _names(timeline: Timeline) -> dict[EntityId, str]:
-    """What each entity is called: its callback, with its topic, service or node where others share that."""
+    """The name of each entity: its callback, with topic, service or node if the name is not unique."""
     spoken = {entity.id: entity.spoken_name for entity in timeline.entities.values()}
     shared = Counter(spoken.values())
     return {
@@ -139,7 +139,7 @@ def _names(timeline: Timeline) -> dict[EntityId, str]:
 
 
 def _longest(waits: Iterable[Wait], timeline: Timeline) -> LongestWait | None:
-    """The longest series of waits; those of one series share the time since when they are ready."""
+    """The longest series of waits; a series has one ``since``."""
     longest: LongestWait | None = None
     for _, each in groupby(waits, key=lambda wait: wait.since):
         series = list(each)
@@ -163,12 +163,12 @@ def _services(calls: Iterable[Call]) -> Iterator[ServiceFigures]:
 
 
 def robot_in(timeline: Timeline, window: Window) -> RobotFigures | None:
-    """What the robot did in a window; ``travelled`` counts from the run's beginning."""
+    """The robot's motion in a window; ``travelled`` counts from the run's start."""
     return run_to_end(robot_incrementally(timeline, window))
 
 
 def robot_incrementally(timeline: Timeline, window: Window) -> Incremental[RobotFigures | None]:
-    """The same in small pieces."""
+    """The same, step by step."""
     last = timeline.robot(window.end - 1)
     if last is None or last.t < window.start:
         return None
@@ -180,7 +180,7 @@ def robot_incrementally(timeline: Timeline, window: Window) -> Incremental[Robot
 
 
 def _angles(steps: Iterable[tuple[int, float]]) -> Incremental[list[float]]:
-    """The signed angles, in radians, of the stretches in which the robot turned in one direction."""
+    """The signed angles of turns in one direction, in radians."""
     found: list[float] = []
     latest = 0
     for number, (direction, angle) in enumerate(steps):
@@ -195,7 +195,7 @@ def _angles(steps: Iterable[tuple[int, float]]) -> Incremental[list[float]]:
 
 
 def trail_in_parts(timeline: Timeline, window: Window) -> Iterator[RobotMoved]:
-    """Where the robot was in a window, looked up bit by bit."""
+    """The robot's poses in a window, queried part by part."""
     for part in split(window, window.length // _BETWEEN_POSES):
         yield from timeline.trail(part)
 

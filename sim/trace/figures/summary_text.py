@@ -1,4 +1,4 @@
-"""A summary as plain text for a terminal: aligned columns, 79 wide where names allow."""
+"""A summary as plain text for a terminal: aligned columns, 79 characters wide where names allow."""
 
 import math
 from collections.abc import Iterator, Sequence
@@ -11,7 +11,7 @@ LATE_BY = "late by: the oldest message it took, or how late its timer was at wor
 
 
 def plain_text(summary: Summary) -> str:
-    """The whole summary, ending in a newline. What a run did not have, it leaves out."""
+    """The whole summary, ending in a newline, without empty parts."""
     parts = [
         list(_heading(summary)),
         list(_callback_table(summary.callbacks)),
@@ -76,7 +76,7 @@ def _rest(summary: Summary) -> Iterator[str]:
 
 
 def service_line(figures: ServiceFigures) -> str:
-    """The calls of a service in words: ``/motor_power  2 calls, answered after 5.0 s``."""
+    """The calls of a service as text: ``/motor_power  2 calls, answered after 5.0 s``."""
     trips = figures.round_trips
     if not trips:
         return f"{figures.service}  {_counted(figures.calls, 'call')}, no reply"
@@ -87,7 +87,7 @@ def service_line(figures: ServiceFigures) -> str:
 
 
 def robot_line(figures: RobotFigures) -> str:
-    """What the robot did, in words: ``2 turns (3.1 rad), 0.85 m travelled, at x 0.85 y 0.00 heading 0°``."""
+    """The robot's motion as text: ``2 turns (3.1 rad), 0.85 m travelled, at x 0.85 y 0.00 heading 0°``."""
     turns = _counted(figures.turns, "turn") + (f" ({figures.turned:.1f} rad)" if figures.turns else "")
     x, y, heading = _rounded(figures.x, 2), _rounded(figures.y, 2), _rounded(math.degrees(figures.yaw), 0)
     pose = f"at x {x:.2f} y {y:.2f} heading {heading:.0f}°"
@@ -95,7 +95,7 @@ def robot_line(figures: RobotFigures) -> str:
 
 
 def _rounded(value: float, places: int) -> float:
-    """Rounded, and never minus zero."""
+    """Rounded, without negative zero."""
     return round(value, places) + 0.0
 
 

@@ -1,4 +1,4 @@
-"""Keeps all events of a live run in a temporary file, from which exports read them."""
+"""Keeps the events of a live run in a temporary file, for exports."""
 
 from collections.abc import Iterator, Sequence
 from io import FileIO
@@ -13,7 +13,7 @@ from sim.trace.events import AnyEvent, MessageSent, decode, encode
 from sim.trace.model import Nanoseconds
 
 SIZE_LIMIT = 512_000_000
-"""Bytes that the file may have by default: millions of events take a tenth of it."""
+"""Default limit of the file in bytes: millions of events take a tenth of it."""
 _BLOCK = 128_000
 """Bytes of packed events that are compressed and written together."""
 _LENGTH = 4
@@ -21,12 +21,11 @@ _LENGTH = 4
 
 
 class EventStore:
-    """The events of a run from its beginning, compressed, in a temporary file without a name.
+    """The events of a run, compressed, in an anonymous temporary file.
 
-    The file is made in the system's folder for temporary files with the first block, and closed with the
-    store. When it has ``size_limit`` bytes or the disk is full, later events are dropped, and ``missing``
-    says so. Contents of messages are not kept: recordings have those. One thread may call ``take`` while
-    another one iterates over ``batches``.
+    The file is created with the first block and closed with the store. When it reaches ``size_limit`` bytes
+    or the disk is full, later events are dropped, and ``missing`` says so. Contents of messages are not
+    stored: recordings have them. One thread may call ``take`` while another one iterates over ``batches``.
     """
 
     def __init__(self, size_limit: int = SIZE_LIMIT) -> None:

@@ -1,13 +1,13 @@
-"""Items in order of time, found by bisection; the older ones are kept in a temporary file."""
+"""Items in order of time, searched by bisection; older ones are kept in a temporary file."""
 
 from bisect import bisect_left, bisect_right, insort_right
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, Generic, TypeVar, overload
+from typing import Any, TypeVar, overload
 
 import msgspec
 
+from sim.trace.lazy import LazySequence, ListLike
 from sim.trace.model import Nanoseconds, Window
-from sim.trace.storage.intervals import LazySequence
 from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.spilled_blocks import SpilledBlocks
 
@@ -16,17 +16,17 @@ Item = TypeVar("Item")
 ITEMS_IN_BLOCK = 256
 
 _MEMORY_FACTOR = 4
-"""Roughly how much more memory items take than their encoding."""
+"""Approximate memory of items relative to their encoding."""
 
 _encoder = msgspec.msgpack.Encoder()
 
 
-class History(Sequence[Item], Generic[Item]):
+class History(ListLike[Item]):
     """Items sorted by the time that ``when`` returns; items of the same time keep their order of arrival.
 
-    ``kind`` is the type of the items: immutable, and one that msgspec can encode. Adding the newest item
-    appends it; a late one is inserted. The newest one or two blocks stay in memory, more after an insertion
-    far back; the others are written to the spill file and decoded when they are read.
+    ``kind`` is the type of the items: immutable, and one that msgspec encodes. A new item is appended, a late
+    one inserted. The newest one or two blocks stay in memory, more after an insertion far back; the others
+    are written to the spill file and decoded on access.
     """
 
     __slots__ = ("_blocks", "_full", "_items_in_block", "_spilled", "_tail", "_when")
@@ -58,7 +58,7 @@ class History(Sequence[Item], Generic[Item]):
             self._spill_oldest()
 
     def until(self, at: Nanoseconds) -> int:
-        """How many items there are at or before ``at``."""
+        """The number of items at or before ``at``."""
         if not self._spilled or at >= self._when(self._tail[0]):
             return self._spilled + bisect_right(self._tail, at, key=self._when)
         number = bisect_right(self._blocks.firsts, at) - 1
@@ -67,7 +67,7 @@ class History(Sequence[Item], Generic[Item]):
         return number * self._items_in_block + bisect_right(self._blocks[number], at, key=self._when)
 
     def before(self, at: Nanoseconds) -> int:
-        """How many items there are before ``at``."""
+        """The number of items before ``at``."""
         if not self._spilled or at > self._when(self._tail[0]):
             return self._spilled + bisect_left(self._tail, at, key=self._when)
         number = bisect_left(self._blocks.firsts, at) - 1
@@ -103,16 +103,6 @@ class History(Sequence[Item], Generic[Item]):
         for start in range(0, self._spilled, self._items_in_block):
             yield from self._from(range(start, start + self._items_in_block))
         yield from self._tail
-
-    def __eq__(self, other: object) -> bool:
-        if isinstance(other, Sequence):
-            return len(self) == len(other) and all(mine == its for mine, its in zip(self, other, strict=True))
-        return NotImplemented
-
-    __hash__ = None  # type: ignore[assignment]  # like a list
-
-    def __repr__(self) -> str:
-        return repr(list(self))
 
     def _item(self, number: int) -> Item:
         if number >= self._spilled:

@@ -1,59 +1,20 @@
-"""Intervals of time in a table, and lanes of them that answer which ones overlap a window or a moment."""
+"""Intervals of time in a table, and lanes that find those in a window or at a moment."""
 
-from collections.abc import Callable, Iterator, Sequence
-from typing import TypeAlias, TypeVar, overload
+from collections.abc import Iterator, Sequence
+from typing import TypeAlias
 
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.storage.spill_file import SpillFile
 from sim.trace.storage.table import Table
 
 RowId: TypeAlias = int
-T = TypeVar("T")
 
 OPEN: Nanoseconds = 2**63 - 1
-"""The end of an interval that still lasts: later than any other."""
-
-
-class LazySequence(Sequence[T]):
-    """The intervals of an answer, each made into a value when it is looked at.
-
-    A picture of an hour asks for a hundred thousand calls and looks at a few hundred.
-    """
-
-    __slots__ = ("_make", "_rows")
-
-    def __init__(self, rows: Sequence[RowId], make: Callable[[RowId], T]) -> None:
-        self._rows = rows
-        self._make = make
-
-    def __len__(self) -> int:
-        return len(self._rows)
-
-    @overload
-    def __getitem__(self, place: int) -> T: ...
-    @overload
-    def __getitem__(self, place: slice) -> Sequence[T]: ...
-    def __getitem__(self, place: int | slice) -> T | Sequence[T]:
-        if isinstance(place, slice):
-            return LazySequence(self._rows[place], self._make)
-        return self._make(self._rows[place])
-
-    def __iter__(self) -> Iterator[T]:
-        return map(self._make, self._rows)
-
-    def __eq__(self, other: object) -> bool:
-        if isinstance(other, Sequence):
-            return len(self) == len(other) and all(mine == its for mine, its in zip(self, other, strict=True))
-        return NotImplemented
-
-    __hash__ = None  # type: ignore[assignment]  # like a list
-
-    def __repr__(self) -> str:
-        return repr(list(self))
+"""The end of an open interval: later than any other."""
 
 
 class Intervals:
-    """Start and end of many intervals, and what else is known of each; a row number stands for one of them.
+    """A table of intervals: start, end and further columns; a row number identifies an interval.
 
     A table instead of objects, because an hour of a busy run has hundreds of thousands of intervals.
     """
@@ -68,7 +29,7 @@ class Intervals:
         return len(self.table)
 
     def open(self, start: Nanoseconds, *more: int) -> RowId:
-        """Begin an interval; ``more`` are the cells behind start and end."""
+        """Start an interval; ``more`` are the further cells."""
         return self.table.append([start, OPEN, *more])
 
     def close(self, row: RowId, end: Nanoseconds) -> None:
@@ -76,11 +37,11 @@ class Intervals:
         self.table.change(row, self.END, max(end, self.started_at(row)))
 
     def started_at(self, row: RowId) -> Nanoseconds:
-        """When an interval began."""
+        """The start of an interval."""
         return self.table.cell(row, self.START)
 
     def ended_at(self, row: RowId) -> Nanoseconds:
-        """When an interval ended; ``OPEN`` while it lasts."""
+        """The end of an interval; ``OPEN`` while it lasts."""
         return self.table.cell(row, self.END)
 
 
@@ -90,7 +51,7 @@ def end_or_none(end: Nanoseconds) -> Nanoseconds | None:
 
 
 class Layer(Table):
-    """Intervals of a lane of which none overlap: the starts and the rows, in order."""
+    """Intervals of a lane that do not overlap: starts and row numbers, in order."""
 
     __slots__ = ()
 
@@ -100,7 +61,7 @@ class Layer(Table):
         super().__init__(spill, 2)
 
     def start(self, place: int) -> Nanoseconds:
-        """When the interval at a place begins."""
+        """The start of the interval at a place."""
         return self.cell(place, self.START)
 
     def interval(self, place: int) -> RowId:
@@ -108,16 +69,16 @@ class Layer(Table):
         return self.cell(place, self.ROW)
 
     def intervals(self, places: range) -> Sequence[RowId]:
-        """The rows of the intervals at places that follow each other."""
+        """The rows of the intervals at consecutive places."""
         return self.column(self.ROW, places)
 
 
 class Lane:
-    """The rows that share something (a thread, an entity, a group), in layers within which none overlap.
+    """The rows of a thread, an entity or a group, in layers within which none overlap.
 
-    A row goes to the first layer whose last row is over. There are thus never more layers than intervals
-    at once (nested calls of a thread, simultaneous calls of a group), and in each layer starts and ends
-    both ascend: a query is one bisection a layer, however long a single interval is.
+    A row goes to the first layer whose last row has ended. So there are never more layers than simultaneous
+    intervals (nested calls of a thread, parallel calls of a group), and starts and ends ascend in each layer:
+    a query is one bisection per layer.
     """
 
     __slots__ = ("_intervals", "_layers")
@@ -127,9 +88,9 @@ class Lane:
         self._layers: list[Layer] = []
 
     def add(self, row: RowId) -> Layer:
-        """Take in a row; tells where it went.
+        """Add a row and return its layer.
 
-        In order of start there are no more layers than needed; any order is right.
+        Rows may come in any order; in order of start they need the fewest layers.
         """
         cell = self._intervals.table.cell
         start = cell(row, Intervals.START)
@@ -144,11 +105,11 @@ class Lane:
 
     @property
     def layers(self) -> Sequence[Layer]:
-        """The layers, the one of the outermost intervals first."""
+        """The layers, the outermost intervals first."""
         return self._layers
 
     def overlapping(self, window: Window) -> Sequence[RowId]:
-        """Rows that share time with the window, in order of start; instants count if they lie in it."""
+        """Rows that overlap the window, in order of start; instants count if they lie in it."""
         return self._in_order([layer.intervals(self._places(layer, window)) for layer in self._layers])
 
     def starting(self, window: Window) -> Sequence[RowId]:
@@ -161,7 +122,7 @@ class Lane:
         )
 
     def covering(self, at: Nanoseconds) -> list[RowId]:
-        """Rows that have begun and not ended when everything that happens at ``at`` has happened."""
+        """Rows that are open after all events at ``at``."""
         found: list[RowId] = []
         for layer in self._layers:
             after = layer.until(at)
@@ -172,20 +133,20 @@ class Lane:
         return sorted(found, key=self._order) if len(found) > 1 else found
 
     def starting_in(self, window: Window) -> int:
-        """How many rows start in the window."""
+        """The number of rows that start in the window."""
         return sum(layer.before(window.end) - layer.before(window.start) for layer in self._layers)
 
     def starts_beside(self, at: Nanoseconds, step: int) -> Iterator[Nanoseconds]:
-        """Of every layer the first start after ``at`` (``step`` > 0), or the last one before it."""
+        """Of each layer the first start after ``at`` (``step`` > 0), or the last one before it."""
         for layer in self._layers:
             place = layer.until(at) if step > 0 else layer.before(at) - 1
             if 0 <= place < len(layer):
                 yield layer.start(place)
 
     def ends_beside(self, at: Nanoseconds, step: int) -> Iterator[Nanoseconds]:
-        """Of every layer the first end after ``at`` (``step`` > 0), or the last one before it."""
+        """Of each layer the first end after ``at`` (``step`` > 0), or the last one before it."""
         for layer in self._layers:
-            # Ends ascend as starts do: the one looked for is that of the last to begin, or its neighbour's.
+            # Ends ascend with starts: it is the end of the last interval to start, or its neighbour's.
             nearest = layer.until(at) - 1 if step > 0 else layer.before(at) - 1
             for place in (nearest, nearest + step):
                 if 0 <= place < len(layer):

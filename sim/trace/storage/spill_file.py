@@ -1,4 +1,4 @@
-"""Keeps the older data of a timeline in a temporary file, with a cache of what was read last."""
+"""A temporary file for a timeline's older data, with a cache of the blocks read last."""
 
 import errno
 import os
@@ -15,23 +15,22 @@ CACHE_SIZE = 8_000_000
 """Bytes of decoded blocks that stay in memory."""
 
 ENTRIES_IN_BLOCK = 1024
-"""Rows or items that a block has at most."""
+"""The maximum number of rows or items in a block."""
 
 
 class SpillFile:
-    """A temporary file of blocks, and a cache of the decoded blocks that were read last.
+    """An anonymous temporary file of blocks, and a cache of the decoded blocks that were read last.
 
-    The file has no name and is closed with its owner. It is made in the system's folder for temporary files
-    when the first block comes. If it cannot be made or the disk is full, blocks stay in memory: the timeline
-    then grows, but answers as before. ``cache_size`` is in bytes; a block should have at most ``entries``
-    rows or items. Not thread-safe, like the timeline that owns it.
+    The file is created with the first block and closed with its owner. If it cannot be created or the disk
+    is full, blocks stay in memory, and queries work as before. ``cache_size`` is in bytes; a block should
+    have at most ``entries`` rows or items. Not thread-safe, like the timeline that owns it.
     """
 
     def __init__(self, cache_size: int = CACHE_SIZE, entries: int = ENTRIES_IN_BLOCK) -> None:
         self.entries = entries
         self._file: FileIO | None = None
         self.failure = ""
-        """Why the file cannot be written any more; empty while it can."""
+        """Why the file cannot be written; empty while it can."""
         self._length = 0
         self._in_memory: dict[int, bytes] = {}
         self._cache: OrderedDict[int, tuple[int, Any]] = OrderedDict()
@@ -58,7 +57,7 @@ class SpillFile:
     ) -> Decoded:
         """Return the decoded block at an offset; the same object while it is in the cache.
 
-        ``memory_factor`` is roughly how much more memory the decoded block takes than its bytes.
+        ``memory_factor`` is the approximate memory of a decoded block relative to its bytes.
         """
         cache = self._cache
         if place in cache:

@@ -58,7 +58,7 @@ def test_a_message_that_cannot_be_encoded_is_without_contents() -> None:
 
 
 def test_what_does_not_fit_is_thrown_away_and_counted(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(contents, "_BOUND", 20)
+    monkeypatch.setattr(contents, "_MOST_WAITING", 20)
     kept = Contents(wanted=True)
     first = kept.events(0, 1, "/n", NUMBER(), QOS)
     kept.pack(first)
@@ -69,7 +69,7 @@ def test_what_does_not_fit_is_thrown_away_and_counted(monkeypatch: pytest.Monkey
 
 
 def test_where_room_can_be_made_nothing_is_thrown_away(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(contents, "_BOUND", 20)
+    monkeypatch.setattr(contents, "_MOST_WAITING", 20)
     waiting: list[AnyEvent] = []
     sent: list[AnyEvent] = []
 

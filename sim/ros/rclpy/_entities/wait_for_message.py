@@ -59,7 +59,7 @@ def wait_for_message(
         awaited = _AwaitedMessage(node, msg_type, topic, as_profile(qos_profile))
         node._agenda.add(awaited)
         node.context.network.join_subscription(awaited)
-    node.context._wake_at_end(awaited.wake)
+    node.context.wake_at_end(awaited.wake)
     try:
         awaited.arrived.wait(deadline)
         with host.lock:
