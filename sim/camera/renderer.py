@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from sim.camera.wire import Shot
 from sim.robot.arena import Arena, Circle, Segment
-from sim.robot.bullet import Client
+from sim.robot.bullet import BulletClient
 from sim.robot.scene import build
 
 Pixels = NDArray[np.uint8]
@@ -47,7 +47,7 @@ class Renderer:
         Raises:
             WorldUnavailable: PyBullet cannot be used here; the text says what to do.
         """
-        client = self._client = Client()
+        client = self._client = BulletClient()
         self._scene = build(client, Arena(tuple(Segment(*wall) for wall in walls), Circle(*sphere)))
         self._base_in_inertial = client.getDynamicsInfo(self._scene.robot, -1)[3:5]
         self._robot_shade = self._shade(0.115, 0.0, 0.0)

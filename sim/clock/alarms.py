@@ -19,7 +19,7 @@ _pending = signal.sigpending
 _getsignal = signal.getsignal
 
 
-class Signals:
+class ProcessSignals:
     """The signals of a run's main thread. Make it on that thread; only threads of the clock may call it."""
 
     def __init__(self, outside: OutsideWork) -> None:

@@ -33,7 +33,7 @@ def replace_entropy(replacements: Replacements, outside: OutsideWork) -> None:
 
         seed = real_seed
 
-    class Names(tempfile._RandomNameSequence):  # type: ignore[name-defined,misc]
+    class TemporaryNames(tempfile._RandomNameSequence):  # type: ignore[name-defined,misc]
         """Tells of the new names that learners' temporary files get."""
 
         def __next__(self) -> str:
@@ -44,7 +44,7 @@ def replace_entropy(replacements: Replacements, outside: OutsideWork) -> None:
 
     temporary: Any = tempfile
     temporary._Random = Unpredictable
-    temporary._RandomNameSequence = Names
+    temporary._RandomNameSequence = TemporaryNames
     replacements.put(os, "urandom", drawn)
     replacements.put(os, "getrandom", lambda size, _flags=0: drawn(size))
     generator.seed = seed

@@ -6,7 +6,7 @@ from typing import Protocol
 from sim.clock.virtual_threads import VirtualThread
 
 
-class Held(Protocol):
+class HeldResource(Protocol):
     """A lock, or a thread's end, as far as its holder matters."""
 
     holder: VirtualThread | None
@@ -24,7 +24,7 @@ def cycle_of(thread: VirtualThread) -> list[VirtualThread]:
     lock guards something: else it can be a signal that another thread gives.
     """
     chain = [thread]
-    wanted: Held | None = thread.wants
+    wanted: HeldResource | None = thread.wants
     while wanted is not None and wanted.holder is not None:
         holder = wanted.holder
         if holder in chain:

@@ -15,7 +15,7 @@ from collections.abc import Callable
 from types import CodeType, FrameType, TracebackType
 from typing import Any, TypeVar
 
-from sim.clock.alarms import Signals
+from sim.clock.alarms import ProcessSignals
 from sim.clock.child_processes import ChildProcesses
 from sim.clock.dates import replace_dates
 from sim.clock.descriptors import replace_descriptors
@@ -206,7 +206,7 @@ def live_on(clock: VirtualClock, tell: Callable[[str], None] = _tell_nobody) -> 
     replace_entropy(replacements, outside)
     replace_descriptors(replacements, outside)
     ChildProcesses(outside).replace(replacements)
-    Signals(outside).replace(replacements)
+    ProcessSignals(outside).replace(replacements)
     replace_imports(replacements)
     number_threads(clock)
     replacements.hand_on()

@@ -6,7 +6,7 @@ import threading
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from sim.clock.lock_cycles import Held
+    from sim.clock.lock_cycles import HeldResource
     from sim.clock.virtual import VirtualClock
 
 # Kept from before sim.clock.stdlib puts the virtual ones in their place.
@@ -39,7 +39,7 @@ class VirtualThread:
         self.gate = _allocate_lock()
         self.gate.acquire()
         self.waiting = False
-        self.wants: Held | None = None
+        self.wants: HeldResource | None = None
         """What it waits for without an end: a lock, or that a thread ends."""
         self.woken = False
         self.current_wait = 0

@@ -29,7 +29,7 @@ from sim.engine.outbox import Outbox
 from sim.engine.programs.children import allow_children, refuse_children
 from sim.engine.programs.ending import finalise, set_engine_apart
 from sim.engine.programs.exit_functions import share_exit_functions
-from sim.engine.programs.program import Outcome
+from sim.engine.programs.program import ProgramOutcome
 from sim.engine.programs.programs import Programs
 from sim.engine.programs.ros2_lines import Lines
 from sim.engine.programs.set_up_programs import run_programs
@@ -192,7 +192,7 @@ class Engine:
         clock.time.on_recess = Standstill(clock, record, _ignore if is_watched else self._shutdown.fail).look
         live_on(clock, Repeatability(clock, record).lose)
 
-    def _end(self, outcome: Outcome) -> NoReturn:
+    def _end(self, outcome: ProgramOutcome) -> NoReturn:
         """End as CPython does once a script has, and leave."""
         folders = {Path(program.path).resolve().parent for program in self._setup.programs}
         finalise(self._modules, lambda file: any(is_learners(file, folder) for folder in folders))

@@ -12,7 +12,7 @@ from typing import NoReturn
 from sim.clock import Clock, VirtualClock
 from sim.engine.outbox import Outbox
 from sim.engine.programs.ending import GRACE, VIRTUAL_GRACE, flush_files_soon
-from sim.engine.programs.program import STOPPED, Outcome, threads_left_by
+from sim.engine.programs.program import STOPPED, ProgramOutcome, threads_left_by
 from sim.engine.programs.programs import Programs
 from sim.engine.programs.starting import Starter
 from sim.engine.stdio.descriptors import Descriptors
@@ -126,7 +126,7 @@ class Shutdown:
                     self._tell(Severity.WARN, sentence)
         return True
 
-    def finish(self, outcome: Outcome) -> NoReturn:
+    def finish(self, outcome: ProgramOutcome) -> NoReturn:
         """Leave once the program has ended; it may have failed after it was told to end."""
         cause = Cause(outcome.sentence, outcome.failed, outcome.error)
         if not self.conclude(cause) and outcome.failed:

@@ -84,7 +84,7 @@ class Definition:
         return {name: field_type(description) for name, description in self.fields}
 
 
-class Source(Protocol):
+class DefinitionSource(Protocol):
     """A place that definitions come from."""
 
     def packages(self) -> frozenset[str]:

@@ -48,7 +48,7 @@ class TypeText(NamedTuple):
     size: str | None
 
 
-class Line(NamedTuple):
+class DefinitionLine(NamedTuple):
     """One line of a definition that is neither blank nor a comment."""
 
     place: _Place
@@ -93,7 +93,7 @@ def parse(text: str, package: str, kind: Kind, name: str, *, origin: str) -> Def
     )
 
 
-def line_of(written: str, *, place: _Place) -> Line | None:
+def line_of(written: str, *, place: _Place) -> DefinitionLine | None:
     """Take one line apart; ``None`` for a blank line or a comment.
 
     Raises:
@@ -109,9 +109,9 @@ def line_of(written: str, *, place: _Place) -> Line | None:
         )
     name, equals, value = rest[0].partition("=")
     if equals:
-        return Line(place, of, name.strip(), value.strip(), is_constant=True)
+        return DefinitionLine(place, of, name.strip(), value.strip(), is_constant=True)
     name, *default = rest[0].split(None, 1)
-    return Line(place, of, name, default[0] if default else "", is_constant=False)
+    return DefinitionLine(place, of, name, default[0] if default else "", is_constant=False)
 
 
 def type_text(written: str) -> TypeText | None:
@@ -137,7 +137,7 @@ def require_interface_name(name: str, place: _Place) -> None:
         raise DefinitionError(f"{place}: the name {name!r} must be letters and digits, the first a capital")
 
 
-def _add_constant(structure: _Structure, line: Line) -> None:
+def _add_constant(structure: _Structure, line: DefinitionLine) -> None:
     if not _CONSTANT_NAME.fullmatch(line.name):
         raise DefinitionError(
             f"{line.place}: the constant name {line.name!r} must be capitals, digits and '_'"
@@ -154,7 +154,7 @@ def _add_constant(structure: _Structure, line: Line) -> None:
     structure.constants.append((line.name, cast("Any", line.type), cast("Any", value)))
 
 
-def _add_field(structure: _Structure, line: Line, package: str) -> None:
+def _add_field(structure: _Structure, line: DefinitionLine, package: str) -> None:
     if not _FIELD_NAME.fullmatch(line.name):
         raise DefinitionError(
             f"{line.place}: the field name {line.name!r} must be lower case words joined by '_'"
@@ -172,20 +172,20 @@ def _add_field(structure: _Structure, line: Line, package: str) -> None:
         structure.defaults[line.name] = _read(line, f"default of {line.name!r}", base, is_list=is_list)
 
 
-def _require_new(structure: _Structure, line: Line, noun: str) -> None:
+def _require_new(structure: _Structure, line: DefinitionLine, noun: str) -> None:
     before = structure.places.setdefault(line.name, line.place)
     if before != line.place:
         raise DefinitionError(f"{line.place}: the {noun} {line.name!r} is defined twice; first at {before}")
 
 
-def _read(line: Line, subject: str, base: str, *, is_list: bool) -> object:
+def _read(line: DefinitionLine, subject: str, base: str, *, is_list: bool) -> object:
     try:
         return literal_of(line.value, base, is_list=is_list)
     except ValueError as error:
         raise DefinitionError(f"{line.place}: the {subject}, {line.value}, cannot be used: {error}") from None
 
 
-def _described(line: Line, package: str) -> tuple[FieldDesc, str, bool]:
+def _described(line: DefinitionLine, package: str) -> tuple[FieldDesc, str, bool]:
     """Return a field's type as rosbags describes it, its base, and whether it has several values."""
     form = type_text(line.type)
     if form is None:
@@ -201,7 +201,7 @@ def _described(line: Line, package: str) -> tuple[FieldDesc, str, bool]:
     return (Nodetype.ARRAY, (element, _count(line, form.size, "size"))), form.base, True
 
 
-def _element(line: Line, form: TypeText, package: str) -> BaseDesc | NameDesc:
+def _element(line: DefinitionLine, form: TypeText, package: str) -> BaseDesc | NameDesc:
     if form.length is not None and form.base not in ("string", "wstring"):
         raise DefinitionError(
             f"{line.place}: {line.type!r}: only string and wstring take a bound like '<=5' before the '['"
@@ -215,13 +215,13 @@ def _element(line: Line, form: TypeText, package: str) -> BaseDesc | NameDesc:
     return (Nodetype.NAME, f"{owner or package}/msg/{name}")
 
 
-def _unknown_type(line: Line, base: str) -> str:
+def _unknown_type(line: DefinitionLine, base: str) -> str:
     meant = _MISLEADING.get(base) or next(iter(get_close_matches(base, _PRIMITIVES, n=1)), None)
     advice = f"did you mean {meant!r}?" if meant else "a message is written as Name or package/Name"
     return f"{line.place}: there is no type {base!r}; {advice}"
 
 
-def _count(line: Line, text: str, noun: str) -> int:
+def _count(line: DefinitionLine, text: str, noun: str) -> int:
     if not text.isdecimal() or int(text) == 0:
         raise DefinitionError(
             f"{line.place}: the {noun} {text!r} in {line.type!r} must be a positive integer"

@@ -11,7 +11,13 @@ from sim.interfaces.action_parts import ActionDefinition
 from sim.interfaces.base import ActionType, Message, ServiceType
 from sim.interfaces.building import build_class
 from sim.interfaces.field_types import NamespacedType
-from sim.interfaces.interface_definition import Definition, Kind, Source, UnknownInterfaceError, owner_of
+from sim.interfaces.interface_definition import (
+    Definition,
+    DefinitionSource,
+    Kind,
+    UnknownInterfaceError,
+    owner_of,
+)
 from sim.interfaces.owners import action_class, service_class
 from sim.interfaces.service_events import event_definition
 
@@ -30,7 +36,7 @@ class Registry:
     workspaces of ROS 2 that overlay one another.
     """
 
-    def __init__(self, *sources: Source) -> None:
+    def __init__(self, *sources: DefinitionSource) -> None:
         self._sources = list(reversed(sources))
         self._packages = frozenset().union(*(source.packages() for source in sources))
         self._messages: dict[str, type[Message]] = {}
@@ -39,7 +45,7 @@ class Registry:
         self._under_way: list[NamespacedType] = []
         self._lock = RLock()
 
-    def add(self, source: Source) -> None:
+    def add(self, source: DefinitionSource) -> None:
         """Put a source before all others. Classes that it changes are built anew when next asked for.
 
         A source that is already there and unchanged stays where it is.
@@ -128,7 +134,7 @@ class Registry:
     def _known(self, package: str, kind: Kind) -> frozenset[str]:
         return frozenset().union(*(source.names(package, kind) for source in self._sources))
 
-    def _source(self, package: str, kind: Kind, name: str) -> Source:
+    def _source(self, package: str, kind: Kind, name: str) -> DefinitionSource:
         for source in self._sources:
             if name in source.names(package, kind):
                 return source

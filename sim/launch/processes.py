@@ -18,7 +18,7 @@ Wake = Callable[[Callable[[], None]], None]
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class LaunchLine:
     """A ``ros2 …`` line."""
 
     label: str
@@ -45,7 +45,7 @@ class Upkeep:
 @dataclass(eq=False, slots=True)
 class _Managed:
     action: Action
-    what: ProcessSpec | Line
+    what: ProcessSpec | LaunchLine
     upkeep: Upkeep
     running: RunningProcess | None = None
     respawns: int = 0
@@ -72,7 +72,7 @@ class Processes:
         self._labels += 1
         return f"{stem}-{self._labels}"
 
-    def start(self, action: Action, what: ProcessSpec | Line, upkeep: Upkeep) -> None:
+    def start(self, action: Action, what: ProcessSpec | LaunchLine, upkeep: Upkeep) -> None:
         """Start a process once all that is being visited has been."""
         managed = _Managed(action, what, upkeep)
         self._managed.append(managed)
@@ -196,8 +196,8 @@ class Processes:
         self._context.say(f"sending signal '{now}' to process[{label}]", logger=label)
 
 
-def _begin(machine: Machine, what: ProcessSpec | Line, on_exit: OnExit) -> RunningProcess:
-    if isinstance(what, Line):
+def _begin(machine: Machine, what: ProcessSpec | LaunchLine, on_exit: OnExit) -> RunningProcess:
+    if isinstance(what, LaunchLine):
         return machine.run_line(what.label, what.words, on_exit)
     return machine.start_process(what, on_exit)
 
@@ -207,7 +207,7 @@ def _about(managed: _Managed) -> dict[str, Any]:
     what = managed.what
     assert managed.running is not None
     about = {"action": managed.action, "name": what.label, "pid": managed.running.number}
-    if isinstance(what, Line):
+    if isinstance(what, LaunchLine):
         return {**about, "cmd": what.words, "cwd": None, "env": None}
     folder = what.working_folder
     return {

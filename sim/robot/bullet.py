@@ -14,7 +14,7 @@ class WorldUnavailable(Exception):  # noqa: N818  (said to a person as it is)
     """There can be no robot world on this machine; the text says what to do about it."""
 
 
-class Client:
+class BulletClient:
     """PyBullet's functions, each already bound to one DIRECT client of its own.
 
     Not thread-safe: one thread at a time. Two clients share nothing.

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from importlib.resources import as_file, files
 
 from .arena import LIDAR_HEIGHT, Arena, Circle, Segment
-from .bullet import Client
+from .bullet import BulletClient
 
 WALL_HEIGHT = 0.5
 _WALL_THICKNESS = 0.1
@@ -22,7 +22,7 @@ _BASE = -1
 
 
 @dataclass(frozen=True, slots=True)
-class Scene:
+class BulletScene:
     """PyBullet's numbers of what was built: bodies, and the joints of the wheels."""
 
     floor: int
@@ -32,7 +32,7 @@ class Scene:
     wheels: tuple[int, int]
 
 
-def build(client: Client, arena: Arena) -> Scene:
+def build(client: BulletClient, arena: Arena) -> BulletScene:
     """Put the arena and a robot at the start, at rest, into an empty client."""
     floor = client.createMultiBody(0, client.createCollisionShape(client.GEOM_PLANE))
     client.changeDynamics(floor, _BASE, lateralFriction=1.0)
@@ -45,10 +45,10 @@ def build(client: Client, arena: Arena) -> Scene:
     joints = {client.getJointInfo(robot, i)[1].decode(): i for i in range(client.getNumJoints(robot))}
     wheels = (joints["left_wheel_joint"], joints["right_wheel_joint"])
     _set_surfaces(client, robot, wheels, caster=joints["caster_joint"])
-    return Scene(floor, walls, sphere, robot, wheels)
+    return BulletScene(floor, walls, sphere, robot, wheels)
 
 
-def _add_wall(client: Client, wall: Segment) -> int:
+def _add_wall(client: BulletClient, wall: Segment) -> int:
     along_x, along_y = wall.x1 - wall.x0, wall.y1 - wall.y0
     length = math.hypot(along_x, along_y)
     half = _WALL_THICKNESS / 2
@@ -62,18 +62,18 @@ def _add_wall(client: Client, wall: Segment) -> int:
     return int(client.createMultiBody(0, shape, basePosition=centre, baseOrientation=turned))
 
 
-def _add_sphere(client: Client, sphere: Circle) -> int:
+def _add_sphere(client: BulletClient, sphere: Circle) -> int:
     shape = client.createCollisionShape(client.GEOM_SPHERE, radius=sphere.radius)
     return int(client.createMultiBody(0, shape, basePosition=(sphere.x, sphere.y, LIDAR_HEIGHT)))
 
 
-def _add_robot(client: Client) -> int:
+def _add_robot(client: BulletClient) -> int:
     flags = client.URDF_USE_IMPLICIT_CYLINDER | client.URDF_USE_INERTIA_FROM_FILE
     with as_file(files(__package__) / "burger.urdf") as urdf:
         return int(client.loadURDF(str(urdf), flags=flags))
 
 
-def _set_surfaces(client: Client, robot: int, wheels: tuple[int, int], caster: int) -> None:
+def _set_surfaces(client: BulletClient, robot: int, wheels: tuple[int, int], caster: int) -> None:
     frictions = dict.fromkeys(wheels, _WHEEL_FRICTION) | {caster: 0.0}
     for link in range(_BASE, client.getNumJoints(robot)):
         client.changeDynamics(
@@ -87,5 +87,5 @@ def _set_surfaces(client: Client, robot: int, wheels: tuple[int, int], caster: i
         _collide_as(client, robot, link, _WHEEL if link in wheels else _BODY)
 
 
-def _collide_as(client: Client, body: int, link: int, group: int) -> None:
+def _collide_as(client: BulletClient, body: int, link: int, group: int) -> None:
     client.setCollisionFilterGroupMask(body, link, group, _TOUCHES[group])

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from sim.units import SECOND
 
 from .arena import ARENA, Arena, Pose
-from .bullet import Client, silence
+from .bullet import BulletClient, silence
 from .drive import STANDSTILL, Velocity, WheelPair, clamped, is_drivable, wheel_speeds
 from .lidar import Lidar
 from .scene import build
@@ -43,7 +43,7 @@ class World:
         Raises:
             WorldUnavailable: PyBullet cannot be used here; the text says what to do.
         """
-        client = self._client = Client()
+        client = self._client = BulletClient()
         with silence():
             client.setGravity(0, 0, -_GRAVITY)
             client.setTimeStep(1 / STEP_RATE)

@@ -2,14 +2,14 @@
 
 from sim.packages import Packages
 from sim.shell.completion import complete, word_start
-from sim.shell.line import Line
-from sim.shell.session import Failed
+from sim.shell.line import ShellLine
+from sim.shell.session import CommandFailed
 from sim.shell.splitting import LineError, split
 from sim.shell.tools import OnExit, Running, Tools
 
 __all__ = [
-    "Failed",
-    "Line",
+    "CommandFailed",
+    "ShellLine",
     "LineError",
     "OnExit",
     "Packages",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from argparse import Namespace
 from typing import Any
 
-from sim.shell.parser import HelpAsked, Parser, UsageError
+from sim.shell.parser import HelpAsked, LineParser, UsageError
 from sim.shell.verbs.action import ACTION
 from sim.shell.verbs.interface import INTERFACE
 from sim.shell.verbs.launch import LAUNCH
@@ -16,7 +16,7 @@ from sim.shell.verbs.pkg import PKG
 from sim.shell.verbs.run import RUN
 from sim.shell.verbs.service import SERVICE
 from sim.shell.verbs.topic import TOPIC
-from sim.shell.verbs.verb import Command, Verb, no_arguments
+from sim.shell.verbs.verb import ShellCommand, Verb, no_arguments
 
 COMMANDS = (ACTION, INTERFACE, LAUNCH, LIFECYCLE, NODE, PARAM, PKG, RUN, SERVICE, TOPIC)
 
@@ -38,9 +38,9 @@ def parse(words: list[str]) -> Namespace:
     return _line_parser().parse_args(words)
 
 
-def _line_parser() -> Parser:
+def _line_parser() -> LineParser:
     description = "ros2 is an extensible command-line tool for ROS 2."
-    parser = Parser(prog="ros2", description=description)
+    parser = LineParser(prog="ros2", description=description)
     commands = _subparsers(parser, "Commands", "ros2 <command>")
     for command in COMMANDS:
         own = commands.add_parser(command.name, help=command.help, description=command.help)
@@ -53,7 +53,7 @@ def _line_parser() -> Parser:
     return parser
 
 
-def verb_parser(words: list[str]) -> tuple[Parser, int] | None:
+def verb_parser(words: list[str]) -> tuple[LineParser, int] | None:
     """The parser of the verb that the words begin with, and how many of them name it; None: no such verb."""
     command = next((each for each in COMMANDS if words[:1] == [each.name]), None)
     if command is None:
@@ -68,22 +68,22 @@ def next_names(words: list[str]) -> list[str]:
     """The commands, or the verbs of the command, that can follow."""
     if not words:
         return [each.name for each in COMMANDS]
-    command: Command | None = next((each for each in COMMANDS if each.name == words[0]), None)
+    command: ShellCommand | None = next((each for each in COMMANDS if each.name == words[0]), None)
     return [each.name for each in command.verbs] if command is not None and len(words) == 1 else []
 
 
-def _subparsers(parser: Parser, title: str, form: str) -> Any:
+def _subparsers(parser: LineParser, title: str, form: str) -> Any:
     hint = f"Call `{form} -h` for more detailed usage."
     parser.set_defaults(verb=Verb("", "", no_arguments, lambda *_: parser.print_help()))
-    return parser.add_subparsers(title=title, metavar=hint, parser_class=Parser)
+    return parser.add_subparsers(title=title, metavar=hint, parser_class=LineParser)
 
 
-def _made(verb: Verb, prog: str) -> Parser:
-    parser = Parser(prog=prog)
+def _made(verb: Verb, prog: str) -> LineParser:
+    parser = LineParser(prog=prog)
     _make(parser, verb)
     return parser
 
 
-def _make(parser: Parser, verb: Verb) -> None:
+def _make(parser: LineParser, verb: Verb) -> None:
     verb.add_arguments(parser)
     parser.set_defaults(verb=verb)

@@ -8,8 +8,8 @@ from sim.interfaces import DefinitionError
 from sim.packages import PackageError, Packages
 from sim.ros.middleware.host import Host
 from sim.shell.commands import next_names, verb_parser
-from sim.shell.parser import Parser, Surroundings
-from sim.shell.session import Failed
+from sim.shell.parser import LineParser, Surroundings
+from sim.shell.session import CommandFailed
 from sim.shell.splitting import scan
 
 _MANY = (argparse.ONE_OR_MORE, argparse.ZERO_OR_MORE, argparse.REMAINDER)
@@ -46,7 +46,7 @@ def complete(host: Host, packages: Packages, text: str, cursor: int) -> list[str
 class _Place:
     """Where in a verb's arguments the cursor is, after the words given so far."""
 
-    def __init__(self, parser: Parser, words: list[str]) -> None:
+    def __init__(self, parser: LineParser, words: list[str]) -> None:
         self._parser = parser
         self._given: list[str] = []
         self._awaited: argparse.Action | None = None
@@ -65,7 +65,7 @@ class _Place:
             return []
         try:
             return sorted(set(completer(Surroundings(host, packages, tuple(self._given)))))
-        except (Failed, PackageError, DefinitionError):  # what was given before is not known
+        except (CommandFailed, PackageError, DefinitionError):  # what was given before is not known
             return []
 
     def _take(self, word: str) -> None:

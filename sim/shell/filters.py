@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from sim.shell.parser import Parser
-from sim.shell.session import Failed
+from sim.shell.parser import LineParser
+from sim.shell.session import CommandFailed
 
 
-def add_filter_option(parser: Parser, purpose: str) -> None:
+def add_filter_option(parser: LineParser, purpose: str) -> None:
     """Add the option."""
     parser.add_argument(
         "--filter",
@@ -19,19 +19,21 @@ def add_filter_option(parser: Parser, purpose: str) -> None:
 
 
 def compiled_filter(expression: str | None) -> Callable[[Any], object] | None:
-    """The function that decides, None without an expression; raises Failed if it is none."""
+    """The function that decides, None without an expression; raises CommandFailed if it is none."""
     if expression is None:
         return None
     try:
         code = compile(expression, "<filter>", "eval")
     except SyntaxError as error:
-        raise Failed(f"Invalid filter expression '{expression}': {error.msg}") from None
+        raise CommandFailed(f"Invalid filter expression '{expression}': {error.msg}") from None
 
     def decide(message: Any) -> object:
         try:
             # The run's programs execute Python of the same author in this process already.
             return eval(code, {"m": message})
         except Exception as error:
-            raise Failed(f"The filter '{expression}' raised {type(error).__name__}: {error}") from error
+            raise CommandFailed(
+                f"The filter '{expression}' raised {type(error).__name__}: {error}"
+            ) from error
 
     return decide

@@ -14,7 +14,7 @@ from sim.ros.naming.validate_full_topic_name import validate_full_topic_name
 from sim.ros.node.graph import NamesAndTypes, nodes_on
 from sim.ros.node.node import Node
 from sim.shell.parser import Completer, Surroundings
-from sim.shell.session import Failed, Session
+from sim.shell.session import CommandFailed, ShellSession
 
 
 def is_hidden(name: str) -> bool:
@@ -27,31 +27,33 @@ def without_hidden(found: NamesAndTypes, include_hidden: bool) -> NamesAndTypes:
     return [(name, types) for name, types in found if include_hidden or not is_hidden(name)]
 
 
-def full_topic_name(session: Session, topic: str) -> str:
-    """The full name of a topic; raises Failed if the name breaks the rules."""
+def full_topic_name(session: ShellSession, topic: str) -> str:
+    """The full name of a topic; raises CommandFailed if the name breaks the rules."""
     node = session.node
     try:
         full: str = expand_topic_name(topic, node.get_name(), node.get_namespace())
         validate_full_topic_name(full)
     except (ValueError, InvalidTopicNameException, InvalidServiceNameException) as error:
-        raise Failed(str(error)) from None
+        raise CommandFailed(str(error)) from None
     return full
 
 
-def topic_types(session: Session, topic: str) -> list[str] | None:
+def topic_types(session: ShellSession, topic: str) -> list[str] | None:
     """The types of a topic, None if nobody speaks of it."""
     full = full_topic_name(session, topic)
     session.want(full)
     return dict(session.node.get_topic_names_and_types()).get(full)
 
 
-def topic_type(session: Session, topic: str) -> str | None:
-    """The type of a topic, None if nobody speaks of it; raises Failed if it has more than one."""
+def topic_type(session: ShellSession, topic: str) -> str | None:
+    """The type of a topic, None if nobody speaks of it; raises CommandFailed if it has more than one."""
     types = topic_types(session, topic)
     if types is None:
         return None
     if len(types) > 1:
-        raise Failed(f"Cannot echo topic '{topic}', as it contains more than one type: [{', '.join(types)}]")
+        raise CommandFailed(
+            f"Cannot echo topic '{topic}', as it contains more than one type: [{', '.join(types)}]"
+        )
     return types[0]
 
 

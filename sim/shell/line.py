@@ -9,7 +9,7 @@ from sim.ros.middleware.host import Host
 from sim.shell.command_names import ELSEWHERE, listed
 from sim.shell.commands import parse
 from sim.shell.parser import HelpAsked, UsageError
-from sim.shell.session import Ended, Failed, Interrupted, Session
+from sim.shell.session import CommandFailed, CommandInterrupted, Ended, ShellSession
 from sim.shell.splitting import LineError, split
 from sim.shell.tools import Tools
 
@@ -18,13 +18,13 @@ _INTERRUPTED = int(signal.SIGINT)
 """What ros2 ends with after Ctrl-C."""
 
 
-class Line:
+class ShellLine:
     """A ``ros2`` line. What it prints and how it ends goes to ``tools``; its node is hidden."""
 
     def __init__(self, host: Host, text: str, tools: Tools) -> None:
         self._host = host
         self._text = text
-        self._session = Session(host, tools)
+        self._session = ShellSession(host, tools)
         self._session.process.take_output = tools.say
 
     def start(self) -> None:
@@ -53,7 +53,7 @@ class Line:
         except HelpAsked as asked:
             self._session.say(str(asked).rstrip("\n"))
             return 0
-        except Interrupted:
+        except CommandInterrupted:
             return _INTERRUPTED
         except Ended as ended:
             return ended.status
@@ -66,7 +66,7 @@ class Line:
     def _carry_out(self) -> None:
         words = split(self._text)
         if words and words[0] in ELSEWHERE:
-            raise Failed(f"ros2 {words[0]} is not carried out here; {listed()} are")
+            raise CommandFailed(f"ros2 {words[0]} is not carried out here; {listed()} are")
         arguments = parse(words)
         self._session.check()
         arguments.verb.carry_out(self._session, arguments)
@@ -76,7 +76,7 @@ def _complaint(error: Exception) -> tuple[str, int]:
     """What to say of an error, and the exit status."""
     if isinstance(error, UsageError):
         return str(error), _USAGE_STATUS
-    if isinstance(error, Failed | LineError):
+    if isinstance(error, CommandFailed | LineError):
         return str(error), error.status
     # The model's own errors are sentences; Python's say little without their names.
     is_sentence = isinstance(error, NotImplementedError) or type(error).__module__.startswith(

@@ -11,7 +11,7 @@ from sim.interfaces.base import ActionType
 from sim.interfaces.rosidl_runtime_py import message_to_yaml, set_message_fields
 from sim.plain_yaml import YamlError
 from sim.shell.quoting import double_quoted, quoted
-from sim.shell.session import Failed
+from sim.shell.session import CommandFailed
 
 T = TypeVar("T")
 
@@ -19,17 +19,17 @@ NO_DICTIONARY = "The passed value needs to be a dictionary in YAML format"
 
 
 def message_class(name: str) -> type[Message]:
-    """The class of ``std_msgs/msg/Int32`` or ``std_msgs/Int32``; raises Failed if there is none."""
+    """The class of ``std_msgs/msg/Int32`` or ``std_msgs/Int32``; raises CommandFailed if there is none."""
     return _found(name, "msg", "message", message)
 
 
 def service_class(name: str) -> ServiceType:
-    """The class of ``std_srvs/srv/SetBool`` or ``std_srvs/SetBool``; raises Failed if there is none."""
+    """The class of ``std_srvs/srv/SetBool`` or ``std_srvs/SetBool``; or raises CommandFailed."""
     return _found(name, "srv", "service", service)
 
 
 def action_class(name: str) -> ActionType:
-    """The class of ``example_interfaces/action/Fibonacci``; raises Failed if there is none."""
+    """The class of ``example_interfaces/action/Fibonacci``; raises CommandFailed if there is none."""
     return _found(name, "action", "action", action)
 
 
@@ -38,11 +38,13 @@ def _found(name: str, kind: str, noun: str, find: Callable[[str, str], T]) -> T:
     if len(parts) == 2:
         parts.insert(1, kind)
     if len(parts) != 3 or parts[1] != kind:
-        raise Failed(f"The passed {noun} type is invalid: {name!r} is not of the form package/{kind}/Name")
+        raise CommandFailed(
+            f"The passed {noun} type is invalid: {name!r} is not of the form package/{kind}/Name"
+        )
     try:
         return find(parts[0], parts[2])
     except UnknownInterfaceError as error:
-        raise Failed(f"The passed {noun} type is invalid: {error}") from None
+        raise CommandFailed(f"The passed {noun} type is invalid: {error}") from None
 
 
 def prototype_of(cls: type[Message]) -> str:
@@ -59,18 +61,18 @@ def prototype_word(cls: type[Message]) -> str:
 
 
 def given_values(text: str) -> object:
-    """The values that a line gives; raises Failed if they are no YAML."""
+    """The values that a line gives; raises CommandFailed if they are no YAML."""
     try:
         return plain_yaml.load(text)
     except YamlError as error:
-        raise Failed(f"{NO_DICTIONARY}: {error}") from None
+        raise CommandFailed(f"{NO_DICTIONARY}: {error}") from None
 
 
 class Outgoing:
     """A message to send, and the times in it that are to be those of sending: ``now``, a header's ``auto``.
 
     Raises:
-        Failed: a value does not fit.
+        CommandFailed: a value does not fit.
     """
 
     def __init__(self, cls: type[Message], values: object) -> None:
@@ -83,7 +85,7 @@ class Outgoing:
                 expand_time_now=True,
             )
         except (TypeError, AttributeError, ValueError, AssertionError, OverflowError) as error:
-            raise Failed(f"Failed to populate field: {error}") from None
+            raise CommandFailed(f"Failed to populate field: {error}") from None
 
     def stamp(self, now: Message) -> None:
         """Put the time, a builtin_interfaces/msg/Time, where it is wanted."""

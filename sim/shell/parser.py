@@ -35,7 +35,7 @@ class UsageError(Exception):
     """The words are no such line; the text is argparse's complaint."""
 
 
-class Parser(argparse.ArgumentParser):
+class LineParser(argparse.ArgumentParser):
     """An argument parser that prints nothing and ends no process.
 
     Raises:

@@ -7,11 +7,11 @@ from collections.abc import Callable
 from sim.packages import Package
 from sim.shell.parser import Surroundings
 from sim.shell.quoting import quoted
-from sim.shell.session import Session
+from sim.shell.session import ShellSession
 from sim.shell.tools import OnExit, Running
 
 
-def wait_for(session: Session, start: Callable[[OnExit], Running]) -> int:
+def wait_for(session: ShellSession, start: Callable[[OnExit], Running]) -> int:
     """Start programs and wait for their end, whatever they make of Ctrl-C; returns the exit status."""
     signal = session.host.clock.signal()
     statuses: list[int] = []
@@ -27,7 +27,7 @@ def wait_for(session: Session, start: Callable[[OnExit], Running]) -> int:
     return statuses[0]
 
 
-def package(session: Session, name: str) -> Package:
+def package(session: ShellSession, name: str) -> Package:
     """The package of that name; raises PackageError if there is none."""
     return session.tools.packages().package(name)
 

@@ -19,8 +19,8 @@ from sim.ros.qos.qos import (
     ReliabilityPolicy,
 )
 from sim.ros.time.duration import Duration
-from sim.shell.parser import Parser, nonnegative_int
-from sim.shell.session import Session
+from sim.shell.parser import LineParser, nonnegative_int
+from sim.shell.session import ShellSession
 
 _POLICIES = {
     "history": (HistoryPolicy, "History of samples"),
@@ -30,7 +30,7 @@ _POLICIES = {
 }
 
 
-def add_qos_options(parser: Parser, purpose: str, default: str) -> None:
+def add_qos_options(parser: LineParser, purpose: str, default: str) -> None:
     """Add ``--qos-profile`` and its kin; ``default`` is the short name of a profile."""
     parser.add_argument(
         "--qos-profile",
@@ -77,7 +77,7 @@ def chosen_qos(arguments: Namespace) -> QoSProfile:
     return profile
 
 
-def fitting_qos(session: Session, topic: str, arguments: Namespace) -> QoSProfile:
+def fitting_qos(session: ShellSession, topic: str, arguments: Namespace) -> QoSProfile:
     """The profile that the options make; without any, one that hears all of the topic's publishers."""
     profile = chosen_qos(arguments)
     publishers = session.node.get_publishers_info_by_topic(topic)

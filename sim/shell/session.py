@@ -21,7 +21,7 @@ _SERVICE_POLL = 0.25
 """Seconds between two looks for a service, as in rclpy."""
 
 
-class Failed(Exception):  # noqa: N818 -- what a line did, as a shell would say it
+class CommandFailed(Exception):  # noqa: N818 -- what a line did, as a shell would say it
     """The line failed: the text goes to stderr, the status is the line's."""
 
     def __init__(self, text: str, status: int = 1) -> None:
@@ -37,7 +37,7 @@ class Ended(Exception):  # noqa: N818
         self.status = status
 
 
-class Interrupted(Exception):  # noqa: N818
+class CommandInterrupted(Exception):  # noqa: N818
     """Ctrl-C, or the end of the context."""
 
 
@@ -48,7 +48,7 @@ class _LineNode(Node):
         """Tell nobody."""
 
 
-class Session:
+class ShellSession:
     """One line's stay on the network. Only ``interrupt`` may be called by other threads than the line's."""
 
     def __init__(self, host: Host, tools: Tools) -> None:
@@ -118,13 +118,13 @@ class Session:
         """Serve the node until the future is done, at most for some seconds; whether it is done.
 
         Raises:
-            Interrupted: the line was interrupted meanwhile.
+            CommandInterrupted: the line was interrupted meanwhile.
         """
         future = Future() if until is None else until
         try:
             self._executor.spin_until_future_complete(future, seconds)
         except ExternalShutdownException:
-            raise Interrupted from None
+            raise CommandInterrupted from None
         self.check()
         return future.done()
 
@@ -139,9 +139,9 @@ class Session:
             self.sleep(poll)
 
     def check(self) -> None:
-        """Raise Interrupted if the line was interrupted."""
+        """Raise CommandInterrupted if the line was interrupted."""
         if not self._context.ok():
-            raise Interrupted
+            raise CommandInterrupted
 
     # Interrupting
 

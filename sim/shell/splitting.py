@@ -25,7 +25,7 @@ class LineError(ValueError):
 
 
 @dataclass(slots=True)
-class Word:
+class ShellWord:
     """A word without its quotes; in the line it begins at ``start``."""
 
     text: str
@@ -36,7 +36,7 @@ class Word:
 class Scan:
     """What a line is made of: its words, the quote that was left open, and the first operator, if any."""
 
-    words: list[Word] = field(default_factory=list)
+    words: list[ShellWord] = field(default_factory=list)
     quote: str = ""
     operator: str = ""
     ends_in_word: bool = False
@@ -84,7 +84,7 @@ class _Scanner:
         self._text = text
         self._at = start
         self._found = Scan()
-        self._word: Word | None = None
+        self._word: ShellWord | None = None
         self._after_line_end = False
 
     def run(self) -> Scan:
@@ -135,7 +135,7 @@ class _Scanner:
 
     def _append(self, text: str, length: int) -> None:
         if self._word is None:
-            self._word = Word("", self._at)
+            self._word = ShellWord("", self._at)
             if self._after_line_end:
                 self._operator("\n")
         self._word.text += text

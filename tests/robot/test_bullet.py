@@ -7,7 +7,7 @@ from contextlib import closing
 
 import pytest
 
-from sim.robot.bullet import Client, WorldUnavailable, silence
+from sim.robot.bullet import BulletClient, WorldUnavailable, silence
 from sim.robot.world import World
 
 WHOLE_LIFE = """
@@ -63,6 +63,6 @@ def test_a_closed_world_cannot_reach_its_successor() -> None:
 
 
 def test_a_client_hands_on_constants_and_binds_functions_to_itself() -> None:
-    with closing(Client()) as one, closing(Client()) as other:
+    with closing(BulletClient()) as one, closing(BulletClient()) as other:
         one.createMultiBody(0, one.createCollisionShape(one.GEOM_PLANE))
         assert (one.getNumBodies(), other.getNumBodies()) == (1, 0)

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from sim.robot.arena import ARENA, LIDAR_HEIGHT, START, Arena, Circle, Pose, Segment, outline
-from sim.robot.bullet import Client
+from sim.robot.bullet import BulletClient
 from sim.robot.lidar import BEAMS, RANGE_MAX, RANGE_MIN, Lidar
 from sim.robot.scene import build
 
@@ -64,8 +64,8 @@ def test_no_beam_leaves_the_room_anywhere(x: float, y: float, yaw: float) -> Non
 
 
 @pytest.fixture(scope="module")
-def physical() -> Iterator[Client]:
-    with closing(Client()) as client:
+def physical() -> Iterator[BulletClient]:
+    with closing(BulletClient()) as client:
         build(client, ARENA)
         yield client
 
@@ -73,7 +73,7 @@ def physical() -> Iterator[Client]:
 @pytest.mark.parametrize(
     "pose", [Pose(2.0, 0.5, 0.0), Pose(0.9, 2.5, -1.8), Pose(-6.5, -7.5, 2.0), Pose(6.0, 6.2, 0.3)]
 )
-def test_the_lidar_measures_what_stands_in_the_physical_world(physical: Client, pose: Pose) -> None:
+def test_the_lidar_measures_what_stands_in_the_physical_world(physical: BulletClient, pose: Pose) -> None:
     bearings = pose.yaw + (np.arange(BEAMS) - AHEAD) * math.tau / BEAMS
     centre = np.array((pose.x, pose.y, LIDAR_HEIGHT))
     away = np.stack((np.cos(bearings), np.sin(bearings), np.zeros(BEAMS)), axis=1)

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from sim.clock import Clock
 from sim.ros.node.node import Node
 from sim.ros.scheduling.executors import SingleThreadedExecutor
-from sim.shell import Line, OnExit, Packages, Running
+from sim.shell import OnExit, Packages, Running, ShellLine
 from tests.support.simulation import Simulation, Trace, simulate
 
 
@@ -120,7 +120,7 @@ def carry_out(
         kept.append(tools)
         setup(simulation)
         simulation.sleep(at)
-        line = Line(simulation.host, text, tools)
+        line = ShellLine(simulation.host, text, tools)
         line.start()
         if interrupt_at is not None:
             simulation.at(interrupt_at, line.interrupt)

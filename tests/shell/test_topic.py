@@ -4,7 +4,7 @@ import pytest
 
 from sim.interfaces import message
 from sim.ros.node.node import Node
-from sim.shell.verbs.topic_statistics import Bandwidth, Rate, as_bytes
+from sim.shell.verbs.topic_statistics import Bandwidth, RateMeter, as_bytes
 from tests.shell.lines import carry_out, own
 from tests.support.simulation import Simulation
 
@@ -126,7 +126,7 @@ def test_delay_needs_a_header() -> None:
 
 
 def test_a_window_forgets_what_is_older() -> None:
-    rate = Rate(window=2)
+    rate = RateMeter(window=2)
     for moment in (0, 5, 6, 7, 7 + 10**9):
         rate.message(moment)
         rate.report()

@@ -10,7 +10,7 @@ from sim.interfaces import Message, message
 from sim.interfaces.rosidl_runtime_py import message_to_csv, message_to_yaml
 from sim.plain_yaml import YamlError, dump, load
 from sim.shell.messages import Outgoing
-from sim.shell.session import Failed
+from sim.shell.session import CommandFailed
 from tests.interfaces.strategies import messages
 
 _TYPES = (
@@ -160,6 +160,6 @@ def test_now_and_auto_stand_for_the_time_of_sending() -> None:
     ],
 )
 def test_a_value_that_does_not_fit_is_said_as_ros2_says_it(values: str, sentence: str) -> None:
-    with pytest.raises(Failed, match="Failed to populate field: ") as raised:
+    with pytest.raises(CommandFailed, match="Failed to populate field: ") as raised:
         Outgoing(message("geometry_msgs", "Twist"), load(values))
     assert sentence in str(raised.value)

@@ -22,7 +22,7 @@ from sim.packages import PackageError, find_packages
 from sim.recording.metadata import RecordingMetadata, from_metadata, to_metadata
 from sim.ros.parameters.yaml_files import ParameterYamlError, read_nodes, read_value
 from sim.shell.messages import Outgoing, given_values
-from sim.shell.session import Failed
+from sim.shell.session import CommandFailed
 from tests.soak.fuzz_target import Target, listed, text_of
 
 DEFINITIONS = Path(plain_yaml.__file__).parent / "ros" / "interfaces" / "definitions"
@@ -154,7 +154,7 @@ _MESSAGES = (
     ("std_msgs", "Bool"),
     ("sensor_msgs", "LaserScan"),
 )
-_YAML = (plain_yaml.YamlError, Failed)
+_YAML = (plain_yaml.YamlError, CommandFailed)
 
 
 def _read_yaml(data: bytes, _: Path) -> None:

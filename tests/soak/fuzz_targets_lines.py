@@ -18,7 +18,7 @@ from sim.probes.probe import SilentProbe
 from sim.ros.context.arguments import ArgumentsError, parse_arguments
 from sim.ros.context.context import Context
 from sim.ros.logging.console import LogConsole
-from sim.ros.logging.filters import Place
+from sim.ros.logging.filters import CallSite
 from sim.ros.logging.record import LogRecord
 from sim.ros.logging.severity import LoggingSeverity
 from sim.ros.middleware.host import Host
@@ -150,7 +150,7 @@ def log() -> Target:
     return Target("log", _show_line, samples, words, (FilterError,))
 
 
-_PLACE = Place("f", "node.py", 3, 0)
+_PLACE = CallSite("f", "node.py", 3, 0)
 
 
 def _show_line(data: bytes, _: Path) -> None:

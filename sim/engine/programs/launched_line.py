@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from sim.engine.programs.line_tools import LineTools
 from sim.engine.programs.programs import Programs
 from sim.engine.programs.starting import Starter
-from sim.shell import Line, OnExit
+from sim.shell import OnExit, ShellLine
 from sim.trace.events import Printed, ProcessEnded
 
 
@@ -20,7 +20,7 @@ class LaunchedLine:
         self._on_exit = on_exit
         self.number = programs.announce(label)
         tools = LineTools(starter, self._take, self._end)
-        self._line = Line(programs.host, shlex.join(words), tools)
+        self._line = ShellLine(programs.host, shlex.join(words), tools)
         self._line.start()
 
     def interrupt(self) -> None:

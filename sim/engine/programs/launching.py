@@ -5,7 +5,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from sim.engine.programs.launched_line import LaunchedLine
-from sim.engine.programs.program import Outcome, Program
+from sim.engine.programs.program import Program, ProgramOutcome
 from sim.engine.programs.programs import Programs, RunningProgram
 from sim.engine.programs.starting import Starter
 from sim.launch import LaunchRun, ProcessSpec, RunningProcess
@@ -57,7 +57,7 @@ class Launching:
 
     def _over(self, status: int) -> None:
         if self._run.error is not None:
-            self._programs.failures.append(Outcome(str(self._run.error), failed=True, status=1))
+            self._programs.failures.append(ProgramOutcome(str(self._run.error), failed=True, status=1))
         self._on_exit(status)
         self._programs.release()
 
@@ -95,7 +95,7 @@ class Launching:
 
         leave = self._under_lock(on_exit)
 
-        def ended(outcome: Outcome) -> None:
+        def ended(outcome: ProgramOutcome) -> None:
             leave(outcome.status)
 
         return self._programs.start(

@@ -59,9 +59,9 @@ class LineTools:
 
 @contextmanager
 def _as_the_line_says_it() -> Iterator[None]:
-    from sim.shell import Failed
+    from sim.shell import CommandFailed
 
     try:
         yield
     except StartError as error:
-        raise Failed(str(error)) from error
+        raise CommandFailed(str(error)) from error

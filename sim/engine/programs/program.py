@@ -49,7 +49,7 @@ def script(path: str, arguments: tuple[str, ...] = ()) -> Program:
 
 
 @dataclass(frozen=True, slots=True)
-class Outcome:
+class ProgramOutcome:
     """How a program ended: a sentence, whether it failed, the exit code, and the exception ("" for none)."""
 
     sentence: str
@@ -58,7 +58,7 @@ class Outcome:
     error: str = ""
 
 
-def run_program(program: Program) -> Outcome:
+def run_program(program: Program) -> ProgramOutcome:
     """Run it in this thread, and wait for the threads that it leaves.
 
     A file that defines ``main`` and does nothing with it, as one for an entry point may, has it called.
@@ -77,21 +77,21 @@ def run_program(program: Program) -> Outcome:
     return outcome
 
 
-def _outcome_of(program: Program) -> Outcome:
+def _outcome_of(program: Program) -> ProgramOutcome:
     try:
         status = _status(_load(program)())
         _join_left_threads()
     except SystemExit as exit_:
         return _exited(exit_, program)
     except NothingToRunError as error:
-        return Outcome(str(error), failed=True, status=1)
+        return ProgramOutcome(str(error), failed=True, status=1)
     except KeyboardInterrupt:
-        return Outcome(STOPPED, failed=False, status=_INTERRUPTED)
+        return ProgramOutcome(STOPPED, failed=False, status=_INTERRUPTED)
     except BaseException as error:  # noqa: BLE001 -- whatever a learner's program raises ends its run, not the engine
         traceback.print_exception(error)
         sentence = failure(error, program.path, program.folder)
-        return Outcome(sentence, failed=True, status=1, error=error_line(error))
-    return Outcome(silence() or _returned(), failed=status != 0, status=status)
+        return ProgramOutcome(sentence, failed=True, status=1, error=error_line(error))
+    return ProgramOutcome(silence() or _returned(), failed=status != 0, status=status)
 
 
 def _returned() -> str:
@@ -206,11 +206,11 @@ def threads_left_by(process: Process) -> list[threading.Thread]:
     ]
 
 
-def _exited(exit_: SystemExit, program: Program) -> Outcome:
+def _exited(exit_: SystemExit, program: Program) -> ProgramOutcome:
     if exit_.code in {None, 0}:
-        return Outcome("the program returned", failed=False)
+        return ProgramOutcome("the program returned", failed=False)
     place = place_of(exit_, program.path, program.folder)
     if isinstance(exit_.code, int):
         sentence = f"the program ended with exit code {exit_.code}{place}"
-        return Outcome(sentence, failed=True, status=exit_.code)
-    return Outcome(f"the program ended: {exit_.code}{place}", failed=True, status=1)
+        return ProgramOutcome(sentence, failed=True, status=exit_.code)
+    return ProgramOutcome(f"the program ended: {exit_.code}{place}", failed=True, status=1)

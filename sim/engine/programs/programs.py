@@ -13,7 +13,7 @@ from itertools import count
 from sim.clock import Signal
 from sim.engine.programs.ending import flush_files
 from sim.engine.programs.exit_functions import run_exit_functions
-from sim.engine.programs.program import Outcome, Program, run_program
+from sim.engine.programs.program import Program, ProgramOutcome, run_program
 from sim.engine.stdio.output import finish_lines
 from sim.ros.context.context import end_contexts_by_signal
 from sim.ros.context.signals import deliver_sigint
@@ -21,7 +21,7 @@ from sim.ros.middleware.host import Host
 from sim.ros.middleware.process import Process
 from sim.trace.events import AnyEvent, Notice, ProcessAppeared, ProcessEnded, Severity
 
-Ended = Callable[[Outcome], None]
+Ended = Callable[[ProgramOutcome], None]
 
 
 @dataclass(eq=False)
@@ -33,7 +33,7 @@ class RunningProgram:
     program: Program
     on_exit: Ended
     thread: int | None = None
-    outcome: Outcome | None = None
+    outcome: ProgramOutcome | None = None
 
     @property
     def number(self) -> int:
@@ -62,7 +62,7 @@ class Programs:
 
     host: Host
     record: Callable[[AnyEvent], None]
-    failures: list[Outcome] = field(default_factory=list)
+    failures: list[ProgramOutcome] = field(default_factory=list)
     """Of the programs, and of what started programs, those that failed, with their names in the sentences."""
     _running: list[RunningProgram] = field(default_factory=list)
     _only: list[Process] = field(default_factory=list)
@@ -70,7 +70,7 @@ class Programs:
     _held: int = 0
     _waiters: list[Signal] = field(default_factory=list)
 
-    def run_only(self, program: Program) -> Outcome:
+    def run_only(self, program: Program) -> ProgramOutcome:
         """Run the run's only program on the calling thread."""
         process = Process(self.host, arguments=[program.path, *program.arguments])
         process.enter()
@@ -121,9 +121,9 @@ class Programs:
     def kill(self, running: RunningProgram) -> None:
         """Have a program be over whatever it does: it ends as far as it lets itself be ended."""
         running.interrupt()
-        self._end(running, Outcome("it was killed", failed=True, status=-signal.SIGKILL))
+        self._end(running, ProgramOutcome("it was killed", failed=True, status=-signal.SIGKILL))
 
-    def _end(self, running: RunningProgram, outcome: Outcome) -> None:
+    def _end(self, running: RunningProgram, outcome: ProgramOutcome) -> None:
         with self.host.lock:
             if running.outcome is not None:
                 return  # it was killed, and its thread has ended only now
@@ -155,11 +155,11 @@ class Programs:
         for waiter in waiters:
             waiter.set()
 
-    def joint_outcome(self) -> Outcome:
+    def joint_outcome(self) -> ProgramOutcome:
         """How the programs that ended did, taken together: the first failure speaks for all."""
         if self.failures:
             return replace(self.failures[0], status=1)
-        return Outcome("every program returned", failed=False)
+        return ProgramOutcome("every program returned", failed=False)
 
     def hold(self) -> None:
         """Count something as running that starts programs, until ``release``."""

@@ -12,7 +12,7 @@ from sim.ros.middleware.host import Host
 from sim.trace.events import AnyEvent, LineCompleted, LineEnded, LineGiven, LineId, LineSaid
 
 if TYPE_CHECKING:
-    from sim.shell import Line
+    from sim.shell import ShellLine
 
 
 class Lines:
@@ -28,7 +28,7 @@ class Lines:
         self._record = record
         self._starter = starter
         self._changed = changed
-        self._running: dict[LineId, Line] = {}
+        self._running: dict[LineId, ShellLine] = {}
         self._scheduled = 0
 
     def schedule(self, lines: Sequence[TimedLine]) -> None:
@@ -49,7 +49,7 @@ class Lines:
 
     def begin(self, number: LineId, text: str) -> None:
         """Carry out a line."""
-        from sim.shell import Line  # only for runs that are given lines
+        from sim.shell import ShellLine  # only for runs that are given lines
 
         def take(said: str, error: bool) -> None:
             self._record(LineSaid(self._host.clock.now(), number, said, error))
@@ -60,7 +60,7 @@ class Lines:
 
         with self._host.lock:
             self._record(LineGiven(self._host.clock.now(), number, text))
-            line = self._running[number] = Line(self._host, text, LineTools(self._starter, take, end))
+            line = self._running[number] = ShellLine(self._host, text, LineTools(self._starter, take, end))
         line.start()
 
     def _end(self, number: LineId) -> None:

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
-from sim.engine.programs.program import STOPPED, Outcome, script
+from sim.engine.programs.program import STOPPED, ProgramOutcome, script
 from sim.engine.programs.programs import Programs
 from sim.engine.programs.ros2_lines import Lines
 from sim.engine.programs.starting import Starter, StartError, is_launch_file
@@ -12,7 +12,7 @@ from sim.engine.setup import ProgramSetup
 
 def run_programs(
     setup: tuple[ProgramSetup, ...], programs: Programs, starter: Starter, lines: Lines
-) -> Outcome:
+) -> ProgramOutcome:
     """Run all to their ends, and a run without programs to that of its lines; return how that went."""
     if len(setup) == 1 and not is_launch_file(setup[0].path):
         return programs.run_only(script(setup[0].path, setup[0].arguments))
@@ -32,10 +32,10 @@ def run_programs(
         for interrupt in interrupts:
             interrupt()
         programs.wait_until(lambda: not programs.any_run)
-        return Outcome(STOPPED, failed=False)
+        return ProgramOutcome(STOPPED, failed=False)
     except StartError as error:
         programs.interrupt_all()
-        return Outcome(str(error), failed=True, status=1)
+        return ProgramOutcome(str(error), failed=True, status=1)
     return programs.joint_outcome()
 
 

@@ -12,7 +12,7 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
-from sim.engine.programs.program import Outcome, Program
+from sim.engine.programs.program import Program, ProgramOutcome
 from sim.engine.programs.programs import Programs
 from sim.engine.setup import RunSetup
 from sim.interfaces import add_definitions, find_definition_folders
@@ -80,7 +80,7 @@ class Starter:
             function=found.function,
         )
 
-        def ended(outcome: Outcome) -> None:
+        def ended(outcome: ProgramOutcome) -> None:
             on_exit(outcome.status)
 
         return self._programs.start(program, f"{executable}-{next(self._numbers)}", ended)

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from sim.clock import VirtualClock
-from sim.clock.lock_cycles import Held, cycle_of, lasts
+from sim.clock.lock_cycles import HeldResource, cycle_of, lasts
 from sim.clock.virtual_threads import VirtualThread
 from sim.engine.watchdogs.wait_descriptions import deadlock_of_circle, deadlock_of_last, long_wait
 from sim.ros.middleware.host import Host
@@ -26,7 +26,7 @@ class _Wait:
     """
 
     thread: VirtualThread
-    wants: Held | None
+    wants: HeldResource | None
     process: Process
     entity: EntityId
     since: int

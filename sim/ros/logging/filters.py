@@ -15,7 +15,7 @@ from typing import Any, ClassVar, NamedTuple
 from sim.ros.clocks.clock import Clock
 
 
-class Place(NamedTuple):
+class CallSite(NamedTuple):
     """A place in a program."""
 
     function: str
@@ -24,13 +24,13 @@ class Place(NamedTuple):
     instruction: int
 
 
-def calling_place() -> Place:
+def calling_place() -> CallSite:
     """The place that called a logger."""
     frame: FrameType | None = sys._getframe(1)
     while frame is not None and frame.f_globals.get("__package__") == __package__:
         frame = frame.f_back
     assert frame is not None
-    return Place(frame.f_code.co_name, frame.f_code.co_filename, frame.f_lineno, frame.f_lasti)
+    return CallSite(frame.f_code.co_name, frame.f_code.co_filename, frame.f_lineno, frame.f_lasti)
 
 
 class LoggingFilter:

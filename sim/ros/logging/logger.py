@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from sim.ros.logging.console import LogConsole
-from sim.ros.logging.filters import LogPlace, Place, calling_place
+from sim.ros.logging.filters import CallSite, LogPlace, calling_place
 from sim.ros.logging.record import LogRecord
 from sim.ros.logging.severity import LoggingSeverity
 from sim.ros.middleware.process import current_process, of_process
@@ -69,7 +69,7 @@ class RcutilsLogger:
     def __init__(self, name: str = "", *, rosout_name: str | None = None) -> None:
         self.name = name
         self._rosout_name = name if rosout_name is None else rosout_name
-        self._places: dict[Place, LogPlace] = {}
+        self._places: dict[CallSite, LogPlace] = {}
 
     def get_child(self, name: str) -> RcutilsLogger:
         """The logger ``self.name``.``name``.

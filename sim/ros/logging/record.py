@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from sim.ros.logging.filters import Place
+from sim.ros.logging.filters import CallSite
 from sim.ros.logging.severity import LoggingSeverity
 
 
@@ -15,4 +15,4 @@ class LogRecord(NamedTuple):
     logger: str
     text: str
     stamp: int
-    place: Place
+    place: CallSite

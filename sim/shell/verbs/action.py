@@ -17,10 +17,10 @@ from sim.ros.node.graph import NamesAndTypes
 from sim.ros.node.node import Node
 from sim.shell.graph import known_topics
 from sim.shell.messages import NO_DICTIONARY, Outgoing, action_class, given_values, prototype_word
-from sim.shell.parser import Parser, Surroundings
-from sim.shell.session import Failed, Interrupted, Session
+from sim.shell.parser import LineParser, Surroundings
+from sim.shell.session import CommandFailed, CommandInterrupted, ShellSession
 from sim.shell.verbs.interface import type_names
-from sim.shell.verbs.verb import Command, Verb, add_graph_options
+from sim.shell.verbs.verb import ShellCommand, Verb, add_graph_options
 
 _FEEDBACK, _FEEDBACK_TYPE = "/_action/feedback", "_FeedbackMessage"
 _STATUS_WORDS = {
@@ -53,7 +53,7 @@ def _goal_prototype(surroundings: Surroundings) -> list[str]:
 # list, type, info
 
 
-def _add_list(parser: Parser) -> None:
+def _add_list(parser: LineParser) -> None:
     add_graph_options(parser)
     parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the action type")
     parser.add_argument(
@@ -61,7 +61,7 @@ def _add_list(parser: Parser) -> None:
     )
 
 
-def _list(session: Session, arguments: Namespace) -> None:
+def _list(session: ShellSession, arguments: Namespace) -> None:
     actions = get_action_names_and_types(session.node)
     if arguments.count_actions:
         session.say(str(len(actions)))
@@ -70,7 +70,7 @@ def _list(session: Session, arguments: Namespace) -> None:
         session.say(f"{name} [{', '.join(types)}]" if arguments.show_types else name)
 
 
-def _add_action(parser: Parser) -> None:
+def _add_action(parser: LineParser) -> None:
     add_graph_options(parser)
     parser.argument(
         "action_name",
@@ -79,19 +79,19 @@ def _add_action(parser: Parser) -> None:
     )
 
 
-def _type(session: Session, arguments: Namespace) -> None:
+def _type(session: ShellSession, arguments: Namespace) -> None:
     types = dict(get_action_names_and_types(session.node)).get(_full(session, arguments.action_name))
     if types is None:
-        raise Failed(f"Unknown action '{arguments.action_name}'")
+        raise CommandFailed(f"Unknown action '{arguments.action_name}'")
     for each in types:
         session.say(each)
 
 
-def _full(session: Session, name: str) -> str:
+def _full(session: ShellSession, name: str) -> str:
     return session.node.resolve_topic_name(name)
 
 
-def _add_info(parser: Parser) -> None:
+def _add_info(parser: LineParser) -> None:
     _add_action(parser)
     parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the action type")
     parser.add_argument(
@@ -102,7 +102,7 @@ def _add_info(parser: Parser) -> None:
     )
 
 
-def _info(session: Session, arguments: Namespace) -> None:
+def _info(session: ShellSession, arguments: Namespace) -> None:
     session.say(f"Action: {arguments.action_name}")
     full = _full(session, arguments.action_name)
     for title, ask in (
@@ -129,7 +129,7 @@ def _nodes_with(node: Node, action: str, ask: Callable[[Node, str, str], NamesAn
 # send_goal
 
 
-def _add_send_goal(parser: Parser) -> None:
+def _add_send_goal(parser: LineParser) -> None:
     parser.argument(
         "action_name", help="Name of the ROS action (e.g. '/fibonacci')", completer=_known_actions
     )
@@ -146,11 +146,11 @@ def _add_send_goal(parser: Parser) -> None:
     parser.add_argument("-f", "--feedback", action="store_true", help="Echo feedback messages for the goal")
 
 
-def _send_goal(session: Session, arguments: Namespace) -> None:
+def _send_goal(session: ShellSession, arguments: Namespace) -> None:
     action_type = action_class(arguments.action_type)
     values = given_values(arguments.goal)
     if not isinstance(values, dict):
-        raise Failed(NO_DICTIONARY)
+        raise CommandFailed(NO_DICTIONARY)
     outgoing = Outgoing(action_type.Goal, values)
     client = ActionClient(session.node, action_type, arguments.action_name)
     session.say("Waiting for an action server to become available...")
@@ -171,11 +171,11 @@ def _send_goal(session: Session, arguments: Namespace) -> None:
     _await_result(session, goal_handle)
 
 
-def _await_result(session: Session, goal_handle: Any) -> None:
+def _await_result(session: ShellSession, goal_handle: Any) -> None:
     asked = goal_handle.get_result_async()
     try:
         session.spin(asked)
-    except Interrupted:
+    except CommandInterrupted:
         _cancel(session, goal_handle)
         raise
     response = asked.result()
@@ -183,13 +183,13 @@ def _await_result(session: Session, goal_handle: Any) -> None:
     session.say(f"Goal finished with status: {_STATUS_WORDS.get(response.status, 'UNKNOWN')}")
 
 
-def _cancel(session: Session, goal_handle: Any) -> None:
+def _cancel(session: ShellSession, goal_handle: Any) -> None:
     """Ask for the end of the goal, as ros2 does after Ctrl-C; the answer is not waited for."""
     session.say("Canceling goal...")
     goal_handle.cancel_goal_async()
 
 
-ACTION = Command(
+ACTION = ShellCommand(
     "action",
     "Various action related sub-commands",
     (

@@ -15,9 +15,9 @@ from sim.interfaces import (
     packages,
 )
 from sim.shell.messages import message_class, prototype_of, prototype_word, service_class
-from sim.shell.parser import Parser, Surroundings
-from sim.shell.session import Failed, Session
-from sim.shell.verbs.verb import Command, Verb
+from sim.shell.parser import LineParser, Surroundings
+from sim.shell.session import CommandFailed, ShellSession
+from sim.shell.verbs.verb import ShellCommand, Verb
 
 _TITLES: dict[Kind, str] = {"msg": "Messages", "srv": "Services", "action": "Actions"}
 
@@ -56,35 +56,35 @@ def service_prototype(surroundings: Surroundings) -> list[str]:
     return [prototype_word(service_class(surroundings.given[1]).Request)]
 
 
-def _add_list(parser: Parser) -> None:
+def _add_list(parser: LineParser) -> None:
     parser.add_argument("-m", "--only-msgs", action="store_true", help="Print out only the message types")
     parser.add_argument("-s", "--only-srvs", action="store_true", help="Print out only the service types")
     parser.add_argument("-a", "--only-actions", action="store_true", help="Print out only the action types")
 
 
-def _list(session: Session, arguments: Namespace) -> None:
+def _list(session: ShellSession, arguments: Namespace) -> None:
     for kind in _chosen_kinds(arguments):
         session.say(f"{_TITLES[kind]}:")
         for name in type_names(kind):
             session.say(f"    {name}")
 
 
-def _add_package(parser: Parser) -> None:
+def _add_package(parser: LineParser) -> None:
     parser.argument(
         "package_name", help="Name of the ROS package (e.g. 'example_interfaces')", completer=_known_packages
     )
     _add_list(parser)
 
 
-def _package(session: Session, arguments: Namespace) -> None:
+def _package(session: ShellSession, arguments: Namespace) -> None:
     if arguments.package_name not in packages():
-        raise Failed(f"Unknown package '{arguments.package_name}'")
+        raise CommandFailed(f"Unknown package '{arguments.package_name}'")
     for kind in _chosen_kinds(arguments):
         for name in type_names(kind, arguments.package_name):
             session.say(name)
 
 
-def _packages(session: Session, arguments: Namespace) -> None:
+def _packages(session: ShellSession, arguments: Namespace) -> None:
     kinds = _chosen_kinds(arguments)
     for package in sorted(packages()):
         if any(names(package, kind) for kind in kinds):
@@ -97,7 +97,7 @@ def _chosen_kinds(arguments: Namespace) -> list[Kind]:
     return [kind for kind in _TITLES if wanted[kind]] or list(_TITLES)
 
 
-def _add_show(parser: Parser) -> None:
+def _add_show(parser: LineParser) -> None:
     parser.argument(
         "type",
         help="Show an interface definition (e.g. 'example_interfaces/msg/String'). Passing '-' reads the "
@@ -113,11 +113,11 @@ def _add_show(parser: Parser) -> None:
     comments.add_argument("--no-comments", action="store_true", help="Show no comments or whitespace")
 
 
-def _show(session: Session, arguments: Namespace) -> None:
+def _show(session: ShellSession, arguments: Namespace) -> None:
     try:
         text = interface_text(arguments.type)
     except UnknownInterfaceError as error:
-        raise Failed(f"Unknown interface '{arguments.type}': {error}") from None
+        raise CommandFailed(f"Unknown interface '{arguments.type}': {error}") from None
     session.say((_without_comments(text) if arguments.no_comments else text).rstrip("\n"))
 
 
@@ -128,7 +128,7 @@ def _without_comments(text: str) -> str:
     return "\n".join(line for line in lines if line.strip())
 
 
-def _add_proto(parser: Parser) -> None:
+def _add_proto(parser: LineParser) -> None:
     parser.argument(
         "type",
         help="Show an interface definition (e.g. 'example_interfaces/msg/String')",
@@ -137,7 +137,7 @@ def _add_proto(parser: Parser) -> None:
     parser.add_argument("--no-quotes", action="store_true", help="if true output has no outer quotes.")
 
 
-def _proto(session: Session, arguments: Namespace) -> None:
+def _proto(session: ShellSession, arguments: Namespace) -> None:
     quote = "" if arguments.no_quotes else '"'
     session.say(f"{quote}{prototype_of(_first_part(arguments.type))}{quote}")
 
@@ -148,10 +148,10 @@ def _first_part(name: str) -> type[Message]:
     try:
         return message_of_type(f"{name}{ending}")
     except UnknownInterfaceError as error:
-        raise Failed(f"Unknown interface '{name}': {error}") from None
+        raise CommandFailed(f"Unknown interface '{name}': {error}") from None
 
 
-INTERFACE = Command(
+INTERFACE = ShellCommand(
     "interface",
     "Show information about ROS interfaces",
     (

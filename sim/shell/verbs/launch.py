@@ -5,16 +5,16 @@ from __future__ import annotations
 from argparse import Namespace
 from pathlib import Path
 
-from sim.shell.parser import Parser
+from sim.shell.parser import LineParser
 from sim.shell.programs import known_launch_files, known_packages, package, wait_for
-from sim.shell.session import Ended, Failed, Session
-from sim.shell.verbs.verb import Command, Verb
+from sim.shell.session import CommandFailed, Ended, ShellSession
+from sim.shell.verbs.verb import ShellCommand, Verb
 
 _NOT_HERE = ("debug", "print", "show_all_subprocesses_output", "launch_prefix", "launch_prefix_filter")
 _ASSIGNED = ":="
 
 
-def _add_arguments(parser: Parser) -> None:
+def _add_arguments(parser: LineParser) -> None:
     parser.add_argument(
         "-n",
         "--noninteractive",
@@ -65,7 +65,7 @@ def _add_arguments(parser: Parser) -> None:
     )
 
 
-def _launch(session: Session, arguments: Namespace) -> None:
+def _launch(session: ShellSession, arguments: Namespace) -> None:
     for name in _NOT_HERE:
         if getattr(arguments, name):
             raise NotImplementedError(f"ros2 launch --{name.replace('_', '-')} is not supported here")
@@ -80,12 +80,12 @@ def _launch(session: Session, arguments: Namespace) -> None:
         raise Ended(status)
 
 
-def _chosen(session: Session, arguments: Namespace) -> tuple[str | None, str, list[str]]:
+def _chosen(session: ShellSession, arguments: Namespace) -> tuple[str | None, str, list[str]]:
     """Package (None: a path is given), launch file and the arguments for it."""
     first, second, others = arguments.package_name, arguments.launch_file_name, arguments.launch_arguments
     if second is None or _ASSIGNED in second or Path(first).is_file():
         if not Path(first).is_file():
-            raise Failed(
+            raise CommandFailed(
                 f"'{first}' is not a launch file; one of a package needs the package's name before it"
             )
         return None, first, [*([] if second is None else [second]), *others]
@@ -96,10 +96,10 @@ def _chosen(session: Session, arguments: Namespace) -> tuple[str | None, str, li
 def _check(argument: str) -> None:
     name, assigned, _ = argument.partition(_ASSIGNED)
     if not assigned or not name:
-        raise Failed(f"malformed launch argument '{argument}', expected format '<name>:=<value>'")
+        raise CommandFailed(f"malformed launch argument '{argument}', expected format '<name>:=<value>'")
 
 
-LAUNCH = Command(
+LAUNCH = ShellCommand(
     "launch",
     "Run a launch file",
     itself=Verb("launch", "Run a launch file", _add_arguments, _launch),

@@ -7,15 +7,15 @@ from typing import Any
 
 from sim.interfaces import service
 from sim.shell.graph import absolute, is_hidden, known_nodes
-from sim.shell.parser import Parser, Surroundings
-from sim.shell.session import Failed, Session
-from sim.shell.verbs.verb import Command, Verb, add_graph_options
+from sim.shell.parser import LineParser, Surroundings
+from sim.shell.session import CommandFailed, ShellSession
+from sim.shell.verbs.verb import ShellCommand, Verb, add_graph_options
 
 _STATE = "lifecycle_msgs/srv/GetState"
 _NOT_FOUND = "Node not found"
 
 
-def _managed(session: Session) -> list[str]:
+def _managed(session: ShellSession) -> list[str]:
     """The full names of all nodes that have a lifecycle."""
     return sorted(
         name.removesuffix("/get_state")
@@ -24,13 +24,13 @@ def _managed(session: Session) -> list[str]:
     )
 
 
-def _add_nodes(parser: Parser) -> None:
+def _add_nodes(parser: LineParser) -> None:
     add_graph_options(parser)
     parser.add_argument("-a", "--all", action="store_true", help="Display all nodes even hidden ones")
     parser.add_argument("-c", "--count-nodes", action="store_true", help="Only display the number of nodes")
 
 
-def _nodes(session: Session, arguments: Namespace) -> None:
+def _nodes(session: ShellSession, arguments: Namespace) -> None:
     names = [name for name in _managed(session) if arguments.all or not is_hidden(name)]
     if arguments.count_nodes:
         session.say(str(len(names)))
@@ -39,18 +39,18 @@ def _nodes(session: Session, arguments: Namespace) -> None:
         session.say(name)
 
 
-def _add_hidden(parser: Parser) -> None:
+def _add_hidden(parser: LineParser) -> None:
     add_graph_options(parser)
     parser.add_argument("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
 
 
-def _add_get(parser: Parser) -> None:
+def _add_get(parser: LineParser) -> None:
     _add_hidden(parser)
     parser.argument("node_name", nargs="?", help="Name of the ROS node to query", completer=known_nodes)
     parser.add_argument("--transitions", action="store_true", help="Output possible transitions")
 
 
-def _get(session: Session, arguments: Namespace) -> None:
+def _get(session: ShellSession, arguments: Namespace) -> None:
     if arguments.node_name is not None:
         node = _chosen(session, arguments)
         session.say(_described(_state(session, node)))
@@ -62,7 +62,7 @@ def _get(session: Session, arguments: Namespace) -> None:
             session.say(f"{name}: {_described(_state(session, name))}")
 
 
-def _add_list(parser: Parser) -> None:
+def _add_list(parser: LineParser) -> None:
     _add_hidden(parser)
     parser.argument("node_name", help="Name of the ROS node to query", completer=known_nodes)
     parser.add_argument(
@@ -70,12 +70,12 @@ def _add_list(parser: Parser) -> None:
     )
 
 
-def _list(session: Session, arguments: Namespace) -> None:
+def _list(session: ShellSession, arguments: Namespace) -> None:
     kind = "get_transition_graph" if arguments.all else "get_available_transitions"
     _say_transitions(session, _chosen(session, arguments), kind)
 
 
-def _say_transitions(session: Session, node: str, kind: str) -> None:
+def _say_transitions(session: ShellSession, node: str, kind: str) -> None:
     found = _call(session, node, kind, service("lifecycle_msgs", "GetAvailableTransitions").Request())
     for each in found.available_transitions:
         session.say(
@@ -88,13 +88,13 @@ def _transitions(_surroundings: Surroundings) -> list[str]:
     return ["activate", "cleanup", "configure", "deactivate", "shutdown"]
 
 
-def _add_set(parser: Parser) -> None:
+def _add_set(parser: LineParser) -> None:
     _add_hidden(parser)
     parser.argument("node_name", help="Name of the ROS node", completer=known_nodes)
     parser.argument("transition", help="The lifecycle transition", completer=_transitions)
 
 
-def _set(session: Session, arguments: Namespace) -> None:
+def _set(session: ShellSession, arguments: Namespace) -> None:
     node = _chosen(session, arguments)
     request_type = service("lifecycle_msgs", "GetAvailableTransitions").Request
     found = _call(session, node, "get_available_transitions", request_type())
@@ -103,23 +103,23 @@ def _set(session: Session, arguments: Namespace) -> None:
     chosen = known.get(arguments.transition) or by_number.get(arguments.transition)
     if chosen is None:
         lines = "".join(f"\n- {each.label} [{each.id}]" for each in known.values())
-        raise Failed(f"Unknown transition requested, available ones are:{lines}")
+        raise CommandFailed(f"Unknown transition requested, available ones are:{lines}")
     answer = _call(
         session, node, "change_state", service("lifecycle_msgs", "ChangeState").Request(transition=chosen)
     )
     if not answer.success:
-        raise Failed("Transitioning failed")
+        raise CommandFailed("Transitioning failed")
     session.say("Transitioning successful")
 
 
-def _chosen(session: Session, arguments: Namespace) -> str:
+def _chosen(session: ShellSession, arguments: Namespace) -> str:
     name = absolute(arguments.node_name)
     if name not in _managed(session) or (is_hidden(name) and not arguments.include_hidden_nodes):
-        raise Failed(_NOT_FOUND)
+        raise CommandFailed(_NOT_FOUND)
     return name
 
 
-def _state(session: Session, node: str) -> Any:
+def _state(session: ShellSession, node: str) -> Any:
     return _call(session, node, "get_state", service("lifecycle_msgs", "GetState").Request()).current_state
 
 
@@ -135,16 +135,16 @@ _TYPES = {
 }
 
 
-def _call(session: Session, node: str, name: str, request: Any) -> Any:
+def _call(session: ShellSession, node: str, name: str, request: Any) -> Any:
     client = session.node.create_client(service("lifecycle_msgs", _TYPES[name]), f"{node}/{name}")
     future = client.call_async(request)
     session.spin(future)
     if (error := future.exception()) is not None:
-        raise Failed(f"Exception while calling service of node '{node}': {error}")
+        raise CommandFailed(f"Exception while calling service of node '{node}': {error}")
     return future.result()
 
 
-LIFECYCLE = Command(
+LIFECYCLE = ShellCommand(
     "lifecycle",
     "Various lifecycle related sub-commands",
     (

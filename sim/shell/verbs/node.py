@@ -10,12 +10,12 @@ from sim.ros.actions.graph import (
     get_action_server_names_and_types_by_node,
 )
 from sim.shell.graph import absolute, is_hidden, known_nodes, without_hidden
-from sim.shell.parser import Parser
-from sim.shell.session import Failed, Session
-from sim.shell.verbs.verb import Command, Verb, add_graph_options
+from sim.shell.parser import LineParser
+from sim.shell.session import CommandFailed, ShellSession
+from sim.shell.verbs.verb import ShellCommand, Verb, add_graph_options
 
 
-def _add_list(parser: Parser) -> None:
+def _add_list(parser: LineParser) -> None:
     add_graph_options(parser)
     parser.add_argument("-a", "--all", action="store_true", help="Display all nodes even hidden ones")
     parser.add_argument(
@@ -23,7 +23,7 @@ def _add_list(parser: Parser) -> None:
     )
 
 
-def _list(session: Session, arguments: Namespace) -> None:
+def _list(session: ShellSession, arguments: Namespace) -> None:
     every = sorted(session.node.get_fully_qualified_node_names())
     names = [name for name in every if arguments.all or not is_hidden(name)]
     if arguments.count_nodes:
@@ -38,7 +38,7 @@ def _list(session: Session, arguments: Namespace) -> None:
         session.say(name)
 
 
-def _add_info(parser: Parser) -> None:
+def _add_info(parser: LineParser) -> None:
     add_graph_options(parser)
     parser.argument("node_name", help="Node name to request information", completer=known_nodes)
     parser.add_argument(
@@ -46,11 +46,11 @@ def _add_info(parser: Parser) -> None:
     )
 
 
-def _info(session: Session, arguments: Namespace) -> None:
+def _info(session: ShellSession, arguments: Namespace) -> None:
     node, full = session.node, absolute(arguments.node_name)
     count = node.get_fully_qualified_node_names().count(full)
     if count == 0:
-        raise Failed(f"Unable to find node '{arguments.node_name}'")
+        raise CommandFailed(f"Unable to find node '{arguments.node_name}'")
     if count > 1:
         session.say(
             f'There are {count} nodes in the graph with the exact name "{arguments.node_name}". '
@@ -72,7 +72,7 @@ def _info(session: Session, arguments: Namespace) -> None:
         session.say("\n".join(f"    {each}: {', '.join(types)}" for each, types in found))
 
 
-NODE = Command(
+NODE = ShellCommand(
     "node",
     "Various node related sub-commands",
     (

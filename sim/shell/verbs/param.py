@@ -19,9 +19,9 @@ from sim.ros.parameters.parameter import (
 from sim.ros.parameters.yaml_files import ParameterYamlError
 from sim.ros.scheduling.task import Future
 from sim.shell.graph import absolute, is_hidden, known_nodes, known_parameters
-from sim.shell.parser import Parser
-from sim.shell.session import Failed, Session
-from sim.shell.verbs.verb import Command, Verb, add_graph_options
+from sim.shell.parser import LineParser
+from sim.shell.session import CommandFailed, ShellSession
+from sim.shell.verbs.verb import ShellCommand, Verb, add_graph_options
 from sim.whole_file import write_whole
 
 _SERVICES_PATIENCE = 5.0
@@ -54,17 +54,17 @@ _LABELS = {
 }
 
 
-def _add_node(parser: Parser) -> None:
+def _add_node(parser: LineParser) -> None:
     add_graph_options(parser)
     parser.argument("node_name", help="Name of the ROS node", completer=known_nodes)
     _add_hidden(parser)
 
 
-def _add_hidden(parser: Parser) -> None:
+def _add_hidden(parser: LineParser) -> None:
     parser.add_argument("--include-hidden-nodes", action="store_true", help="Consider hidden nodes as well")
 
 
-def _add_parameter(parser: Parser) -> None:
+def _add_parameter(parser: LineParser) -> None:
     _add_node(parser)
     parser.argument("parameter_name", help="Name of the parameter", completer=known_parameters)
 
@@ -72,27 +72,27 @@ def _add_parameter(parser: Parser) -> None:
 # Asking
 
 
-def _node_names(session: Session, arguments: Namespace) -> list[str]:
+def _node_names(session: ShellSession, arguments: Namespace) -> list[str]:
     every = session.node.get_fully_qualified_node_names()
     return sorted(name for name in every if arguments.include_hidden_nodes or not is_hidden(name))
 
 
-def _client(session: Session, arguments: Namespace) -> AsyncParameterClient:
-    """A client for the node that the line names; raises Failed if there is none."""
+def _client(session: ShellSession, arguments: Namespace) -> AsyncParameterClient:
+    """A client for the node that the line names; raises CommandFailed if there is none."""
     name = absolute(arguments.node_name)
     if name not in _node_names(session, arguments):
-        raise Failed("Node not found")
+        raise CommandFailed("Node not found")
     client = AsyncParameterClient(session.node, name)
     session.wait_until(client.services_are_ready)
     return client
 
 
-def _reply(session: Session, future: Future[Any]) -> Any:
+def _reply(session: ShellSession, future: Future[Any]) -> Any:
     session.spin(future)
     return future.result()
 
 
-def _ready_in_time(session: Session, client: AsyncParameterClient) -> bool:
+def _ready_in_time(session: ShellSession, client: AsyncParameterClient) -> bool:
     end = session.host.clock.now() + int(_SERVICES_PATIENCE * 1e9)
     session.wait_until(lambda: client.services_are_ready() or session.host.clock.now() >= end)
     return client.services_are_ready()
@@ -101,7 +101,7 @@ def _ready_in_time(session: Session, client: AsyncParameterClient) -> bool:
 # list
 
 
-def _add_list(parser: Parser) -> None:
+def _add_list(parser: LineParser) -> None:
     add_graph_options(parser)
     parser.argument("node_name", nargs="?", help="Name of the ROS node", completer=known_nodes)
     _add_hidden(parser)
@@ -117,16 +117,16 @@ def _add_list(parser: Parser) -> None:
     parser.add_argument("--filter", help="Only list parameters matching the provided regex")
 
 
-def _list(session: Session, arguments: Namespace) -> None:
+def _list(session: ShellSession, arguments: Namespace) -> None:
     names = _node_names(session, arguments)
     if arguments.node_name is not None:
         names = [name for name in names if name == absolute(arguments.node_name)]
         if not names:
-            raise Failed("Node not found")
+            raise CommandFailed("Node not found")
     try:
         wanted = re.compile(arguments.filter or "")
     except re.error as error:
-        raise Failed(f"The filter '{arguments.filter}' is no regular expression: {error}") from None
+        raise CommandFailed(f"The filter '{arguments.filter}' is no regular expression: {error}") from None
     for name in names:
         client = AsyncParameterClient(session.node, name)
         found = _listed(session, client, arguments.param_prefixes)
@@ -138,7 +138,7 @@ def _list(session: Session, arguments: Namespace) -> None:
             session.say(f"  {each}")
 
 
-def _listed(session: Session, client: AsyncParameterClient, prefixes: list[str]) -> list[str] | None:
+def _listed(session: ShellSession, client: AsyncParameterClient, prefixes: list[str]) -> list[str] | None:
     """The names of a node's parameters; None, and said why, if it does not tell in time."""
     name = client.remote_node_name
     if not _ready_in_time(session, client):
@@ -153,7 +153,7 @@ def _listed(session: Session, client: AsyncParameterClient, prefixes: list[str])
 
 
 def _with_types(
-    session: Session, client: AsyncParameterClient, found: Iterable[str], with_types: bool
+    session: ShellSession, client: AsyncParameterClient, found: Iterable[str], with_types: bool
 ) -> list[str]:
     names = list(found)
     if not with_types or not names:
@@ -165,15 +165,15 @@ def _with_types(
 # get, set, delete
 
 
-def _add_get(parser: Parser) -> None:
+def _add_get(parser: LineParser) -> None:
     _add_parameter(parser)
     parser.add_argument("--hide-type", action="store_true", help="Hide the type information")
 
 
-def _get(session: Session, arguments: Namespace) -> None:
+def _get(session: ShellSession, arguments: Namespace) -> None:
     response = _reply(session, _client(session, arguments).get_parameters([arguments.parameter_name]))
     if not response.values:
-        raise Failed("Parameter not set.")
+        raise CommandFailed("Parameter not set.")
     (message,) = response.values
     value = parameter_value_to_python(message)
     if value is None:
@@ -184,43 +184,43 @@ def _get(session: Session, arguments: Namespace) -> None:
         session.say(f"{_LABELS[_KINDS(message.type)]} {value}")
 
 
-def _add_set(parser: Parser) -> None:
+def _add_set(parser: LineParser) -> None:
     _add_parameter(parser)
     parser.argument("value", help="Value of the parameter")
 
 
-def _set(session: Session, arguments: Namespace) -> None:
+def _set(session: ShellSession, arguments: Namespace) -> None:
     message = Parameter(arguments.parameter_name).to_parameter_msg()
     message.value = get_parameter_value(arguments.value)
     result = _reply(session, _client(session, arguments).set_parameters([message])).results[0]
     reason = f": {result.reason}" if result.reason else ""
     if not result.successful:
-        raise Failed(f"Setting parameter failed{reason}")
+        raise CommandFailed(f"Setting parameter failed{reason}")
     session.say(f"Set parameter successful{reason}")
 
 
-def _delete(session: Session, arguments: Namespace) -> None:
+def _delete(session: ShellSession, arguments: Namespace) -> None:
     result = _reply(
         session, _client(session, arguments).delete_parameters([arguments.parameter_name])
     ).results[0]
     if not result.successful:
-        raise Failed(f"Deleting parameter failed{f': {result.reason}' if result.reason else ''}")
+        raise CommandFailed(f"Deleting parameter failed{f': {result.reason}' if result.reason else ''}")
     session.say("Deleted parameter successfully")
 
 
 # describe
 
 
-def _add_describe(parser: Parser) -> None:
+def _add_describe(parser: LineParser) -> None:
     _add_node(parser)
     parser.argument("parameter_names", nargs="+", help="Names of the parameters", completer=known_parameters)
 
 
-def _describe(session: Session, arguments: Namespace) -> None:
+def _describe(session: ShellSession, arguments: Namespace) -> None:
     client = _client(session, arguments)
     descriptors = _reply(session, client.describe_parameters(arguments.parameter_names)).descriptors
     if not descriptors:
-        raise Failed(f"Parameter not declared: {', '.join(arguments.parameter_names)}")
+        raise CommandFailed(f"Parameter not declared: {', '.join(arguments.parameter_names)}")
     for descriptor in descriptors:
         for line in _description(descriptor):
             session.say(line)
@@ -246,12 +246,12 @@ def _description(descriptor: Any) -> Iterable[str]:
 # dump, load
 
 
-def _add_dump(parser: Parser) -> None:
+def _add_dump(parser: LineParser) -> None:
     _add_node(parser)
     parser.add_argument("--output-dir", help="The absolute path where to save the generated file")
 
 
-def _dump(session: Session, arguments: Namespace) -> None:
+def _dump(session: ShellSession, arguments: Namespace) -> None:
     client = _client(session, arguments)
     names = sorted(_reply(session, client.list_parameters()).result.names)
     tree: dict[str, Any] = {}
@@ -268,7 +268,7 @@ def _dump(session: Session, arguments: Namespace) -> None:
     try:
         write_whole(path, text.encode())
     except OSError as error:
-        raise Failed(f"Error writing {path}: {error.strerror}") from None
+        raise CommandFailed(f"Error writing {path}: {error.strerror}") from None
     session.say(f"Saving to:  {path}")
 
 
@@ -279,7 +279,7 @@ def _put(tree: dict[str, Any], parts: list[str], value: Any) -> None:
     tree[last] = value
 
 
-def _add_load(parser: Parser) -> None:
+def _add_load(parser: LineParser) -> None:
     _add_node(parser)
     parser.argument("parameter_file", help="Parameter file")
     parser.add_argument(
@@ -289,7 +289,7 @@ def _add_load(parser: Parser) -> None:
     )
 
 
-def _load(session: Session, arguments: Namespace) -> None:
+def _load(session: ShellSession, arguments: Namespace) -> None:
     client = _client(session, arguments)
     name = client.remote_node_name
     try:
@@ -297,9 +297,9 @@ def _load(session: Session, arguments: Namespace) -> None:
             arguments.parameter_file, not arguments.no_use_wildcard, target_nodes=[name]
         )
     except OSError as error:
-        raise Failed(f"{arguments.parameter_file}: {error.strerror}") from None
+        raise CommandFailed(f"{arguments.parameter_file}: {error.strerror}") from None
     except (RuntimeError, ParameterYamlError) as error:
-        raise Failed(f"{arguments.parameter_file}: {error}") from None
+        raise CommandFailed(f"{arguments.parameter_file}: {error}") from None
     results = _reply(session, client.set_parameters(list(parameters.values()))).results
     for parameter, result in zip(parameters, results, strict=True):
         reason = f": {result.reason}" if result.reason else ""
@@ -309,7 +309,7 @@ def _load(session: Session, arguments: Namespace) -> None:
             session.complain(f"Set parameter {parameter} failed{reason}")
 
 
-PARAM = Command(
+PARAM = ShellCommand(
     "param",
     "Various param related sub-commands",
     (

@@ -6,10 +6,10 @@ from argparse import Namespace
 from xml.etree import ElementTree
 
 from sim.foreign_file import read_text
-from sim.shell.parser import Parser
+from sim.shell.parser import LineParser
 from sim.shell.programs import known_packages, package
-from sim.shell.session import Failed, Session
-from sim.shell.verbs.verb import Command, Verb, no_arguments
+from sim.shell.session import CommandFailed, ShellSession
+from sim.shell.verbs.verb import ShellCommand, Verb, no_arguments
 
 _MANIFEST = "package.xml"
 _CREATE_OPTIONS = (
@@ -25,35 +25,35 @@ _CREATE_OPTIONS = (
 )
 
 
-def _add_package(parser: Parser) -> None:
+def _add_package(parser: LineParser) -> None:
     parser.argument("package_name", help="The package name", completer=known_packages)
 
 
-def _list(session: Session, _: Namespace) -> None:
+def _list(session: ShellSession, _: Namespace) -> None:
     for name in session.tools.packages().names:
         session.say(name)
 
 
-def _add_prefix(parser: Parser) -> None:
+def _add_prefix(parser: LineParser) -> None:
     _add_package(parser)
     parser.add_argument(
         "--share", action="store_true", help="Show share directory for the package instead of the prefix"
     )
 
 
-def _prefix(session: Session, arguments: Namespace) -> None:
+def _prefix(session: ShellSession, arguments: Namespace) -> None:
     chosen = package(session, arguments.package_name)
     session.say(str(chosen.share if arguments.share else chosen.prefix))
 
 
-def _add_executables(parser: Parser) -> None:
+def _add_executables(parser: LineParser) -> None:
     parser.argument(
         "package_name", nargs="?", help="Only list executables of this package", completer=known_packages
     )
     parser.add_argument("--full-path", action="store_true", help="Show the full path of the executable")
 
 
-def _executables(session: Session, arguments: Namespace) -> None:
+def _executables(session: ShellSession, arguments: Namespace) -> None:
     wanted = arguments.package_name
     names = session.tools.packages().names if wanted is None else [wanted]
     for chosen in (package(session, name) for name in names):
@@ -62,12 +62,12 @@ def _executables(session: Session, arguments: Namespace) -> None:
             session.say(f"{chosen.name} {executable}" if path is None else str(path))
 
 
-def _add_xml(parser: Parser) -> None:
+def _add_xml(parser: LineParser) -> None:
     _add_package(parser)
     parser.add_argument("-t", "--tag", help="The XML tag to output, e.g. version")
 
 
-def _xml(session: Session, arguments: Namespace) -> None:
+def _xml(session: ShellSession, arguments: Namespace) -> None:
     path = package(session, arguments.package_name).root / _MANIFEST
     manifest = read_text(path)
     if arguments.tag is None:
@@ -76,28 +76,28 @@ def _xml(session: Session, arguments: Namespace) -> None:
     try:
         found = ElementTree.fromstring(manifest).findall(arguments.tag)
     except ElementTree.ParseError as error:
-        raise Failed(f"{path}: this is not XML: {error}") from None
+        raise CommandFailed(f"{path}: this is not XML: {error}") from None
     if not found:
-        raise Failed(f"No '{arguments.tag}' in the package.xml of '{arguments.package_name}'")
+        raise CommandFailed(f"No '{arguments.tag}' in the package.xml of '{arguments.package_name}'")
     for each in found:
         session.say((each.text or "").strip())
 
 
-def _add_create(parser: Parser) -> None:
+def _add_create(parser: LineParser) -> None:
     parser.argument("package_name", help="The package name")
     for name in _CREATE_OPTIONS:
         parser.add_argument(f"--{name}", help="What the package is to be like")
     parser.add_argument("--dependencies", nargs="+", help="List of dependencies")
 
 
-def _create(_session: Session, _: Namespace) -> None:
+def _create(_session: ShellSession, _: Namespace) -> None:
     raise NotImplementedError(
         "ros2 pkg create is not carried out here: make the folder with package.xml and setup.py yourself, "
         "or create it on a ROS 2 machine; it then runs here without colcon"
     )
 
 
-PKG = Command(
+PKG = ShellCommand(
     "pkg",
     "Various package related sub-commands",
     (

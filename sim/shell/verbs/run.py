@@ -6,15 +6,15 @@ import argparse
 import signal
 from argparse import Namespace
 
-from sim.shell.parser import Parser
+from sim.shell.parser import LineParser
 from sim.shell.programs import known_executables, known_packages, package, wait_for
-from sim.shell.session import Ended, Session
-from sim.shell.verbs.verb import Command, Verb
+from sim.shell.session import Ended, ShellSession
+from sim.shell.verbs.verb import ShellCommand, Verb
 
 _SAYS = "[ros2run]:"
 
 
-def _add_arguments(parser: Parser) -> None:
+def _add_arguments(parser: LineParser) -> None:
     parser.add_argument(
         "--prefix",
         help="Prefix command, which should go before the executable. Command must be wrapped in quotes if it "
@@ -25,7 +25,7 @@ def _add_arguments(parser: Parser) -> None:
     parser.argument("argv", nargs=argparse.REMAINDER, help="Pass arbitrary arguments to the executable")
 
 
-def _run(session: Session, arguments: Namespace) -> None:
+def _run(session: ShellSession, arguments: Namespace) -> None:
     if arguments.prefix is not None:
         raise NotImplementedError(
             "ros2 run --prefix is not supported here: programs run inside the engine, without a command "
@@ -45,7 +45,7 @@ def _run(session: Session, arguments: Namespace) -> None:
         raise Ended(status)
 
 
-RUN = Command(
+RUN = ShellCommand(
     "run",
     "Run a package specific executable",
     itself=Verb("run", "Run a package specific executable", _add_arguments, _run),

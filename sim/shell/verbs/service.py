@@ -11,10 +11,10 @@ from sim.ros.entities.client import Client
 from sim.ros.qos.qos import qos_profile_services_default
 from sim.shell.graph import known_services, type_of_given, without_hidden
 from sim.shell.messages import Outgoing, given_values, service_class
-from sim.shell.parser import Parser, Surroundings, positive_float
-from sim.shell.session import Failed, Session
+from sim.shell.parser import LineParser, Surroundings, positive_float
+from sim.shell.session import CommandFailed, ShellSession
 from sim.shell.verbs.interface import known_service_types, service_prototype
-from sim.shell.verbs.verb import Command, Verb, add_graph_options
+from sim.shell.verbs.verb import ShellCommand, Verb, add_graph_options
 
 _EVENTS = "/_service_event"
 _EVENT_NAMES = ("REQUEST_SENT", "REQUEST_RECEIVED", "RESPONSE_SENT", "RESPONSE_RECEIVED")
@@ -25,7 +25,7 @@ def _types(surroundings: Surroundings) -> list[str]:
     return list(type_of_given(known_services)(surroundings)) or known_service_types(surroundings)
 
 
-def _add_call(parser: Parser) -> None:
+def _add_call(parser: LineParser) -> None:
     parser.argument(
         "service_name",
         help="Name of the ROS service to call to (e.g. '/add_two_ints')",
@@ -47,7 +47,7 @@ def _add_call(parser: Parser) -> None:
     )
 
 
-def _call(session: Session, arguments: Namespace) -> None:
+def _call(session: ShellSession, arguments: Namespace) -> None:
     srv_type = service_class(arguments.service_type)
     values = given_values(arguments.values)
     client = session.node.create_client(srv_type, arguments.service_name)
@@ -65,40 +65,40 @@ def _call(session: Session, arguments: Namespace) -> None:
         session.sleep(1.0 / arguments.rate - (clock.now() - began) / 1e9)
 
 
-def _request(session: Session, client: Client, request: Any) -> None:
+def _request(session: ShellSession, client: Client, request: Any) -> None:
     session.say(f"requester: making request: {request!r}\n")
     future = client.call_async(request)
     session.spin(future)
     session.say(f"response:\n{future.result()!r}\n")
 
 
-def _add_service(parser: Parser) -> None:
+def _add_service(parser: LineParser) -> None:
     parser.argument(
         "service_name", help="Name of the ROS service (e.g. '/add_two_ints')", completer=known_services
     )
     add_graph_options(parser)
 
 
-def _add_hidden(parser: Parser) -> None:
+def _add_hidden(parser: LineParser) -> None:
     parser.add_argument(
         "--include-hidden-services", action="store_true", help="Consider hidden services as well"
     )
 
 
-def _add_count(parser: Parser) -> None:
+def _add_count(parser: LineParser) -> None:
     parser.add_argument(
         "-c", "--count-services", action="store_true", help="Only display the number of services discovered"
     )
 
 
-def _add_list(parser: Parser) -> None:
+def _add_list(parser: LineParser) -> None:
     add_graph_options(parser)
     parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the service type")
     _add_count(parser)
     _add_hidden(parser)
 
 
-def _list(session: Session, arguments: Namespace) -> None:
+def _list(session: ShellSession, arguments: Namespace) -> None:
     services = without_hidden(session.node.get_service_names_and_types(), arguments.include_hidden_services)
     if arguments.count_services:
         session.say(str(len(services)))
@@ -107,28 +107,28 @@ def _list(session: Session, arguments: Namespace) -> None:
         session.say(f"{name} [{', '.join(types)}]" if arguments.show_types else name)
 
 
-def _types_of(session: Session, service: str) -> list[str]:
+def _types_of(session: ShellSession, service: str) -> list[str]:
     full = session.node.resolve_service_name(service)
     session.want(full)
     types = dict(session.node.get_service_names_and_types()).get(full)
     if types is None:
-        raise Failed(f"Unknown service '{service}'")
+        raise CommandFailed(f"Unknown service '{service}'")
     return types
 
 
-def _type(session: Session, arguments: Namespace) -> None:
+def _type(session: ShellSession, arguments: Namespace) -> None:
     for each in _types_of(session, arguments.service_name):
         session.say(each)
 
 
-def _info(session: Session, arguments: Namespace) -> None:
+def _info(session: ShellSession, arguments: Namespace) -> None:
     types = _types_of(session, arguments.service_name)
     session.say(f"Type: {types[0] if len(types) == 1 else types}")
     session.say(f"Clients count: {session.node.count_clients(arguments.service_name)}")
     session.say(f"Services count: {session.node.count_services(arguments.service_name)}")
 
 
-def _add_find(parser: Parser) -> None:
+def _add_find(parser: LineParser) -> None:
     parser.argument(
         "service_type",
         help="Name of the ROS service type to filter for (e.g. 'rcl_interfaces/srv/ListParameters')",
@@ -139,7 +139,7 @@ def _add_find(parser: Parser) -> None:
     _add_hidden(parser)
 
 
-def _find(session: Session, arguments: Namespace) -> None:
+def _find(session: ShellSession, arguments: Namespace) -> None:
     services = without_hidden(session.node.get_service_names_and_types(), arguments.include_hidden_services)
     found = [name for name, types in services if arguments.service_type in types]
     if arguments.count_services:
@@ -149,7 +149,7 @@ def _find(session: Session, arguments: Namespace) -> None:
         session.say(name)
 
 
-def _add_echo(parser: Parser) -> None:
+def _add_echo(parser: LineParser) -> None:
     _add_service(parser)
     parser.argument(
         "service_type",
@@ -161,7 +161,7 @@ def _add_echo(parser: Parser) -> None:
     parser.add_argument("--flow-style", action="store_true", help="Print collections in the block style")
 
 
-def _echo(session: Session, arguments: Namespace) -> None:
+def _echo(session: ShellSession, arguments: Namespace) -> None:
     """Print what clients and services tell of their calls, if they were configured to."""
     topic = f"{session.node.resolve_service_name(arguments.service_name)}{_EVENTS}"
     if arguments.service_type is None:
@@ -187,7 +187,7 @@ def _echo(session: Session, arguments: Namespace) -> None:
     session.spin()
 
 
-SERVICE = Command(
+SERVICE = ShellCommand(
     "service",
     "Various service related sub-commands",
     (

@@ -6,27 +6,27 @@ from argparse import Namespace
 
 from sim.ros.node.graph import NamesAndTypes
 from sim.shell.graph import full_topic_name, known_topics, topic_types, without_hidden
-from sim.shell.parser import Parser
-from sim.shell.session import Failed, Session
+from sim.shell.parser import LineParser
+from sim.shell.session import CommandFailed, ShellSession
 from sim.shell.verbs.interface import known_messages
 from sim.shell.verbs.topic_echo import ECHO
 from sim.shell.verbs.topic_pub import PUB
 from sim.shell.verbs.topic_statistics import BW, DELAY, HZ
-from sim.shell.verbs.verb import Command, Verb, add_graph_options
+from sim.shell.verbs.verb import ShellCommand, Verb, add_graph_options
 
 _UNKNOWN = "Unknown topic '{}'"
 
 
-def _add_topic(parser: Parser) -> None:
+def _add_topic(parser: LineParser) -> None:
     parser.argument("topic_name", help="Name of the ROS topic (e.g. '/chatter')", completer=known_topics)
     add_graph_options(parser)
 
 
-def _add_hidden(parser: Parser) -> None:
+def _add_hidden(parser: LineParser) -> None:
     parser.add_argument("--include-hidden-topics", action="store_true", help="Consider hidden topics as well")
 
 
-def _add_list(parser: Parser) -> None:
+def _add_list(parser: LineParser) -> None:
     add_graph_options(parser)
     parser.add_argument("-t", "--show-types", action="store_true", help="Additionally show the topic type")
     parser.add_argument(
@@ -36,7 +36,7 @@ def _add_list(parser: Parser) -> None:
     parser.add_argument("-v", "--verbose", action="store_true", help="List full details about each topic")
 
 
-def _list(session: Session, arguments: Namespace) -> None:
+def _list(session: ShellSession, arguments: Namespace) -> None:
     topics = without_hidden(session.node.get_topic_names_and_types(), arguments.include_hidden_topics)
     if arguments.count_topics:
         session.say(str(len(topics)))
@@ -59,7 +59,7 @@ def _details(what: str, who: str, topics: NamesAndTypes, counts: dict[str, int])
     return f"{what} topics:\n{''.join(lines)}"
 
 
-def _add_info(parser: Parser) -> None:
+def _add_info(parser: LineParser) -> None:
     _add_topic(parser)
     parser.add_argument(
         "-v",
@@ -70,11 +70,11 @@ def _add_info(parser: Parser) -> None:
     )
 
 
-def _info(session: Session, arguments: Namespace) -> None:
+def _info(session: ShellSession, arguments: Namespace) -> None:
     node, topic = session.node, arguments.topic_name
     full, types = full_topic_name(session, topic), topic_types(session, topic)
     if types is None:
-        raise Failed(_UNKNOWN.format(topic))
+        raise CommandFailed(_UNKNOWN.format(topic))
     end = "\n" if arguments.verbose else ""
     session.say(f"Type: {types[0] if len(types) == 1 else types}{end}")
     session.say(f"Publisher count: {node.count_publishers(full)}{end}")
@@ -87,15 +87,15 @@ def _info(session: Session, arguments: Namespace) -> None:
             session.say(f"{subscription}{end}")
 
 
-def _type(session: Session, arguments: Namespace) -> None:
+def _type(session: ShellSession, arguments: Namespace) -> None:
     types = topic_types(session, arguments.topic_name)
     if types is None:
-        raise Failed(_UNKNOWN.format(arguments.topic_name))
+        raise CommandFailed(_UNKNOWN.format(arguments.topic_name))
     for each in types:
         session.say(each)
 
 
-def _add_find(parser: Parser) -> None:
+def _add_find(parser: LineParser) -> None:
     parser.argument(
         "topic_type",
         help="Name of the ROS topic type to filter for (e.g. 'std_msgs/msg/String')",
@@ -108,7 +108,7 @@ def _add_find(parser: Parser) -> None:
     _add_hidden(parser)
 
 
-def _find(session: Session, arguments: Namespace) -> None:
+def _find(session: ShellSession, arguments: Namespace) -> None:
     topics = without_hidden(session.node.get_topic_names_and_types(), arguments.include_hidden_topics)
     found = [name for name, types in topics if arguments.topic_type in types]
     if arguments.count_topics:
@@ -118,7 +118,7 @@ def _find(session: Session, arguments: Namespace) -> None:
             session.say(name)
 
 
-TOPIC = Command(
+TOPIC = ShellCommand(
     "topic",
     "Various topic related sub-commands",
     (

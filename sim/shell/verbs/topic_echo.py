@@ -14,15 +14,15 @@ from sim.ros.scheduling.task import Future
 from sim.shell.filters import add_filter_option, compiled_filter
 from sim.shell.graph import full_topic_name, known_topics, topic_type, type_of_given
 from sim.shell.messages import message_class
-from sim.shell.parser import Parser, positive_float, unsigned_int
+from sim.shell.parser import LineParser, positive_float, unsigned_int
 from sim.shell.qos_options import add_qos_options, fitting_qos
-from sim.shell.session import Failed, Session
+from sim.shell.session import CommandFailed, ShellSession
 from sim.shell.verbs.verb import Verb, add_graph_options
 
 _DEFAULT_LENGTH = 128
 
 
-def _add_arguments(parser: Parser) -> None:
+def _add_arguments(parser: LineParser) -> None:
     parser.argument(
         "topic_name",
         help="Name of the ROS topic to listen to (e.g. '/chatter')",
@@ -77,11 +77,11 @@ def _add_arguments(parser: Parser) -> None:
     )
 
 
-def _echo(session: Session, arguments: Namespace) -> None:
+def _echo(session: ShellSession, arguments: Namespace) -> None:
     kind = arguments.message_type or topic_type(session, arguments.topic_name)
     if kind is None:
         session.say(f"WARNING: topic [{arguments.topic_name}] does not appear to be published yet")
-        raise Failed("Could not determine the type for the passed topic")
+        raise CommandFailed("Could not determine the type for the passed topic")
     cls = message_class(kind)
     qos = fitting_qos(session, full_topic_name(session, arguments.topic_name), arguments)
     first: Future[None] = Future()
@@ -93,7 +93,7 @@ def _echo(session: Session, arguments: Namespace) -> None:
 class _Listener:
     """Prints each message as the options want it; ``first`` is done with the first if one is enough."""
 
-    def __init__(self, session: Session, arguments: Namespace, first: Future[None]) -> None:
+    def __init__(self, session: ShellSession, arguments: Namespace, first: Future[None]) -> None:
         self._shorter: dict[str, Any] = {
             "truncate_length": None if arguments.full_length else arguments.truncate_length,
             "no_arr": arguments.no_arr,
@@ -120,7 +120,7 @@ class _Listener:
             try:
                 message = getattr(message, field)
             except AttributeError as error:
-                raise Failed(f"Invalid field '{'.'.join(self._fields)}': {error}") from None
+                raise CommandFailed(f"Invalid field '{'.'.join(self._fields)}': {error}") from None
         return message
 
     def _text(self, shown: Any, info: MessageInfo) -> str:

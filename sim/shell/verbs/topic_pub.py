@@ -8,9 +8,9 @@ from sim.ros.entities.publisher import Publisher
 from sim.ros.scheduling.task import Future
 from sim.shell.graph import known_topics, type_of_given
 from sim.shell.messages import NO_DICTIONARY, Outgoing, given_values, message_class
-from sim.shell.parser import Parser, Surroundings, nonnegative_int, positive_float
+from sim.shell.parser import LineParser, Surroundings, nonnegative_int, positive_float
 from sim.shell.qos_options import add_qos_options, chosen_qos
-from sim.shell.session import Failed, Session
+from sim.shell.session import CommandFailed, ShellSession
 from sim.shell.verbs.interface import known_messages, message_prototype
 from sim.shell.verbs.verb import Verb, add_graph_options
 
@@ -24,7 +24,7 @@ def _types(surroundings: Surroundings) -> list[str]:
     return list(type_of_given(known_topics)(surroundings)) or known_messages(surroundings)
 
 
-def _add_arguments(parser: Parser) -> None:
+def _add_arguments(parser: LineParser) -> None:
     parser.argument(
         "topic_name",
         help="Name of the ROS topic to publish to (e.g. '/chatter')",
@@ -84,11 +84,11 @@ def _add_arguments(parser: Parser) -> None:
     add_graph_options(parser)
 
 
-def _pub(session: Session, arguments: Namespace) -> None:
+def _pub(session: ShellSession, arguments: Namespace) -> None:
     cls = message_class(arguments.message_type)
     values = given_values(arguments.values)
     if not isinstance(values, dict):
-        raise Failed(NO_DICTIONARY)
+        raise CommandFailed(NO_DICTIONARY)
     if arguments.node_name is not None:
         session.make_node(arguments.node_name)
     publisher = session.node.create_publisher(cls, arguments.topic_name, chosen_qos(arguments))
@@ -103,7 +103,7 @@ def _pub(session: Session, arguments: Namespace) -> None:
     session.sleep(arguments.keep_alive)
 
 
-def _wait_for_subscriptions(session: Session, publisher: Publisher, wanted: int) -> None:
+def _wait_for_subscriptions(session: ShellSession, publisher: Publisher, wanted: int) -> None:
     polls = 0
     while publisher.get_subscription_count() < wanted:
         if polls % _POLLS_A_REPORT == 0:
@@ -116,7 +116,7 @@ class _Loop:
     """Publishes at once and then each period, ``times`` times (0: for ever)."""
 
     def __init__(
-        self, session: Session, publisher: Publisher, outgoing: Outgoing, every: int, times: int
+        self, session: ShellSession, publisher: Publisher, outgoing: Outgoing, every: int, times: int
     ) -> None:
         self._session = session
         self._publisher = publisher

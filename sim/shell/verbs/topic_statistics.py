@@ -13,8 +13,8 @@ from sim.ros.qos.qos import qos_profile_sensor_data
 from sim.shell.filters import add_filter_option, compiled_filter
 from sim.shell.graph import known_topics, topic_type
 from sim.shell.messages import message_class
-from sim.shell.parser import Parser, positive_int
-from sim.shell.session import Failed, Session
+from sim.shell.parser import LineParser, positive_int
+from sim.shell.session import CommandFailed, ShellSession
 from sim.shell.verbs.verb import Verb, add_graph_options
 from sim.units import SECOND
 
@@ -32,7 +32,7 @@ def spread(values: Iterable[float]) -> tuple[float, float, float, float, int]:
     return mean, min(every), max(every), deviation, len(every)
 
 
-class Rate:
+class RateMeter:
     """The time between messages, the last ``window`` of them. Times are nanoseconds."""
 
     def __init__(self, window: int) -> None:
@@ -117,7 +117,7 @@ def as_bytes(size: float) -> str:
     return f"{size / _KILO:.2f} KB" if size < _MEGA else f"{size / _MEGA:.2f} MB"
 
 
-def _add_topic(parser: Parser, what: str, window: int) -> None:
+def _add_topic(parser: LineParser, what: str, window: int) -> None:
     parser.argument("topic_name", help=f"Name of the ROS topic to {what}", completer=known_topics)
     parser.add_argument(
         "--window",
@@ -130,7 +130,7 @@ def _add_topic(parser: Parser, what: str, window: int) -> None:
     add_graph_options(parser)
 
 
-def _class_once_known(session: Session, topic: str) -> type[Message]:
+def _class_once_known(session: ShellSession, topic: str) -> type[Message]:
     kind = topic_type(session, topic)
     if kind is None:
         session.say(f"WARNING: topic [{topic}] does not appear to be published yet")
@@ -140,7 +140,7 @@ def _class_once_known(session: Session, topic: str) -> type[Message]:
     return message_class(kind)
 
 
-def _add_hz(parser: Parser) -> None:
+def _add_hz(parser: LineParser) -> None:
     _add_topic(parser, "listen to (e.g. '/chatter')", _WINDOW)
     add_filter_option(parser, "count")
     parser.add_argument(
@@ -148,9 +148,9 @@ def _add_hz(parser: Parser) -> None:
     )
 
 
-def _hz(session: Session, arguments: Namespace) -> None:
+def _hz(session: ShellSession, arguments: Namespace) -> None:
     passes = compiled_filter(arguments.filter)
-    rate = Rate(arguments.window)
+    rate = RateMeter(arguments.window)
     cls = _class_once_known(session, arguments.topic_name)
 
     def hear(message: Any) -> None:
@@ -162,11 +162,11 @@ def _hz(session: Session, arguments: Namespace) -> None:
     session.spin()
 
 
-def _add_bw(parser: Parser) -> None:
+def _add_bw(parser: LineParser) -> None:
     _add_topic(parser, "monitor for bandwidth utilization", _BANDWIDTH_WINDOW)
 
 
-def _bw(session: Session, arguments: Namespace) -> None:
+def _bw(session: ShellSession, arguments: Namespace) -> None:
     clock = session.host.clock
     bandwidth = Bandwidth(arguments.window)
     cls = _class_once_known(session, arguments.topic_name)
@@ -180,16 +180,16 @@ def _bw(session: Session, arguments: Namespace) -> None:
     session.spin()
 
 
-def _add_delay(parser: Parser) -> None:
+def _add_delay(parser: LineParser) -> None:
     _add_topic(parser, "calculate the delay for", _WINDOW)
 
 
-def _delay(session: Session, arguments: Namespace) -> None:
+def _delay(session: ShellSession, arguments: Namespace) -> None:
     clock = session.host.clock
     delay = Delay(arguments.window)
     cls = _class_once_known(session, arguments.topic_name)
     if "header" not in cls.__interface__.types:
-        raise Failed("msg does not have header")
+        raise CommandFailed("msg does not have header")
 
     def hear(message: Any) -> None:
         stamp = message.header.stamp
@@ -200,7 +200,7 @@ def _delay(session: Session, arguments: Namespace) -> None:
     session.spin()
 
 
-def _say(session: Session, report: str | None) -> None:
+def _say(session: ShellSession, report: str | None) -> None:
     if report is not None:
         session.say(report)
 

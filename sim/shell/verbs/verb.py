@@ -7,10 +7,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TypeAlias
 
-from sim.shell.parser import Parser
-from sim.shell.session import Session
+from sim.shell.parser import LineParser
+from sim.shell.session import ShellSession
 
-Action: TypeAlias = Callable[[Session, Namespace], None]
+Action: TypeAlias = Callable[[ShellSession, Namespace], None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -23,12 +23,12 @@ class Verb:
 
     name: str
     help: str
-    add_arguments: Callable[[Parser], None]
+    add_arguments: Callable[[LineParser], None]
     carry_out: Action
 
 
 @dataclass(frozen=True, slots=True)
-class Command:
+class ShellCommand:
     """A command with verbs, or one that is a verb itself."""
 
     name: str
@@ -37,11 +37,11 @@ class Command:
     itself: Verb | None = None
 
 
-def no_arguments(parser: Parser) -> None:
+def no_arguments(parser: LineParser) -> None:
     """Add none."""
 
 
-def add_graph_options(parser: Parser) -> None:
+def add_graph_options(parser: LineParser) -> None:
     """The options of verbs that look at the graph, which is known here at once and without a daemon."""
     parser.add_argument(
         "--spin-time",

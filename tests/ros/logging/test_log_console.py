@@ -8,13 +8,13 @@ import pytest
 import sim.ros.rclpy as rclpy
 from sim.ros.logging import logger as logging
 from sim.ros.logging.console import LogConsole
-from sim.ros.logging.filters import Place
+from sim.ros.logging.filters import CallSite
 from sim.ros.logging.logger import LoggingSeverity, get_logger
 from sim.ros.logging.record import LogRecord
 from tests.support.simulation import Simulation, simulate
 
 RECORD = LogRecord(
-    LoggingSeverity.WARN, "sub_node", "Odom", 1_631_462_014_163_838_534, Place("tick", "/a/node.py", 7, 0)
+    LoggingSeverity.WARN, "sub_node", "Odom", 1_631_462_014_163_838_534, CallSite("tick", "/a/node.py", 7, 0)
 )
 
 

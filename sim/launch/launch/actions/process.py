@@ -19,7 +19,7 @@ from sim.launch.launch.events.process import ShutdownProcess as ShutdownProcessE
 from sim.launch.launch.launch_context import LaunchContext
 from sim.launch.launch.substitution import normalize_to_list_of_substitutions, performed
 from sim.launch.machine import ProcessSpec
-from sim.launch.processes import Line, Upkeep
+from sim.launch.processes import LaunchLine, Upkeep
 
 _PYTHON = re.compile(r"python(3(\.\d+)?)?")
 _OUTPUTS = {"screen": "screen", "log": "log", "both": "both", "full": "both", "own_log": "log"}
@@ -83,7 +83,7 @@ class ExecuteLocal(Action):
         context.processes.start(self, what, upkeep)
         return None
 
-    def prepare(self, context: LaunchContext) -> ProcessSpec | Line:
+    def prepare(self, context: LaunchContext) -> ProcessSpec | LaunchLine:
         """What to start."""
         raise NotImplementedError(f"{type(self).__name__} does not implement prepare()")
 
@@ -121,13 +121,13 @@ class ExecuteProcess(ExecuteLocal):
         self.cmd = [normalize_to_list_of_substitutions(each) for each in cmd]
         self._shell = shell
 
-    def prepare(self, context: LaunchContext) -> ProcessSpec | Line:
+    def prepare(self, context: LaunchContext) -> ProcessSpec | LaunchLine:
         words = [performed(context, each) for each in self.cmd]
         if self._shell:
             words = shlex.split(" ".join(words))
         program = Path(words[0]).name if words else ""
         if program == "ros2":
-            return Line(self.label(context, program), ("ros2", *words[1:]))
+            return LaunchLine(self.label(context, program), ("ros2", *words[1:]))
         if _PYTHON.fullmatch(program) and len(words) > 1 and not words[1].startswith("-"):
             return self._file(context, program, words[1:])
         raise NotImplementedError(
