@@ -1,4 +1,4 @@
-"""Signals on virtual time: alarms at their virtual moment, and handlers on the main thread in its turn."""
+"""Signals on virtual time: alarms at virtual moments, and handlers on the main thread in its turn."""
 
 import math
 import os
@@ -20,21 +20,21 @@ _getsignal = signal.getsignal
 
 
 class ProcessSignals:
-    """The signals of a run's main thread. Make it on that thread; only threads of the clock may call it."""
+    """The signals of a run's main thread. Create it on that thread; only threads of the clock may call it."""
 
     def __init__(self, outside: OutsideWork) -> None:
         self._outside = outside
         self._clock = outside.clock
         self._main = self._clock.current
         self._handlers: dict[int, Any] = {}
-        self._waiting: list[int] = []
+        self._pending: list[int] = []
         self._handled = 0
-        self._rings_at = 0
+        self._due_at = 0
         self._interval = 0
         self._setting = 0
 
     def replace(self, replacements: Replacements) -> None:
-        """Take the place of what the ``signal`` module does about alarms, waits and handlers."""
+        """Replace the alarms, waits and handlers of the ``signal`` module."""
         for name in ("alarm", "setitimer", "getitimer", "pause", "signal", "getsignal", "sigpending"):
             replacements.put(signal, name, getattr(self, name))
         replacements.put(signal, "sigwait", lambda wanted: self._wait_for(wanted, None, "signal.sigwait"))
@@ -46,15 +46,15 @@ class ProcessSignals:
         replacements.put(
             os,
             "kill",
-            lambda pid, number: None if pid == os.getpid() and self._came(number) else kill(pid, number),
+            lambda pid, number: None if pid == os.getpid() and self._deliver(number) else kill(pid, number),
         )
         replacements.put(
-            signal, "raise_signal", lambda number: None if self._came(number) else raise_signal(number)
+            signal, "raise_signal", lambda number: None if self._deliver(number) else raise_signal(number)
         )
         replacements.put(
             signal,
             "pthread_kill",
-            lambda thread, number: None if number and self._came(number) else pthread_kill(thread, number),
+            lambda thread, number: None if number and self._deliver(number) else pthread_kill(thread, number),
         )
         self._clock.handle_signals = self._handle
 
@@ -63,13 +63,13 @@ class ProcessSignals:
         return math.ceil(self.setitimer(signal.ITIMER_REAL, int(seconds))[0])
 
     def setitimer(self, which: int, seconds: float, interval: float = 0.0) -> tuple[float, float]:
-        """``signal.setitimer``; timers of computing are refused, which takes no virtual time."""
+        """``signal.setitimer``; timers of CPU time are refused, since computing takes no virtual time."""
         before = self.getitimer(which)
         if seconds < 0 or interval < 0:
             raise signal.ItimerError(22, "Invalid argument")
         self._setting += 1
         self._interval = wait_ns(interval)
-        self._rings_at = 0
+        self._due_at = 0
         if seconds:
             self._set(self._clock.now() + wait_ns(seconds))
         return before
@@ -81,27 +81,27 @@ class ProcessSignals:
                 "signal.ITIMER_VIRTUAL and ITIMER_PROF count computing, which takes no virtual time; "
                 "use --clock real"
             )
-        left = max(self._rings_at - self._clock.now(), 0)
+        left = max(self._due_at - self._clock.now(), 0)
         return left / SECOND, self._interval / SECOND
 
     def _set(self, moment: int) -> None:
-        self._rings_at = moment
+        self._due_at = moment
         setting = self._setting
 
-        def ring() -> None:
+        def fire() -> None:
             if setting != self._setting:
-                return  # it was set anew
-            self._rings_at = 0
+                return  # it was set again
+            self._due_at = 0
             if self._interval:
                 self._set(moment + self._interval)
-            self._come(signal.SIGALRM)
+            self._queue(signal.SIGALRM)
 
-        self._clock.call_at(moment, ring)
+        self._clock.call_at(moment, fire)
 
     def signal(self, number: int, handler: Any) -> Any:
-        """``signal.signal``: what comes from outside waits for the main thread's turn, too."""
+        """``signal.signal``; signals from outside also wait until the main thread is scheduled."""
         before = self.getsignal(number)
-        _signal(number, self._hear if callable(handler) else handler)
+        _signal(number, self._on_outside_signal if callable(handler) else handler)
         self._handlers[number] = handler
         return before
 
@@ -123,15 +123,15 @@ class ProcessSignals:
 
     def sigpending(self) -> set[Any]:
         """``signal.sigpending``."""
-        return {*_pending()} | {signal.Signals(number) for number in self._waiting if number in _blocked()}
+        return {*_pending()} | {signal.Signals(number) for number in self._pending if number in _blocked()}
 
     def _wait_for(self, wanted: Iterable[int], timeout: float | None, what: str) -> Any:
         numbers = set(wanted)
 
         def look() -> int:
-            for number in self._waiting:
+            for number in self._pending:
                 if number in numbers:
-                    self._waiting.remove(number)
+                    self._pending.remove(number)
                     return number
             found = _taken(numbers, 0)
             return 0 if found is None else found.si_signo
@@ -139,31 +139,31 @@ class ProcessSignals:
         number = self._outside.wait(look, timeout, what)
         return signal.Signals(number) if number else None
 
-    def _came(self, number: int) -> bool:
-        """A signal for this process; whether it has a handler, or is waited for, and so has been seen to."""
+    def _deliver(self, number: int) -> bool:
+        """Handle a signal for this process; False if it has no handler."""
         if not callable(self.getsignal(number)):
             return False
-        self._come(number)
+        self._queue(number)
         if self._clock.current is self._main:
             self._handle()
         return True
 
-    def _hear(self, number: int, _frame: FrameType | None) -> None:
-        """A signal from outside, at whatever real moment."""
-        self._clock.time.inject(lambda: self._come(number))
+    def _on_outside_signal(self, number: int, _frame: FrameType | None) -> None:
+        """Handle a signal from outside, at any real time."""
+        self._clock.time.inject(lambda: self._queue(number))
 
-    def _come(self, number: int) -> None:
-        if number not in self._waiting:
-            self._waiting.append(number)
+    def _queue(self, number: int) -> None:
+        if number not in self._pending:
+            self._pending.append(number)
         self._clock.unpark(self._main)
 
     def _handle(self) -> None:
-        """Run the handlers of the signals that have come and are not blocked; called on the main thread."""
-        if not self._waiting:
+        """Run the handlers of pending signals that are not blocked; called on the main thread."""
+        if not self._pending:
             return
         blocked = _blocked()
-        for number in [each for each in self._waiting if each not in blocked]:
-            self._waiting.remove(number)
+        for number in [each for each in self._pending if each not in blocked]:
+            self._pending.remove(number)
             handler = self.getsignal(number)
             if callable(handler):
                 self._handled += 1
@@ -178,7 +178,7 @@ def _blocked() -> set[Any]:
 
 
 def _info(number: Any) -> Any:
-    """What ``sigwaitinfo`` returns of a signal from within the process; None: none came."""
+    """The result of ``sigwaitinfo`` for a signal from this process; None: no signal."""
     if number is None:
         return None
     return signal.struct_siginfo((number, 0, 0, os.getpid(), os.getuid(), 0, 0))

@@ -14,14 +14,14 @@ from sim.units import wait_ns
 _Ready = list[tuple[selectors.SelectorKey, int]]
 _MAIN = "MainThread"
 _SLICE = 0.02
-"""Real seconds after which a wait on a paced clock is looked at again: the pace may have changed."""
+"""Real seconds between checks of a wait on a paced clock: the pace may have changed."""
 
 
 class ProgramLoops(asyncio.DefaultEventLoopPolicy):
     """Python's policy, for programs whose main threads are threads of one process.
 
-    Each of these gets a loop when it first asks, as a main thread does. Loops wait on ``clock``: those of
-    threads that live on a virtual one let its time pass, those on a paced one keep its pace.
+    Each of these gets a loop on first access, like a main thread. Loops wait on ``clock``: on a virtual one
+    they let its time pass, on a paced one they keep its pace.
     """
 
     def __init__(self, clock: Clock) -> None:
@@ -50,14 +50,14 @@ class ProgramLoops(asyncio.DefaultEventLoopPolicy):
 
 
 class VirtualEventLoop(asyncio.SelectorEventLoop):
-    """An event loop whose waits pass virtual time; as on the wall while it has sockets or pipes to serve."""
+    """An event loop that waits in virtual time; in real time while it serves sockets or pipes."""
 
     def __init__(self, clock: VirtualClock) -> None:
         self._waiting = _VirtualSelector(clock)
         super().__init__(self._waiting)
 
     def _write_to_self(self) -> None:
-        """Called by asyncio when another thread has something for this loop."""
+        """Called by asyncio when another thread schedules something on this loop."""
         self._waiting.wake()
         if self._waiting.reaches_outside:
             loop: Any = super()
@@ -84,7 +84,7 @@ class _PacedSelector(selectors.DefaultSelector):
 
 
 class _VirtualSelector(selectors.PollSelector):
-    """Waits on the clock alone where it holds nothing but the pipe by which a loop wakes itself."""
+    """Waits on the clock only, unless it has more than the pipe by which a loop wakes itself."""
 
     def __init__(self, clock: VirtualClock) -> None:
         super().__init__()
@@ -92,12 +92,12 @@ class _VirtualSelector(selectors.PollSelector):
         self._signal: VirtualSignal = clock.signal()
 
     def wake(self) -> None:
-        """End the wait that is going on, or the next one. Any thread may call it."""
+        """End the current wait, or the next one. Any thread may call it."""
         self._signal.set()
 
     @property
     def reaches_outside(self) -> bool:
-        """Whether it waits for sockets or pipes of the program's, too."""
+        """Whether it also waits for the program's sockets or pipes."""
         return len(self.get_map()) > 1
 
     def select(self, timeout: float | None = None) -> _Ready:

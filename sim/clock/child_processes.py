@@ -1,4 +1,4 @@
-"""Programs that a learner's program starts: while one runs, virtual time passes as on the wall."""
+"""Child processes of a learner's program: while one runs, virtual time passes as real time."""
 
 import os
 import subprocess
@@ -13,7 +13,7 @@ _waitid = os.waitid
 
 
 class ChildProcesses:
-    """The processes that a run has started and that have not ended."""
+    """The running child processes of a run."""
 
     def __init__(self, outside: OutsideWork) -> None:
         self._outside = outside
@@ -21,7 +21,7 @@ class ChildProcesses:
         outside.also(self._any_runs)
 
     def replace(self, replacements: Replacements) -> None:
-        """Note whatever is started, and wait for it without holding up the other threads."""
+        """Track started processes, and wait for them without blocking the other threads."""
         popen: Any = subprocess.Popen
         start = popen._execute_child
         owns = replacements.clock.owns_current_thread

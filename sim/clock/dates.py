@@ -30,7 +30,7 @@ _OF_COMPUTING = ("CLOCK_PROCESS_CPUTIME_ID", "CLOCK_THREAD_CPUTIME_ID")
 
 
 def replace_dates(replacements: Replacements, outside: OutsideWork) -> None:
-    """Have whatever tells the date or a clock's time tell virtual time; computing takes none."""
+    """Replace functions for dates and clocks by virtual time; CPU time is always 0."""
     clock = replacements.clock
 
     def wall() -> int:

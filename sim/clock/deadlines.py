@@ -1,4 +1,4 @@
-"""What virtual time comes to next: threads that wait until a moment, and actions."""
+"""The queue of deadlines of virtual time: waiting threads and scheduled actions."""
 
 from collections.abc import Callable
 from functools import partial
@@ -12,20 +12,20 @@ Entry: TypeAlias = tuple[int, int, VirtualThread | Callable[[], None]]
 
 
 class Deadlines:
-    """A heap of moments; of equal ones, the wait or action that began first comes first."""
+    """A heap of deadlines; equal ones are in order of registration."""
 
     def __init__(self) -> None:
-        # These three are asked in every wait: no function of Python's own stands in between.
+        # Called in every wait, so they are bound C functions.
         self._heap: list[Entry] = []
         self.add: Callable[[Entry], None] = partial(heappush, self._heap)
-        """Adds a moment, the number of the wait, and what is due then."""
+        """Adds a moment, the number of the wait, and the thread or action."""
         self.take: Callable[[], Entry] = partial(heappop, self._heap)
-        """Takes out what is due first; call ``first`` before."""
+        """Removes and returns the first entry; call ``first`` before."""
         self.number: Callable[[], int] = count(1).__next__
-        """Returns the number of one more wait."""
+        """Returns the number of the next wait."""
 
     def first(self) -> int | None:
-        """Return the earliest moment that something still waits for, None if nothing does."""
+        """Return the earliest deadline; None if there is none."""
         heap = self._heap
         while heap:
             moment, number, due = heap[0]
@@ -43,5 +43,5 @@ class Deadlines:
         return [moment for moment, *_ in self._heap if moment > now]
 
     def clear(self) -> None:
-        """Forget all."""
+        """Remove all deadlines."""
         self._heap.clear()

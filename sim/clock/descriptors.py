@@ -1,4 +1,4 @@
-"""Waits for files, pipes and sockets on virtual time: each looks whether it would block before it does."""
+"""Waits for files, pipes and sockets on virtual time: each checks first whether it would block."""
 
 import contextlib
 import fcntl
@@ -20,7 +20,7 @@ _poll = select.poll
 
 
 def replace_descriptors(replacements: Replacements, outside: OutsideWork) -> None:
-    """Have every wait for a descriptor let virtual time pass as on the wall, and other threads go on."""
+    """Let virtual time pass as real time during waits for descriptors, while other threads go on."""
     _replace_polls(replacements, outside)
     _replace_files(replacements, outside)
     _replace_sockets(replacements, outside)
@@ -74,7 +74,7 @@ def _replace_polls(replacements: Replacements, outside: OutsideWork) -> None:
 
 
 class _Wrapped:
-    """One of the system's objects that poll, whose own type allows no subclass."""
+    """Wraps a polling object of the system, whose type allows no subclass."""
 
     make: Callable[..., Any]
 

@@ -1,4 +1,4 @@
-"""Randomness of a virtual run: what a program draws from the system comes from a seed, each time the same."""
+"""Randomness of a virtual run: the system's random numbers come from a seed, the same in each run."""
 
 import os
 import random
@@ -14,7 +14,7 @@ _SEED = 0
 
 
 def replace_entropy(replacements: Replacements, outside: OutsideWork) -> None:
-    """Serve ``os.urandom`` and whatever draws from it, and seed what has been seeded by the system."""
+    """Replace ``os.urandom`` and its users, and reseed the generators that the system seeded."""
     owns = replacements.clock.owns_current_thread
     source = random.Random(_SEED)
     generator: Any = random.Random
@@ -29,12 +29,12 @@ def replace_entropy(replacements: Replacements, outside: OutsideWork) -> None:
         return source.randbytes(size)
 
     class Unpredictable(random.Random):
-        """Draws from the system, whoever asks: others could make a file of a predictable name first."""
+        """Draws from the system: predictable file names would be a security risk."""
 
         seed = real_seed
 
     class TemporaryNames(tempfile._RandomNameSequence):  # type: ignore[name-defined,misc]
-        """Tells of the new names that learners' temporary files get."""
+        """Reports that temporary files get new names in each run."""
 
         def __next__(self) -> str:
             if owns():

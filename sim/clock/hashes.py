@@ -1,7 +1,7 @@
-"""Threads, futures and tasks on virtual time hash to a number of their own, not to where they lie in memory.
+"""Deterministic hashes for threads, futures and tasks on virtual time, instead of memory addresses.
 
-The standard library keeps them in sets and goes through these: a pool joins its threads so, ``wait`` tells
-which futures are done, a loop cancels its tasks. So the order of a set decides what runs next.
+The standard library iterates over sets of them: a pool joins its threads, ``wait`` collects the finished
+futures, a loop cancels its tasks. So the order of a set decides what runs next.
 """
 
 import concurrent.futures
@@ -14,7 +14,7 @@ from sim.clock.virtual import VirtualClock
 
 
 def _numbering(clock: VirtualClock) -> Callable[[Any], int]:
-    """A ``__hash__``: a number drawn at the first call on the clock; others get what Python hashes it to."""
+    """A ``__hash__``: a number assigned at the first call on the clock; elsewhere Python's own hash."""
     numbers = count(1)
 
     def number(self: Any) -> int:
@@ -27,7 +27,7 @@ def _numbering(clock: VirtualClock) -> Callable[[Any], int]:
 
 
 def number_threads(clock: VirtualClock) -> None:
-    """Have threads, and futures of pools, hash to numbers."""
+    """Give threads, and futures of pools, deterministic hashes."""
     kinds: tuple[Any, ...] = (threading.Thread, concurrent.futures.Future)
     for kind in kinds:
         kind.__hash__ = _numbering(clock)
@@ -36,7 +36,7 @@ def number_threads(clock: VirtualClock) -> None:
 
 
 def number_tasks(clock: VirtualClock) -> None:
-    """Have tasks and futures of asyncio hash to numbers. Call it before they are imported by name."""
+    """Give tasks and futures of asyncio deterministic hashes. Call it before they are imported by name."""
     import asyncio  # takes long, and most programs do without
 
     for module, name in ((asyncio.futures, "Future"), (asyncio.tasks, "Task")):
@@ -47,7 +47,7 @@ def number_tasks(clock: VirtualClock) -> None:
     as_completed = asyncio.as_completed
 
     def in_order(fs: Any, *, timeout: float | None = None) -> Iterable[Any]:
-        """``asyncio.as_completed``, beginning coroutines in the order given: it puts them into a set."""
+        """``asyncio.as_completed``, starting coroutines in the given order instead of a set's."""
         if not (asyncio.isfuture(fs) or asyncio.iscoroutine(fs)):
             fs = [asyncio.ensure_future(each) for each in dict.fromkeys(fs)]
         return as_completed(fs, timeout=timeout)

@@ -1,7 +1,7 @@
-"""Imports on virtual time: a thread that imports is not left at switch points.
+"""Imports on virtual time: there are no switch points during an import.
 
-It holds the lock of the module, which is the interpreter's own: a thread that came for it would wait with the
-baton in its hand. CPython 3.11 to 3.13 look up the function that loads a module each time.
+An importing thread holds the interpreter's own lock of the module: another thread would wait for it while
+holding the baton. CPython 3.11 to 3.13 look up the function that loads a module each time.
 """
 
 import importlib
@@ -11,7 +11,7 @@ from sim.clock.replacing import Replacements
 
 
 def replace_imports(replacements: Replacements) -> None:
-    """Have each import that loads a module come to its end, or to a wait, before other threads go on."""
+    """Let each import run to its end, or to a wait, before other threads go on."""
     clock = replacements.clock
     machinery: Any = importlib
     bootstrap = machinery._bootstrap

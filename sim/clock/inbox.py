@@ -1,4 +1,4 @@
-"""What reaches a run on virtual time from outside: actions that other threads hand in, and inputs."""
+"""Queues for what reaches a run from outside: actions of other threads, and inputs."""
 
 import threading
 from collections import deque
@@ -9,42 +9,42 @@ _allocate_lock = threading.Lock
 
 
 class Inbox:
-    """Actions for the thread that has the baton. Any thread may ``put``; the rest is for that one."""
+    """A queue of actions for the thread with the baton. Any thread may call ``put`` and ``ring``."""
 
     def __init__(self) -> None:
         self.waiting: deque[Callable[[], None]] = deque()
-        """What has been handed in and not been done."""
+        """The queued actions."""
         self._bell = _allocate_lock()
         self._bell.acquire()
         self.rests = False
         """Whether the run waits for its pace, for the end of a pause, or for something from outside."""
 
     def put(self, action: Callable[[], None], *, steers: bool = False) -> None:
-        """Hand in an action; one that ``steers`` is done even where time stands in the middle of a moment."""
+        """Queue an action; one that ``steers`` also runs while time is stopped within a moment."""
         self.waiting.append(_Steering(action) if steers else action)
         self.ring()
 
     def ring(self) -> None:
-        """Have a run that rests look again."""
+        """Wake a resting run."""
         if self._bell.locked():
             try:
                 self._bell.release()
-            except RuntimeError:  # another thread rang it between the question and the answer
+            except RuntimeError:  # another thread rang it in between
                 return
 
     def rest(self, nanoseconds: float | None) -> None:
-        """Wait for something from outside, at most so long."""
+        """Wait for something from outside, with a timeout."""
         self.rests = True
         self._bell.acquire(timeout=-1 if nanoseconds is None else nanoseconds / 1e9)
         self.rests = False
 
-    def empty(self) -> None:
-        """Do all that was handed in."""
+    def run_all(self) -> None:
+        """Run all queued actions."""
         while self.waiting:
             self.waiting.popleft()()
 
-    def steer(self, still: Callable[[], bool]) -> None:
-        """Do what steers, as long as ``still`` holds; the rest stays in its order."""
+    def run_steering(self, still: Callable[[], bool]) -> None:
+        """Run the steering actions while ``still`` holds; the others keep their order."""
         others = []
         while self.waiting and still():
             action = self.waiting.popleft()
@@ -56,16 +56,16 @@ class Inbox:
 
 
 class Inputs:
-    """Inputs of a run: those given while it goes on, and those scheduled for a moment or a recess of it."""
+    """Inputs of a run: live ones, and those scheduled for a moment or one of its recesses."""
 
     def __init__(self) -> None:
         self.given: deque[Callable[[], None]] = deque()
-        """For the end of the moment that the run has reached, or its recess; any thread may add one."""
+        """Live inputs, for the end of the current moment or its recess; any thread may add one."""
         self.scheduled: deque[tuple[int, int, Callable[[], None]]] = deque()
         """With the moment, and the recess in it (0: its end), in their order."""
 
     def take(self, now: int, recess: int) -> Callable[[], None] | None:
-        """Take the one that is due at the end of the moment, or in its recess; None if none is."""
+        """Remove and return the input that is due at the end of the moment or in its recess, or None."""
         if self.scheduled:
             moment, wanted, action = self.scheduled[0]
             if moment <= now and (not recess or 0 < wanted <= recess):
@@ -75,7 +75,7 @@ class Inputs:
 
 
 class _Steering:
-    """An action for which a run does not have to come to the end of a moment."""
+    """An action that does not wait for the end of a moment."""
 
     def __init__(self, action: Callable[[], None]) -> None:
         self._action = action

@@ -1,11 +1,11 @@
-"""What a clock offers: the time, sleeping, signals to wait for, and threads that live on its time."""
+"""The interface of clocks: the time, sleeping, signals between threads, and threads on the clock's time."""
 
 from collections.abc import Callable
 from typing import Protocol
 
 
 class Signal(Protocol):
-    """A flag that one thread waits for and any thread sets; a successful wait clears it."""
+    """An auto-reset event: one thread waits, any thread sets it, and a successful wait clears it."""
 
     def wait(self, deadline: int | None) -> bool:
         """Wait until the flag is set or the clock shows ``deadline`` nanoseconds; False: deadline passed."""
@@ -15,7 +15,7 @@ class Signal(Protocol):
 
 
 class Clock(Protocol):
-    """Nanoseconds since the run began, and every way of waiting for them to pass. Thread-safe."""
+    """Nanoseconds since the run began, and the ways to wait for them. Thread-safe."""
 
     @property
     def epoch(self) -> int:

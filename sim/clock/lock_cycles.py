@@ -7,7 +7,7 @@ from sim.clock.virtual_threads import VirtualThread
 
 
 class HeldResource(Protocol):
-    """A lock, or a thread's end, as far as its holder matters."""
+    """A lock, or a thread's end, with its holder."""
 
     holder: VirtualThread | None
     """The thread of the clock that has it; the one that is to end."""
@@ -18,10 +18,10 @@ class HeldResource(Protocol):
 
 
 def cycle_of(thread: VirtualThread) -> list[VirtualThread]:
-    """The threads that wait for each other in a circle through ``thread``, which comes first.
+    """The threads of the wait cycle through ``thread``, which comes first.
 
-    Empty where there is no such circle. A thread that waits for what it took itself makes one only where the
-    lock guards something: else it can be a signal that another thread gives.
+    Empty if there is none. A thread that waits for its own lock counts only if the lock ``guards``: else the
+    lock may be a signal that another thread releases.
     """
     chain = [thread]
     wanted: HeldResource | None = thread.wants
@@ -34,6 +34,6 @@ def cycle_of(thread: VirtualThread) -> list[VirtualThread]:
     return []
 
 
-def lasts(circle: list[VirtualThread]) -> bool:
-    """Whether a circle stands for ever: no lock in it can be a signal that comes from outside it."""
-    return bool(circle) and all(each.wants is not None and each.wants.guards for each in circle)
+def lasts(cycle: list[VirtualThread]) -> bool:
+    """Whether a cycle is permanent: no lock in it can be released from outside."""
+    return bool(cycle) and all(each.wants is not None and each.wants.guards for each in cycle)

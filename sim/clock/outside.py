@@ -9,7 +9,7 @@ _start_thread = threading.Thread.start
 
 
 class _Started:
-    """Stands in for a thread's own "has started" event, which is set before the thread lives on the clock."""
+    """Replaces a thread's own "has started" event, which is set before the thread is on the clock."""
 
     def __init__(self) -> None:
         self._gate = _allocate_lock()

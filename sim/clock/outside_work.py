@@ -1,7 +1,7 @@
 """Waits for what happens outside virtual time: processes, sockets, pipes, signals, locks of files.
 
-The thread looks again and again, in small steps of virtual time, and meanwhile time passes as on the wall. So
-outside work counts as long as it lasts, rounded up to a step, and the other threads go on at their moments.
+The thread polls in small steps of virtual time, which meanwhile passes as real time. So outside work takes as
+long as it lasts, rounded up to a step, and the other threads run at their moments.
 """
 
 import math
@@ -19,41 +19,41 @@ _Thread = threading.Thread
 
 _FIRST_STEP = 1_000_000
 _LONGEST_STEP = 16_000_000
-"""Virtual nanoseconds between two looks: from the first on they double up to the longest."""
+"""Virtual nanoseconds between two polls; they double up to the longest."""
 
 _GLANCE = 1_000
-"""Virtual nanoseconds that a look takes which finds nothing: a loop of such looks comes to its end."""
+"""Virtual nanoseconds of a failed poll, so that a polling loop ends."""
 
 Found = TypeVar("Found")
 
 
 class OutsideWork:
-    """What goes on outside a virtual clock and holds its time to the pace of the wall."""
+    """Work outside a virtual clock, during which its time passes as real time."""
 
     def __init__(self, clock: VirtualClock, tell: Callable[[str], None]) -> None:
         self.clock = clock
         self.tell = tell
-        """Called on the thread that does it with what cannot be repeated exactly: a clause of a sentence."""
+        """Called on the thread in question with what is not repeatable, as a clause."""
         self._waits = 0
         self._others: list[Callable[[], bool]] = []
         clock.time.outside_works = self._goes_on
 
     def also(self, goes_on: Callable[[], bool]) -> None:
-        """Hold time to the pace of the wall as long as ``goes_on`` says so, too; it must not wait."""
+        """Let time also pass as real time while ``goes_on`` returns true; it must not wait."""
         self._others.append(goes_on)
 
     def begin(self) -> None:
-        """Outside work begins: time passes as on the wall from here on."""
+        """Start outside work: time passes as real time from now on."""
         self.clock.time.pace.keep_real(True, self.clock.now())
 
     def glance(self) -> None:
-        """The calling thread has looked for something outside in vain."""
+        """Let the time of one failed poll pass."""
         self._pass(_GLANCE, math.inf)
 
     def wait(self, look: Callable[[], Found], timeout: float | None, what: str) -> Found:
-        """Look until something true is found, or for ``timeout`` seconds; what was found last.
+        """Poll until ``look`` returns something true, or for ``timeout`` seconds; return the last result.
 
-        ``what`` does the waiting, as ``select.select``.
+        ``what`` is the waiting function, such as ``select.select``.
         """
         found = look()
         if found:
@@ -73,7 +73,7 @@ class OutsideWork:
         return found
 
     def call(self, function: Callable[..., Found], *args: Any, what: str, **named: Any) -> Found:
-        """Call what blocks on a thread outside the clock, and wait for what it returns or raises."""
+        """Call a blocking function on a thread outside the clock, and return or raise its result."""
         self.tell(f"{what} works outside virtual time, and takes as long as it takes")
         result: list[Found] = []
         error: list[BaseException] = []
@@ -91,9 +91,9 @@ class OutsideWork:
         return result[0]
 
     def _pass(self, step: int, limit: float) -> int:
-        """Let a step of time pass, and what the wall is ahead; returns how long that was.
+        """Let a step of time pass, and the lag behind real time; return its length.
 
-        It is at most ``limit``, and shorter where a signal came.
+        It is at most ``limit``, and shorter if a signal came.
         """
         before = self.clock.now()
         step = int(min(max(step, self.clock.time.pace.lag(before)), limit))

@@ -40,8 +40,8 @@ class VirtualClock:
         self._schedule = schedule or FirstCome()
         self.explores = self._schedule.explores
         """Whether its schedule chooses among the orders that are possible."""
-        self.held_together = 0
-        """How many reasons there are not to switch threads at a switch point."""
+        self.no_switching = 0
+        """How many callers have disabled thread switches at switch points."""
         self._ready: deque[VirtualThread] = deque()
         self.time = VirtualTime(speed, self._ready.append)
         self._deadlines = self.time.deadlines
@@ -135,7 +135,7 @@ class VirtualClock:
 
         The calling thread must hold nothing that others wait for outside this clock.
         """
-        if self.held_together or not self.owns_current_thread():
+        if self.no_switching or not self.owns_current_thread():
             return
         recesses = self._recesses
         if recesses.steps >= recesses.due:
@@ -161,7 +161,7 @@ class VirtualClock:
         Put it where a real machine could switch, and where the calling thread holds nothing that another one
         would wait for outside this clock.
         """
-        if not self.explores or self.held_together or not self.owns_current_thread():
+        if not self.explores or self.no_switching or not self.owns_current_thread():
             return
         me = self.current
         if self._ready and not me.stays and self._schedule.leaves(me, self._ready):
@@ -191,7 +191,7 @@ class VirtualClock:
 
         Call it on the thread that has the baton. It may hold locks: no other thread of the run goes on.
         """
-        with self._together():
+        with self._without_switching():
             self.time.stand_in_moment()
 
     def _raise_interrupt(self, me: VirtualThread) -> None:
@@ -208,7 +208,7 @@ class VirtualClock:
         recesses = self._recesses
         recesses.steps += 1
         if recesses.steps >= recesses.due:
-            with self._together():
+            with self._without_switching():
                 self.time.take_recess()
         following = self._next_thread()
         if following is not me:
@@ -221,7 +221,7 @@ class VirtualClock:
 
     def _next_thread(self) -> VirtualThread:
         if not self._ready:
-            with self._together():
+            with self._without_switching():
                 self._await_ready()
         place = self._schedule.next(self._ready)
         following = self._ready[place]
@@ -235,13 +235,13 @@ class VirtualClock:
                 self.time.serve_equals()
 
     @contextmanager
-    def _together(self) -> Generator[None, None, None]:
-        """Meanwhile the thread that has the baton is not left, whoever asks: it sees to the clock itself."""
-        self.held_together += 1
+    def _without_switching(self) -> Generator[None, None, None]:
+        """Disable switch points while the thread with the baton works on the clock itself."""
+        self.no_switching += 1
         try:
             yield
         finally:
-            self.held_together -= 1
+            self.no_switching -= 1
 
 
 def _ignore(*_what: object) -> None:

@@ -14,7 +14,7 @@ _allocate_lock = threading.Lock
 
 
 class VirtualThread:
-    """A thread that lives on virtual time: it runs while it has the baton and stands at its gate else."""
+    """A thread on virtual time: it runs while it has the baton, and waits at its gate otherwise."""
 
     __slots__ = (
         "current_wait",
@@ -34,13 +34,13 @@ class VirtualThread:
         self.is_main = False
         self.ident = 0
         self.stays = False
-        """Whether it is not left at switch points."""
+        """Whether switch points are disabled for it."""
         self.interrupted = False
         self.gate = _allocate_lock()
         self.gate.acquire()
         self.waiting = False
         self.wants: HeldResource | None = None
-        """What it waits for without an end: a lock, or that a thread ends."""
+        """What it waits for without a timeout: a lock, or the end of a thread."""
         self.woken = False
         self.current_wait = 0
 

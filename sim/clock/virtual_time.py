@@ -18,8 +18,8 @@ from sim.clock.pace import Pace
 from sim.clock.recesses import RECESS, Recesses
 from sim.clock.virtual_threads import VirtualThread
 
-_LOOK = 20_000_000
-"""Real nanoseconds between two looks whether outside work goes on."""
+_CHECK_PERIOD = 20_000_000
+"""Real nanoseconds between checks whether outside work goes on."""
 
 
 class VirtualTime:
@@ -124,23 +124,23 @@ class VirtualTime:
         self.pace.halt()
         self.in_moment = self.pace.stands
         while self.pace.stands:
-            self._inbox.steer(lambda: self.pace.stands)
+            self._inbox.run_steering(lambda: self.pace.stands)
             if self.pace.stands:
                 self._inbox.rest(None)
         self.in_moment = False
 
     def take_recess(self) -> None:
-        """Do what is done at the end of a moment, but for letting time pass."""
+        """Do what the end of a moment does, without letting time pass."""
         number = self.recesses.begin()
         self.before_jump()
         self.on_recess(number)
         self._input_is_taken()
         if self.pace.steps:
             self.pace.halt()
-        self._inbox.empty()
+        self._inbox.run_all()
         while self.pace.stands and not self._inputs.given:
             self._inbox.rest(None)
-            self._inbox.empty()
+            self._inbox.run_all()
         self.recesses.end()
         if self.recesses.idles:
             self.now = min([self.now + RECESS, *self.deadlines.later_than(self.now)])
@@ -226,9 +226,9 @@ class VirtualTime:
             delay = self.pace.delay_until(target)
             if delay is not None and delay <= 0:
                 return True
-            self._inbox.rest(min(delay, _LOOK) if works and delay is not None else delay)
+            self._inbox.rest(min(delay, _CHECK_PERIOD) if works and delay is not None else delay)
         self._come_to(self.pace.reached(self.now, target))
-        self._inbox.empty()
+        self._inbox.run_all()
         return False
 
 

@@ -9,10 +9,10 @@ NAME = "cbtui"
 
 
 class RecordingMetadata(msgspec.Struct, frozen=True, kw_only=True):
-    """The run that a recording is of. Fields that could not be read are empty.
+    """The run of a recording. Fields that could not be read are empty.
 
-    ``recorded`` is nanoseconds since 1970, ``threads`` what replaced the executors' own number (None:
-    nothing), ``programs`` the paths of the files that ran, ``setup`` the whole set-up of the run as JSON.
+    ``recorded`` is nanoseconds since 1970, ``threads`` the number that replaced the executors' own (None: not
+    replaced), ``programs`` the paths of the files that ran, ``setup`` the whole set-up as JSON.
     """
 
     title: str = ""

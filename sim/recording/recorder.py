@@ -1,4 +1,4 @@
-"""Writes a recording chunk by chunk, so that a killed process loses only the last moment."""
+"""Writes a recording in chunks, so that a killed process loses little."""
 
 import sys
 import threading
@@ -38,7 +38,7 @@ _CHUNK = 256_000
 """Bytes of a chunk in a longer recording."""
 _FIRST_CHUNK = 8_000
 """Bytes of the first chunk: a disk that is nearly full has little room."""
-_AT_STAKE = 0.25
+_GROWTH = 0.25
 """Size of the next chunk relative to all chunks before it: so much may be lost if it cannot be written."""
 _PERIOD = 0.5
 """Seconds after which waiting data is written."""
@@ -63,9 +63,9 @@ APPEARING = (
 class Recorder:
     """Records events, and messages with their topics, to a new ``.mcap`` file. Thread-safe.
 
-    Rosbag2, rosbags and Foxglove read the topics, which have the metadata that rosbag2 gives them; events are
-    on a channel of their own, and ``TimePassed`` is among these only as the end of all. What a full disk or
-    the like prevents does not end the run: ``failure`` then says it, and nothing more is recorded.
+    Rosbag2, rosbags and Foxglove can read the topics, which have rosbag2's metadata. Events are on a channel
+    of their own; of ``TimePassed`` only the last one is written. An error such as a full disk does not end
+    the run: ``failure`` has its text, and nothing more is recorded.
 
     Raises:
         FileExistsError: there is such a file, and ``replace`` is not wanted.
@@ -143,13 +143,13 @@ class Recorder:
         schema = self._writer.register_schema(batch.TYPE, "ros2msg", batch.DEFINITION.encode())
         self._writer.register_channel(batch.TOPIC, "cdr", schema)
         for path in about.programs:
-            self._sources.want(path)
+            self._sources.request(path)
 
     def _take(self, events: Iterable[AnyEvent]) -> None:
         kept: list[AnyEvent] = []
         for event in events:
-            look = _LOOKS.get(event.__class__)
-            if look is None or look(self, event):
+            handle = _HANDLERS.get(event.__class__)
+            if handle is None or handle(self, event):
                 kept.append(event)
         if kept:
             self._add_events(kept)
@@ -175,7 +175,7 @@ class Recorder:
     @property
     def _chunk_size(self) -> int:
         """Bytes of the next chunk: a share of those before it, since it may not fit on the disk."""
-        return min(_CHUNK, max(_FIRST_CHUNK, int(_AT_STAKE * self._chunked)))
+        return min(_CHUNK, max(_FIRST_CHUNK, int(_GROWTH * self._chunked)))
 
     def _flush(self) -> None:
         """Write waiting data as a chunk; the programs' files, which may be large, follow the first chunk."""
@@ -192,11 +192,11 @@ class Recorder:
         return self._appeared(event)
 
     def _entity_appeared(self, event: EntityAppeared) -> bool:
-        self._sources.want(event.file)
+        self._sources.request(event.file)
         return self._appeared(event)
 
     def _callback_failed(self, event: CallbackFailed) -> bool:
-        self._sources.want(event.file)
+        self._sources.request(event.file)
         return True
 
     def _appeared(self, event: AnyEvent) -> bool:
@@ -206,8 +206,8 @@ class Recorder:
     def _topic(self, event: TopicAppeared) -> bool:
         if event.topic not in self._channels:
             schema = self._writer.register_schema(event.message_type, "ros2msg", event.definition.encode())
-            told = {"offered_qos_profiles": event.offered_qos, "topic_type_hash": event.type_hash}
-            metadata = {name: text for name, text in told.items() if text}
+            texts = {"offered_qos_profiles": event.offered_qos, "topic_type_hash": event.type_hash}
+            metadata = {name: text for name, text in texts.items() if text}
             self._channels[event.topic] = self._writer.register_channel(event.name, "cdr", schema, metadata)
         return False
 
@@ -248,7 +248,7 @@ class Recorder:
             )
 
 
-_LOOKS: dict[type, Callable[[Recorder, Any], bool]] = {
+_HANDLERS: dict[type, Callable[[Recorder, Any], bool]] = {
     **dict.fromkeys(APPEARING, Recorder._appeared),
     RunStarted: Recorder._run_started,
     EntityAppeared: Recorder._entity_appeared,

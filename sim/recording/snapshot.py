@@ -12,7 +12,7 @@ from sim.trace.events import AnyEvent, EntityId, MessageId, ThreadId
 
 _MOST_QUEUED = 1000
 """Messages that are kept for each queue: the depth of the deepest usual queue."""
-_MOST_ON_THE_WAY = 100
+_MOST_IN_TRANSIT = 100
 """Published messages that are kept because they may not have arrived yet."""
 
 _Placed: TypeAlias = tuple[int, Any]
@@ -35,14 +35,14 @@ class _Call:
 
     def events(self) -> list[_Placed]:
         """The events that describe it."""
-        told = [self.start]
+        events = [self.start]
         if self.suspended is not None:
             # The suspension may have come on another thread than the start.
             place, event = self.suspended
-            told.append((place, replace(event, thread=self.start[1].thread)))
+            events.append((place, replace(event, thread=self.start[1].thread)))
         if self.resumed is not None:
-            told.append(self.resumed)
-        return told
+            events.append(self.resumed)
+        return events
 
 
 class RunSnapshot:
@@ -83,9 +83,9 @@ class RunSnapshot:
         return _with_depths(event for _, event in sorted(placed, key=lambda each: each[0]))
 
     def _take(self, event: Any) -> None:
-        look = _LOOKS.get(event.__class__)
-        if look is not None:
-            look(self, event)
+        handle = _HANDLERS.get(event.__class__)
+        if handle is not None:
+            handle(self, event)
         elif event.__class__ in _KEYS:
             kind, field = _KEYS[event.__class__]
             self._latest[kind, getattr(event, field) if field else 0] = (self._place, event)
@@ -173,7 +173,7 @@ class RunSnapshot:
 
     def _forget_messages(self) -> None:
         queued = {ready.message for queue in self._queued.values() for _, ready in queue}
-        queued.update(list(self._published)[-_MOST_ON_THE_WAY:])
+        queued.update(list(self._published)[-_MOST_IN_TRANSIT:])
         self._published = {number: each for number, each in self._published.items() if number in queued}
 
 
@@ -188,20 +188,20 @@ def _is_same_wait(known: list[_Placed], event: ev.WaitStarted) -> bool:
 def _with_depths(events: Iterable[Any]) -> list[AnyEvent]:
     """The events with the queue depths that result from these messages alone."""
     counts: Counter[EntityId] = Counter()
-    told: list[AnyEvent] = []
+    numbered: list[AnyEvent] = []
     for event in events:
         match event:
             case ev.EntityReady(entity=entity):
                 counts[entity] += 1
-                told.append(replace(event, depth=counts[entity]))
+                numbered.append(replace(event, depth=counts[entity]))
             case ev.CallbackStarted(entity=entity):
-                told.append(replace(event, depth=counts[entity]))
+                numbered.append(replace(event, depth=counts[entity]))
             case _:
-                told.append(event)
-    return told
+                numbered.append(event)
+    return numbered
 
 
-_LOOKS: dict[type, Callable[[RunSnapshot, Any], None]] = {
+_HANDLERS: dict[type, Callable[[RunSnapshot, Any], None]] = {
     ev.CallbackStarted: RunSnapshot._take_start,
     ev.CallbackSuspended: RunSnapshot._take_suspension,
     ev.CallbackResumed: RunSnapshot._take_resumption,

@@ -16,19 +16,19 @@ class SourceFiles:
 
     def __init__(self) -> None:
         self._seen = {""}
-        self._wanted: list[str] = []
+        self._requested: list[str] = []
         self._room = _MOST
 
-    def want(self, path: str) -> None:
+    def request(self, path: str) -> None:
         """Queue a file; it is skipped later if it cannot be read or is too long."""
         if path not in self._seen:
             self._seen.add(path)
-            self._wanted.append(path)
+            self._requested.append(path)
 
     def attach(self, attach: Callable[[str, bytes], None]) -> None:
         """Pass path and text of each queued file to ``attach``, and empty the queue."""
-        wanted, self._wanted = self._wanted, []
-        for path in wanted:
+        requested, self._requested = self._requested, []
+        for path in requested:
             text = _text_of(Path(path), min(_LONGEST, self._room))
             if text is not None:
                 self._room -= len(text)

@@ -105,12 +105,12 @@ def test_a_thread_that_is_held_together_is_not_left(seed: int) -> None:
 
         def enter() -> None:
             for _ in range(30):
-                clock.held_together += 1
+                clock.no_switching += 1
                 inside[0] += 1
                 clock.switch_point()
                 assert inside[0] == 1
                 inside[0] -= 1
-                clock.held_together -= 1
+                clock.no_switching -= 1
                 clock.switch_point()
 
         for _ in range(3):

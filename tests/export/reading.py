@@ -52,10 +52,10 @@ class Trace:
 
 def written(events: Sequence[AnyEvent], sink: type[PerfettoFile] | type[ChromeFile]) -> bytes:
     file = BytesIO()
-    narrator = TraceExporter(sink(file))
+    exporter = TraceExporter(sink(file))
     for start in range(0, len(events), 7):
-        narrator.take(events[start : start + 7])
-    narrator.finish()
+        exporter.take(events[start : start + 7])
+    exporter.finish()
     return file.getvalue()
 
 

@@ -43,14 +43,14 @@ class SwitchedLock:
         self._clock.switch_point()
         self._lock.__enter__()
         if self._clock.owns_current_thread():
-            self._clock.held_together += 1
+            self._clock.no_switching += 1
         return True
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         if self._clock.owns_current_thread():
-            self._clock.held_together -= 1
+            self._clock.no_switching -= 1
         self._lock.release()
         self._clock.switch_point()
 
