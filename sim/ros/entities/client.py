@@ -11,20 +11,15 @@ import msgspec
 
 from sim.interfaces import copy_message
 from sim.ros.entities.entity_handles import ClientHandle
-from sim.ros.entities.service_introspection import (
-    ServiceIntrospection,
-    ServiceIntrospectionState,
-    reconfigured,
-)
+from sim.ros.entities.service_entity import ServiceEntity
 from sim.ros.middleware.delivery import Request
 from sim.ros.qos.qos import QoSProfile
-from sim.ros.scheduling.entity import Entity, OwnerNode, Taken
+from sim.ros.scheduling.entity import OwnerNode, Taken
 from sim.ros.scheduling.task import Future
 from sim.trace.events import EntityKind
 from sim.units import wait_ns
 
 if TYPE_CHECKING:
-    from sim.ros.clocks.clock import Clock
     from sim.ros.context.context import Context
     from sim.ros.scheduling.callback_groups import CallbackGroup
 
@@ -45,11 +40,8 @@ class Reply(msgspec.Struct, frozen=True):
     sent: int
 
 
-class Client(Entity):
-    """Calls one service. The reply is taken by the executor, as a callback of the client's group.
-
-    ``srv_name`` is the service's name as the program wrote it; ``service_name`` is the full one.
-    """
+class Client(ServiceEntity):
+    """Calls one service. The reply is taken by the executor, as a callback of the client's group."""
 
     kind = EntityKind.CLIENT
     rank = 3
@@ -64,15 +56,9 @@ class Client(Entity):
         *,
         srv_name: str | None = None,
     ) -> None:
-        super().__init__(node, service_name, callback_group)
-        self.srv_type = srv_type
-        self.srv_name = service_name if srv_name is None else srv_name
-        self.qos_profile = qos_profile
-        self.depth = qos_profile.queue_length or 0
+        super().__init__(node, srv_type, service_name, qos_profile, callback_group, srv_name)
         self._host = node.context.host
-        self._probe = node.context.probe
         self.gid = self._host.new_gid()
-        self._introspection: ServiceIntrospection | None = None
         self._pending_requests: dict[int, Future[Any]] = {}
         self._queue: deque[Reply] = deque()
 
@@ -85,28 +71,6 @@ class Client(Entity):
     def context(self) -> Context:
         """The context that its node lives in."""
         return self.node.context
-
-    @property
-    def service_name(self) -> str:
-        """The service's full name."""
-        return self.name
-
-    def configure_introspection(
-        self,
-        clock: Clock,
-        service_event_qos_profile: QoSProfile,
-        introspection_state: ServiceIntrospectionState,
-    ) -> None:
-        """Have every request sent and response taken told on ``<service>/_service_event``, or no more."""
-        self._introspection = reconfigured(
-            self._introspection, self, clock, service_event_qos_profile, introspection_state
-        )
-
-    def stop_introspection(self) -> None:
-        """Tell nothing any more. With the host's lock held."""
-        if self._introspection is not None:
-            self._introspection.stop()
-            self._introspection = None
 
     def call(self, request: Any, timeout_sec: float | None = None) -> Any:
         """Call and wait on this thread for the reply, which another thread has to take.

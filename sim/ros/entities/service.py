@@ -9,18 +9,13 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from sim.interfaces import copy_message
 from sim.ros.entities.entity_handles import RequestId, ServiceHandle, ServiceInfo, answered
-from sim.ros.entities.service_introspection import (
-    ServiceIntrospection,
-    ServiceIntrospectionState,
-    reconfigured,
-)
+from sim.ros.entities.service_entity import ServiceEntity
 from sim.ros.middleware.delivery import Request
 from sim.ros.qos.qos import QoSProfile
-from sim.ros.scheduling.entity import Entity, OwnerNode, Taken
+from sim.ros.scheduling.entity import OwnerNode, Taken
 from sim.trace.events import EntityKind
 
 if TYPE_CHECKING:
-    from sim.ros.clocks.clock import Clock
     from sim.ros.scheduling.callback_groups import CallbackGroup
 
 SrvType = TypeVar("SrvType")
@@ -29,11 +24,8 @@ SrvTypeResponse = TypeVar("SrvTypeResponse")
 """For the type hints of programs, which import these from here as from rclpy."""
 
 
-class Service(Entity):
-    """Answers calls of one service. A callback that raises sends no reply.
-
-    ``srv_name`` is the service's name as the program wrote it; ``service_name`` is the full one.
-    """
+class Service(ServiceEntity):
+    """Answers calls of one service. A callback that raises sends no reply."""
 
     kind = EntityKind.SERVICE
     rank = 4
@@ -49,14 +41,8 @@ class Service(Entity):
         *,
         srv_name: str | None = None,
     ) -> None:
-        super().__init__(node, service_name, callback_group)
-        self.srv_type = srv_type
-        self.srv_name = service_name if srv_name is None else srv_name
+        super().__init__(node, srv_type, service_name, qos_profile, callback_group, srv_name)
         self.callback = callback
-        self.qos_profile = qos_profile
-        self.depth = qos_profile.queue_length or 0
-        self._probe = node.context.probe
-        self._introspection: ServiceIntrospection | None = None
         self._queue: deque[Request] = deque()
 
     @property
@@ -68,28 +54,6 @@ class Service(Entity):
     def is_shown(self) -> bool:
         """Whether it is part of a program that is on the trace."""
         return self._probe.visible
-
-    @property
-    def service_name(self) -> str:
-        """The service's full name."""
-        return self.name
-
-    def configure_introspection(
-        self,
-        clock: Clock,
-        service_event_qos_profile: QoSProfile,
-        introspection_state: ServiceIntrospectionState,
-    ) -> None:
-        """Have every request taken and response sent told on ``<service>/_service_event``, or no more."""
-        self._introspection = reconfigured(
-            self._introspection, self, clock, service_event_qos_profile, introspection_state
-        )
-
-    def stop_introspection(self) -> None:
-        """Tell nothing any more. With the host's lock held."""
-        if self._introspection is not None:
-            self._introspection.stop()
-            self._introspection = None
 
     def deliver(self, request: Request) -> None:
         """A request arrived; a full queue loses its oldest. With the host's lock held."""

@@ -1,4 +1,4 @@
-"""Watching a service's calls: each step of a call is told on the topic ``<service>/_service_event``."""
+"""Service introspection: each step of a call is published on the topic ``<service>/_service_event``."""
 
 from __future__ import annotations
 
@@ -11,15 +11,14 @@ from sim.interfaces import message
 
 if TYPE_CHECKING:
     from sim.ros.clocks.clock import Clock
-    from sim.ros.entities.client import Client
-    from sim.ros.entities.service import Service
+    from sim.ros.entities.service_entity import ServiceEntity
     from sim.ros.qos.qos import QoSProfile
 
 _TOPIC_SUFFIX = "/_service_event"
 
 
 class ServiceIntrospectionState(IntEnum):
-    """How much of every call is told: nothing, its steps, or requests and responses too."""
+    """What is published of every call: nothing, its steps, or requests and responses too."""
 
     OFF = 0
     METADATA = 1
@@ -27,13 +26,13 @@ class ServiceIntrospectionState(IntEnum):
 
 
 class ServiceIntrospection:
-    """What one client or service tells of its calls; ``client`` is the gid of who asked.
+    """Publishes the calls of one client or service; ``client`` is the gid of the caller.
 
-    Everything is called with the host's lock held.
+    Call everything with the host's lock held.
     """
 
     def __init__(
-        self, owner: Client | Service, clock: Clock, qos_profile: QoSProfile, state: ServiceIntrospectionState
+        self, owner: ServiceEntity, clock: Clock, qos_profile: QoSProfile, state: ServiceIntrospectionState
     ) -> None:
         self._event_type = owner.srv_type.Event
         self._clock = clock
@@ -42,7 +41,7 @@ class ServiceIntrospection:
         self._publisher = owner.node.create_publisher(self._event_type, topic, qos_profile)
 
     def stop(self) -> None:
-        """Tell nothing any more."""
+        """Publish no more."""
         self._publisher.node.destroy_publisher(self._publisher)
 
     def request_sent(self, client: bytes, call: int, request: Any) -> None:
@@ -74,20 +73,3 @@ class ServiceIntrospection:
             for field, value in contents.items():
                 setattr(event, field, [value])
         self._publisher.publish(event)
-
-
-def reconfigured(
-    former: ServiceIntrospection | None,
-    owner: Client | Service,
-    clock: Clock,
-    qos_profile: QoSProfile,
-    state: ServiceIntrospectionState,
-) -> ServiceIntrospection | None:
-    """What tells of an owner's calls in place of ``former``; None for OFF."""
-    chosen = ServiceIntrospectionState(state)
-    with owner.node.context.host.lock:
-        if former is not None:
-            former.stop()
-        if chosen is ServiceIntrospectionState.OFF:
-            return None
-        return ServiceIntrospection(owner, clock, qos_profile, chosen)

@@ -1,0 +1,61 @@
+"""What clients and services have in common: their service's name, type and quality, and introspection."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from sim.ros.entities.service_introspection import ServiceIntrospection, ServiceIntrospectionState
+from sim.ros.scheduling.entity import Entity, OwnerNode
+
+if TYPE_CHECKING:
+    from sim.ros.clocks.clock import Clock
+    from sim.ros.qos.qos import QoSProfile
+    from sim.ros.scheduling.callback_groups import CallbackGroup
+
+
+class ServiceEntity(Entity):
+    """A client or a service.
+
+    ``srv_name`` is the service's name as the program wrote it; ``service_name`` is the full one.
+    """
+
+    def __init__(
+        self,
+        node: OwnerNode,
+        srv_type: Any,
+        service_name: str,
+        qos_profile: QoSProfile,
+        callback_group: CallbackGroup,
+        srv_name: str | None,
+    ) -> None:
+        super().__init__(node, service_name, callback_group)
+        self.srv_type = srv_type
+        self.srv_name = service_name if srv_name is None else srv_name
+        self.qos_profile = qos_profile
+        self.depth = qos_profile.queue_length or 0
+        self._probe = node.context.probe
+        self._introspection: ServiceIntrospection | None = None
+
+    @property
+    def service_name(self) -> str:
+        """The service's full name."""
+        return self.name
+
+    def configure_introspection(
+        self,
+        clock: Clock,
+        service_event_qos_profile: QoSProfile,
+        introspection_state: ServiceIntrospectionState,
+    ) -> None:
+        """Publish the steps of every call on ``<service>/_service_event``; ``OFF`` ends it."""
+        chosen = ServiceIntrospectionState(introspection_state)
+        with self.node.context.host.lock:
+            self.stop_introspection()
+            if chosen is not ServiceIntrospectionState.OFF:
+                self._introspection = ServiceIntrospection(self, clock, service_event_qos_profile, chosen)
+
+    def stop_introspection(self) -> None:
+        """Publish no more steps. With the host's lock held."""
+        if self._introspection is not None:
+            self._introspection.stop()
+            self._introspection = None
