@@ -9,9 +9,11 @@ import threading
 from collections.abc import Callable
 from functools import partial
 from itertools import count
+from traceback import walk_tb
 from typing import TYPE_CHECKING, Any
 
 from sim.error_text import error_line
+from sim.marks import sends_responses
 from sim.probes.own_code import call_into_ros, is_own, place_of_caller
 from sim.probes.traced import MessageContents, TracedEntity
 from sim.trace import events
@@ -209,9 +211,17 @@ class Probe:
     def callback_failed(self, entity: TracedEntity, error: BaseException) -> None:
         """A callback raised."""
         file, line = _raised_at(error)
-        text = error_line(error)
         self._sink(
-            events.CallbackFailed(self._now(), entity.trace_id, self.thread(), text, file, line),
+            events.CallbackFailed(
+                self._now(),
+                entity.trace_id,
+                self.thread(),
+                error_line(error),
+                file,
+                line,
+                type(error).__name__,
+                _is_missing_response(error),
+            )
         )
 
     @property
@@ -359,6 +369,12 @@ def _written_at(callback: Callable[..., Any] | None) -> tuple[str, str, int, int
         return name, "", 0, 0
     lines = [line for _, _, line in code.co_lines() if line is not None]
     return name, code.co_filename, code.co_firstlineno, max(lines, default=code.co_firstlineno)
+
+
+def _is_missing_response(error: BaseException) -> bool:
+    """Tell whether an exception was raised as a service's callback had returned no response."""
+    frames = [frame for frame, _ in walk_tb(error.__traceback__)]
+    return isinstance(error, TypeError) and frames != [] and frames[-1] in sends_responses
 
 
 def _raised_at(error: BaseException) -> tuple[str, int]:

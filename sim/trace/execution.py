@@ -25,16 +25,19 @@ ALWAYS = Window(-OPEN, OPEN)
 LATEST_SEARCHED = 64
 """The latest calls that are searched for the one that took a message whose event comes late."""
 
+_NONE = ("", "", False)
+"""The exception of a call that raised none."""
+
 
 class Spans(Intervals):
     """The table of all spans; ``Span`` objects are made for answers."""
 
-    ENTITY, THREAD, MESSAGE, AGE, ERROR, RESUMED = range(2, 8)
+    ENTITY, THREAD, MESSAGE, AGE, FAILURE, RESUMED = range(2, 8)
 
     def __init__(self, spill: SpillFile) -> None:
         super().__init__(spill, more=6)
-        self._errors = [""]
-        self._error_of = {"": 0}
+        self._failures = [_NONE]
+        self._failure_of = {_NONE: 0}
 
     def begin(
         self,
@@ -60,17 +63,18 @@ class Spans(Intervals):
         """Whether the span begins with a resumption."""
         return bool(self.table.cell(row, self.RESUMED))
 
-    def fail(self, row: RowId, error: str) -> None:
-        """Set the error of a span."""
-        if error not in self._error_of:
-            self._error_of[error] = len(self._errors)
-            self._errors.append(error)
-        self.table.change(row, self.ERROR, self._error_of[error])
+    def fail(self, row: RowId, event: CallbackFailed) -> None:
+        """Set the exception of a span."""
+        failure = event.error, event.exception, event.no_response
+        if failure not in self._failure_of:
+            self._failure_of[failure] = len(self._failures)
+            self._failures.append(failure)
+        self.table.change(row, self.FAILURE, self._failure_of[failure])
 
     def span(self, row: RowId) -> Span:
         """One span, as a value."""
-        start, end, entity, thread, message, age, error, _ = self.table.row(row)
-        return Span(start, end_or_none(end), entity, thread, message, age, self._errors[error])
+        start, end, entity, thread, message, age, failure, _ = self.table.row(row)
+        return Span(start, end_or_none(end), entity, thread, message, age, *self._failures[failure])
 
 
 class ThreadSpans(Lane):
@@ -175,7 +179,7 @@ class Execution:
         """Set the error of the running call."""
         for row in reversed(self._threads[event.thread].stack):
             if self._spans.entity(row) == event.entity:
-                self._spans.fail(row, event.error)
+                self._spans.fail(row, event)
                 return
 
     def mark_uncertain(self) -> None:

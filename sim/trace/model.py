@@ -111,6 +111,11 @@ class Span:
     message: MessageId
     age: Nanoseconds
     error: str = ""
+    """Class and text of the exception that it raised; "" for none."""
+    exception: str = ""
+    """The class of that exception; "" if not known."""
+    no_response: bool = False
+    """Whether that exception stands for a service's callback that returned no response."""
 
     def end_at(self, now: Nanoseconds) -> Nanoseconds:
         """The end; ``now`` for a running call."""

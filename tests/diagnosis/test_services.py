@@ -46,6 +46,14 @@ def test_a_callback_that_raises_leaves_its_caller_waiting() -> None:
     assert "serve raised ValueError: no such angle" in run.explained("unreturned-response").what
 
 
+def test_a_callback_that_raises_in_the_words_of_a_missing_response_has_raised() -> None:
+    def serve(_: object, response: object) -> object:
+        raise TypeError("Expected a number, got None")
+
+    run = served_by(serve)
+    assert "serve raised TypeError: Expected a number" in run.explained("unreturned-response").what
+
+
 def test_a_callback_that_returns_its_response_is_well() -> None:
     assert served_by(lambda _, response: response).told() == set()
 

@@ -122,9 +122,9 @@ def _raised(observed: ObservedRun) -> Iterator[ScheduleFailure]:
     for entity in timeline.entities.values():
         for span in timeline.spans_of(entity.id, whole):
             if span.error:
-                kind, _, text = span.error.partition(":")
-                detail = trouble if span.error in trouble else text.strip()
-                yield ScheduleFailure(f"{entity.spoken_name} raised {kind}", detail)
+                text = span.error.removeprefix(f"{span.exception}: ")
+                detail = trouble if span.error in trouble else text
+                yield ScheduleFailure(f"{entity.spoken_name} raised {span.exception}", detail)
 
 
 def _cores() -> int:

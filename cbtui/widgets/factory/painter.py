@@ -8,7 +8,7 @@ from cbtui.widgets.factory.belts import BeltPainter
 from cbtui.widgets.factory.canvas import FAINT, STRONG, WARN, Canvas
 from cbtui.widgets.factory.plan import LARGE, LEAST_HEIGHT, LEAST_WIDTH, AreaPlacement, FactoryPlan, plan_for
 from cbtui.widgets.factory.scene import FactoryScene, scene_of
-from cbtui.widgets.factory.texts import first_fitting, headline
+from cbtui.widgets.factory.texts import Headline, first_fitting, headlines
 from cbtui.widgets.factory.yard import draw_bench, draw_large_yard, draw_yard
 from sim.plural import plural
 from sim.trace.model import Nanoseconds
@@ -42,15 +42,16 @@ class FactoryPainter:
             return ()
         canvas = Canvas(width, height, self.charset)
         scene = scene_of(timeline, now, glance)
-        words = headline(scene)
+        summaries = headlines(scene)
         if width < LEAST_WIDTH or height < LEAST_HEIGHT:
-            canvas.write(0, 0, first_fitting(words, width) or words[-1], STRONG, width)
+            texts = [each.text for each in summaries]
+            canvas.write(0, 0, first_fitting(texts, width) or texts[-1], STRONG, width)
             return canvas.runs()
-        _draw(canvas, scene, plan_for(scene, width, height), words)
+        _draw(canvas, scene, plan_for(scene, width, height), summaries)
         return canvas.runs()
 
 
-def _draw(canvas: Canvas, scene: FactoryScene, plan: FactoryPlan, words: Sequence[str]) -> None:
+def _draw(canvas: Canvas, scene: FactoryScene, plan: FactoryPlan, summaries: Sequence[Headline]) -> None:
     columns = plan.columns
     areas = AreaPainter(canvas, scene, columns)
     belts = BeltPainter(canvas, scene, door=columns.belts - 1)
@@ -65,7 +66,7 @@ def _draw(canvas: Canvas, scene: FactoryScene, plan: FactoryPlan, words: Sequenc
         above = place
     if above is not None and plan.density.last:
         areas.bottom(above.area, above.first + above.rows)
-    _draw_words(canvas, scene, plan, words)
+    _draw_words(canvas, scene, plan, summaries)
 
 
 def _draw_belts(belts: BeltPainter, place: AreaPlacement, plan: FactoryPlan) -> None:
@@ -79,17 +80,18 @@ def _draw_belts(belts: BeltPainter, place: AreaPlacement, plan: FactoryPlan) -> 
         belts.more(hidden, line)
 
 
-def _draw_words(canvas: Canvas, scene: FactoryScene, plan: FactoryPlan, words: Sequence[str]) -> None:
+def _draw_words(
+    canvas: Canvas, scene: FactoryScene, plan: FactoryPlan, summaries: Sequence[Headline]
+) -> None:
     columns = plan.columns
     more = f" +{plan.hidden} more {plural(plan.hidden, 'group')} " if plan.hidden else ""
     canvas.write(canvas.width - len(more), 0, more, FAINT, len(more))
     if plan.headline is not None:
         own = not plan.places or plan.places[0].first - plan.density.top > plan.headline
         room = canvas.width - len(more) - 2 if own else columns.belts - 2
-        text = first_fitting(words, room)
-        who, colon, trouble = text.partition(": ")
-        at = canvas.write(1, plan.headline, who + colon, STRONG, room)
-        canvas.write(at, plan.headline, trouble, WARN, len(trouble))
+        shown = next((each for each in summaries if len(each.text) <= room), Headline(""))
+        at = canvas.write(1, plan.headline, shown.lead, STRONG, room)
+        canvas.write(at, plan.headline, shown.trouble, WARN, len(shown.trouble))
     if plan.captions is not None:
         for column, caption in ((1, "belts"), (columns.belts + 2, "areas")):
             canvas.write(column, plan.captions, caption, FAINT, columns.area)

@@ -1,6 +1,7 @@
 """What the factory says: why something waits, who sits where, and the whole in one sentence."""
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 from cbtui.text.callback_names import short_name
 from cbtui.widgets.factory.scene import Area, Belt, FactoryScene, FactoryWorker, WorkerState
@@ -26,17 +27,34 @@ def counts_text(scene: FactoryScene) -> str:
     return f"{counted(len(scene.workers), 'worker')}, {_places(scene)}"
 
 
-def headline(scene: FactoryScene) -> tuple[str, ...]:
-    """Return the scene in one sentence, from the fullest to the shortest; what is wrong follows a colon."""
-    start = counts_text(scene)
+class Headline(NamedTuple):
+    """A scene in one sentence: how many workers and areas there are, and what is wrong."""
+
+    counts: str
+    trouble: str = ""
+
+    @property
+    def lead(self) -> str:
+        """The part before what is wrong."""
+        return f"{self.counts}: " if self.trouble else self.counts
+
+    @property
+    def text(self) -> str:
+        """The whole sentence."""
+        return self.lead + self.trouble
+
+
+def headlines(scene: FactoryScene) -> tuple[Headline, ...]:
+    """Return ways to sum up a scene, from the longest to the shortest."""
+    counts = counts_text(scene)
     if not scene.areas:
-        return (start,)
+        return (Headline(counts),)
     trouble = _trouble(scene)
     if not trouble:
-        return (f"{start}, no callback waits for another", start)
-    what = f"{start}: {trouble}"
-    whole = (f"{what}, {counted(scene.idle, 'worker')} idle", what) if scene.idle else (what,)
-    return (*whole, what.replace(" callbacks wait", " wait").replace(" callback waits", " waits"), start)
+        return Headline(f"{counts}, no callback waits for another"), Headline(counts)
+    idle = [f"{trouble}, {counted(scene.idle, 'worker')} idle"] if scene.idle else []
+    brief = trouble.replace(" callbacks wait", " wait").replace(" callback waits", " waits")
+    return (*(Headline(counts, each) for each in (*idle, trouble, brief)), Headline(counts))
 
 
 def _places(scene: FactoryScene) -> str:

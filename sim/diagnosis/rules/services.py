@@ -9,9 +9,6 @@ from sim.trace.events import EntityKind
 from sim.trace.model import Span
 from sim.trace.timeline import Timeline
 
-_REFUSED = "TypeError: Expected "
-"""Start of the error that a service raises when its callback did not return a response."""
-
 
 class UnreturnedResponse(Rule):
     """A service's callback raised, or returned no response, so its caller gets no reply."""
@@ -25,7 +22,8 @@ class UnreturnedResponse(Rule):
             for span in view.spans(entity.id):
                 if span.message in view.unanswered and self._is_over(span, view):
                     assert span.end is not None
-                    yield Finding(self, span.start, span.end, entity.id, entity.id, detail=span.error)
+                    raised = "" if span.no_response else span.error
+                    yield Finding(self, span.start, span.end, entity.id, entity.id, detail=raised)
 
     def _is_over(self, span: Span, view: TimelineView) -> bool:
         if span.end is None:
@@ -39,7 +37,7 @@ class UnreturnedResponse(Rule):
     def explain(self, found: Finding, timeline: Timeline) -> Explanation:
         """Say whether it raised or returned nothing."""
         subject, service = who(found.subject, timeline), entity_of(found, timeline).name
-        if found.detail and not found.detail.startswith(_REFUSED):
+        if found.detail:
             what = f"{subject} raised {found.detail}"
             cure = f"mend what raises, or catch it in {subject} and return a response that says so"
         else:

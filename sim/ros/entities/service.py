@@ -8,6 +8,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from sim.interfaces import copy_message
+from sim.marks import sends_responses
 from sim.ros.entities.entity_handles import RequestId, ServiceHandle, ServiceInfo, answered
 from sim.ros.entities.service_entity import ServiceEntity
 from sim.ros.middleware.delivery import Request
@@ -93,6 +94,7 @@ class Service(ServiceEntity):
     async def _answer_later(self, request: Request, outcome: Any) -> None:
         self.send_response(await outcome, request)
 
+    @sends_responses
     def send_response(self, response: Any, header: Request | ServiceInfo | RequestId) -> None:
         """Answer the request of that header, or of its request id.
 

@@ -3,7 +3,16 @@
 from enum import StrEnum
 
 from sim.trace.events.event import Event
-from sim.trace.events.fields import EntityId, HolderId, Maybe, MessageId, Nanoseconds, Text, ThreadId
+from sim.trace.events.fields import (
+    EntityId,
+    HolderId,
+    Maybe,
+    MessageId,
+    Nanoseconds,
+    Text,
+    ThreadId,
+    WireOnly,
+)
 
 
 class Reason(StrEnum):
@@ -110,3 +119,7 @@ class CallbackFailed(Event, frozen=True, tag="callback_error"):
     """Innermost file of the program's own code."""
     line: int
     """Line in that file."""
+    exception: WireOnly[str] = ""
+    """The exception's class; "" if not known."""
+    no_response: WireOnly[bool] = False
+    """Whether a service's callback returned, but no response."""
