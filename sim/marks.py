@@ -31,5 +31,5 @@ waits_for_time = FunctionMark()
 """Waits for time to pass."""
 waits_for_keyboard = FunctionMark()
 """Waits for what is typed at the run's terminal."""
-sends_responses = Mark()
+sends_responses = FunctionMark()
 """Sends what a service's callback returned, and raises a TypeError if that is no response."""

@@ -84,7 +84,7 @@ def grade(options: argparse.Namespace) -> int:
     out = SheetStream(sheet, report) if path is None else SheetFile(sheet, path)
     try:
         out.begin()
-        for each in handed_in.grades(out.begun(missing), options.limit, confinement, out.mended):
+        for each in handed_in.grades(out.begun(missing), options.limit, confinement, out.restored):
             out.append(sheet.add(each))
             if options.csv != _STANDARD_OUTPUT:
                 say(f"{line(each)}\n")

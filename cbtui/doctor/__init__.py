@@ -1,4 +1,4 @@
-"""Looks at all that cbtui needs from a machine; each thing in a function that can be asked alone."""
+"""Examines what cbtui needs of a machine, one function per requirement."""
 
 import os
 import shutil
@@ -17,10 +17,10 @@ from cbtui.doctor.terminal import TerminalFacts, screen
 
 
 def examinations(charset: str, config: str | None = None) -> Iterator[Examination]:
-    """Yield what is found, thing by thing.
+    """Yield the examinations one by one.
 
-    ``charset`` is what the screen would be drawn with, ``config`` a configuration instead of one's own.
-    Takes about two seconds: an engine and other processes are started, and ended. Nothing is changed.
+    ``charset`` is the console's, ``config`` a configuration in place of the user's own. Takes about two
+    seconds, as an engine and other processes are started. Nothing is changed.
     """
     importing, world = ProbeProcess.of_imports(), ProbeProcess.of_world()
     try:

@@ -1,4 +1,4 @@
-"""Runs an engine for a moment, as every lesson does."""
+"""Examines whether an engine runs."""
 
 import time
 
@@ -14,14 +14,14 @@ _LESSON = "single-thread"
 _RUN = 0.1
 """Seconds that the run lasts in its own time."""
 _TIMEOUT = 20.0
-"""Seconds after which the engine is given up."""
+"""Seconds without events after which the engine has failed."""
 _SLOW = 3.0
-"""Seconds after which a learner wonders whether something is wrong."""
+"""Seconds from which on the engine's start is reported as slow."""
 _REMEDY = "run cbtui run single-thread --for 1 to see more, and install cbtui anew if it says nothing"
 
 
 def engine() -> Examination:
-    """Run a lesson for a tenth of a second of its own time, without the robot, in an engine of its own."""
+    """Run a lesson for a tenth of a second of its own time, without the robot."""
     try:
         setup = RunRequest(lesson=find(_LESSON), robot=False, seconds=_RUN).setup()
     except ValueError:

@@ -1,17 +1,17 @@
-"""What an examination says of one thing: a sign, what there is, and what to do if it is not well."""
+"""The result of examining one requirement: a sign, the finding, and a remedy."""
 
 from enum import Enum
 from typing import NamedTuple
 
 
 class Sign(Enum):
-    """How it is with one thing."""
+    """The state of a requirement."""
 
     WELL = "✓"
     NOTE = "!"
-    """Something is less than it could be, and cbtui works."""
+    """Not ideal, but cbtui works."""
     FAULT = "✗"
-    """Something that cbtui needs is not there, or broken."""
+    """Something that cbtui needs is missing or broken."""
 
     @property
     def plain(self) -> str:
@@ -20,7 +20,7 @@ class Sign(Enum):
 
 
 class Examination(NamedTuple):
-    """What was found; ``remedy`` says what to do, and is empty where nothing is to be done."""
+    """What was found; ``remedy`` says what to do, if anything."""
 
     sign: Sign
     subject: str
@@ -29,15 +29,15 @@ class Examination(NamedTuple):
 
 
 def well(subject: str, what: str) -> Examination:
-    """Say that a thing is as it should be."""
+    """Return the examination of a fulfilled requirement."""
     return Examination(Sign.WELL, subject, what)
 
 
 def note(subject: str, what: str, remedy: str) -> Examination:
-    """Say that a thing could be better."""
+    """Return the examination of something that could be better."""
     return Examination(Sign.NOTE, subject, what, remedy)
 
 
 def fault(subject: str, what: str, remedy: str) -> Examination:
-    """Say that a thing is not well."""
+    """Return the examination of a missing or broken requirement."""
     return Examination(Sign.FAULT, subject, what, remedy)

@@ -1,4 +1,4 @@
-"""What not everybody needs: an editor, the console in a browser, and a ROS 2 of the machine's own."""
+"""Examines optional parts: an editor, the console in a browser, and an installed ROS 2."""
 
 import shlex
 import shutil
@@ -11,11 +11,11 @@ from cbtui.doctor.examination import Examination, note, well
 from cbtui.text.installing import install_command
 
 _PORT = 8000
-"""The port that ``cbtui serve`` takes when none is named."""
+"""The default port of ``cbtui serve``."""
 
 
 def editor(environment: Mapping[str, str]) -> Examination:
-    """Look whether the person's editor is there."""
+    """Examine whether the user's editor is installed."""
     named = environment.get("VISUAL", "").strip() or environment.get("EDITOR", "").strip()
     if not named:
         return note(
@@ -31,7 +31,7 @@ def editor(environment: Mapping[str, str]) -> Examination:
 
 
 def browser(port: int = _PORT) -> Examination:
-    """Look whether the console can be shown in a browser."""
+    """Examine whether the console can be shown in a browser."""
     if find_spec("textual_serve") is None:
         return well("browser", f"left out; {install_command('cbtui[serve]')} brings cbtui serve")
     with socket.socket() as tried:
@@ -44,7 +44,7 @@ def browser(port: int = _PORT) -> Examination:
 
 
 def ros(environment: Mapping[str, str]) -> Iterator[Examination]:
-    """Look for a real ROS 2 beside cbtui's model of it."""
+    """Examine whether a real ROS 2 is installed beside cbtui's model of it."""
     distribution = environment.get("ROS_DISTRO")
     try:
         spec = find_spec("rclpy")

@@ -1,4 +1,4 @@
-"""Folders that are written to, and the files in them: configuration, progress, lessons."""
+"""Examines folders that are written to, and files: configuration, progress and lessons."""
 
 import os
 import tempfile
@@ -13,7 +13,7 @@ from lessons.progress import faulty_line, usual_path
 
 
 def folders(current: Callable[[], Path]) -> Iterator[Examination]:
-    """Look whether what cbtui writes has a place; nothing is written."""
+    """Examine whether the folders of cbtui's files can be written to; nothing is written."""
     yield _folder(
         "state folder",
         usual_path().parent,
@@ -48,7 +48,7 @@ def _folder(subject: str, folder: Path, remedy: str) -> Examination:
 
 
 def is_writable(folder: Path) -> bool:
-    """Tell whether files can be made in a folder, which may have to be made first."""
+    """Tell whether files can be created in a folder, which need not exist yet."""
     try:
         nearest = next(each for each in (folder, *folder.parents) if each.exists())
     except (OSError, StopIteration):
@@ -57,12 +57,12 @@ def is_writable(folder: Path) -> bool:
 
 
 def configuration(named: Path | None) -> Iterator[Examination]:
-    """Look at the configuration with its keys: the one that is named, else one's own."""
+    """Examine the named configuration, else the user's own."""
     path = named or standard_path()
     try:
         there = path.exists()
     except OSError:
-        there = True  # reading it says why it cannot be
+        there = True  # reading it reports why
     if named is None and not path.is_absolute():
         remedy = "set HOME or XDG_CONFIG_HOME, or name a file with --config, for keys and colours of your own"
         yield note("config", "there is no home folder", remedy)
@@ -78,7 +78,7 @@ def configuration(named: Path | None) -> Iterator[Examination]:
 
 
 def progress() -> Examination:
-    """Look at the file of progress."""
+    """Examine the progress file."""
     path = usual_path()
     remedy = f"the next console keeps it under another name and goes on; mend or delete {path}"
     try:
@@ -95,7 +95,7 @@ def progress() -> Examination:
 
 
 def lessons_found() -> Iterator[Examination]:
-    """Look at all lessons, those from elsewhere, too."""
+    """Examine all lessons, those from other folders included."""
     try:
         every = lessons()
     except BadLesson as error:

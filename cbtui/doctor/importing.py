@@ -1,4 +1,4 @@
-"""Imports modules one after another, and says of each how that went; a process of its own, since C crashes.
+"""Imports modules in a process of its own, as C code may crash, and reports on each.
 
 A line for each: ``begin NAME`` before, ``well NAME`` or ``bad NAME: why`` after.
 """
@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 
 def main(names: Sequence[str]) -> None:
-    """Import the modules, and say how it goes."""
+    """Import the modules, and report on each."""
     for name in names:
         _say(f"begin {name}")
         try:

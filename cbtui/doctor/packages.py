@@ -1,4 +1,4 @@
-"""Python, the packages that cbtui depends on, and PyBullet."""
+"""Examines Python, the packages that cbtui depends on, and PyBullet."""
 
 import sys
 from collections.abc import Iterator, Mapping
@@ -12,11 +12,11 @@ from cbtui.text.installing import install_command
 _OLDEST = (3, 11)
 _NEWEST_WITH_WHEEL = (3, 11)
 _MACHINE_WITH_WHEEL = "linux-x86_64"
-"""What PyBullet has ready-made wheels for."""
+"""The platform that PyBullet has wheels for."""
 
 
 def python(running: tuple[int, ...]) -> Examination:
-    """Look at the version of Python."""
+    """Examine the version of Python."""
     said = ".".join(map(str, running))
     if running < _OLDEST:
         return fault("Python", said, "cbtui needs Python 3.11 or newer; install it into a venv of one")
@@ -24,7 +24,7 @@ def python(running: tuple[int, ...]) -> Examination:
 
 
 def dependencies(importing: ProbeProcess) -> Iterator[Examination]:
-    """Look whether each package is there, in a version that fits, and can be imported."""
+    """Examine whether each package is installed in a supported version and can be imported."""
     needed = [each for each in requirements() if each.name != "pybullet"]
     if not needed:
         yield note(
@@ -56,7 +56,7 @@ def _package(needed: Requirement, broken: Mapping[str, str]) -> Examination | No
 
 
 def _broken(importing: ProbeProcess) -> dict[str, str]:
-    """The modules that could not be imported, and why."""
+    """The modules that cannot be imported, with the reason."""
     outcome = importing.outcome()
     broken, begun = {}, ""
     for line in outcome.said.splitlines():
@@ -71,9 +71,9 @@ def _broken(importing: ProbeProcess) -> dict[str, str]:
 
 
 def bullet(world: ProbeProcess, running: tuple[int, ...], machine: str) -> Examination:
-    """Look whether PyBullet, which moves the robot, builds a world.
+    """Examine whether PyBullet, the robot's physics, builds a world.
 
-    ``machine`` is what ``sysconfig.get_platform`` calls this one.
+    ``machine`` is the result of ``sysconfig.get_platform``.
     """
     outcome = world.outcome()
     if outcome.code == 0:

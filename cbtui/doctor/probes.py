@@ -1,4 +1,4 @@
-"""Other processes that try out what may crash: packages with C code in them, and the robot's world."""
+"""Processes that try out code that may crash: packages with C code, and the robot's world."""
 
 import os
 import signal
@@ -7,19 +7,19 @@ import sys
 from typing import NamedTuple
 
 _TIMEOUT = 20.0
-"""Seconds after which a process that tries something out is given up."""
+"""Limit of a probe process in seconds."""
 
 _IMPORTS = {"backports-zstd": "backports.zstd", "pyyaml": "yaml"}
 
 
 def module_of(distribution: str) -> str:
-    """Return what a distribution is imported as, which mostly is its own name."""
+    """Return the module name of a distribution."""
     name = distribution.lower().replace(".", "-").replace("_", "-")
     return _IMPORTS.get(name, name.replace("-", "_"))
 
 
 class ProbeResult(NamedTuple):
-    """What a process that tried something out said, and what it died of, "" if it ended by itself."""
+    """The output of a probe process, and why it died, "" if it exited."""
 
     said: str
     complained: str
@@ -28,10 +28,10 @@ class ProbeResult(NamedTuple):
 
 
 class ProbeProcess:
-    """A process that was started to try something out. End it when it is not needed any more."""
+    """A process that tries something out; ``end`` it when it is no longer needed."""
 
     def __init__(self, module: str, *arguments: str) -> None:
-        """Run a module with this process's own search path, whatever lies in the current folder."""
+        """Run a module with this process's ``sys.path``, ignoring the current folder."""
         path = os.pathsep.join(filter(None, sys.path))
         self._process = subprocess.Popen(
             [sys.executable, "-P", "-m", module, *arguments],
@@ -45,7 +45,7 @@ class ProbeProcess:
 
     @classmethod
     def of_imports(cls) -> "ProbeProcess":
-        """Import what cbtui depends on, one after another."""
+        """Import the packages that cbtui depends on."""
         from cbtui.doctor.requirements import requirements
 
         names = [module_of(each.name) for each in requirements() if each.name != "pybullet"]
@@ -57,7 +57,7 @@ class ProbeProcess:
         return cls("sim.robot.probe")
 
     def outcome(self) -> ProbeResult:
-        """Wait for the end, but not for ever."""
+        """Wait for the process; it is killed after a timeout."""
         try:
             said, complained = self._process.communicate(timeout=_TIMEOUT)
         except subprocess.TimeoutExpired:
@@ -70,7 +70,7 @@ class ProbeProcess:
         )
 
     def end(self) -> None:
-        """End the process, if it has not ended. Safe to call twice."""
+        """Kill the process if it still runs. Idempotent."""
         if self._process.poll() is None:
             self._process.kill()
         self._process.communicate()

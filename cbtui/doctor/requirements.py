@@ -1,4 +1,4 @@
-"""What the installed cbtui says that it depends on, and whether a version is in a range."""
+"""The dependencies in the metadata of the installed cbtui, and version ranges."""
 
 import re
 import sys
@@ -14,7 +14,7 @@ _PYTHON = re.compile(r"""python_version\s*(<|>=)\s*['"]([\d.]+)['"]""")
 
 
 class Requirement(NamedTuple):
-    """A package by the name it is installed under, and its versions, such as ``>=8,<9``."""
+    """A distribution name and its version range, such as ``>=8,<9``."""
 
     name: str
     versions: str
@@ -22,7 +22,7 @@ class Requirement(NamedTuple):
 
 @cache
 def requirements() -> Sequence[Requirement]:
-    """Return what cbtui needs with this Python; nothing where cbtui is not installed."""
+    """Return the dependencies for this Python; none if cbtui is not installed."""
     try:
         lines = requires("cbtui") or []
     except PackageNotFoundError:
@@ -31,7 +31,7 @@ def requirements() -> Sequence[Requirement]:
 
 
 def read_requirement(line: str, python: tuple[int, ...] = sys.version_info[:2]) -> Requirement | None:
-    """Take a line of a package's metadata apart; None if it is for an extra, or for other Pythons."""
+    """Parse a requirement of the metadata; None if it is for an extra, or for other Pythons."""
     what, _, marker = line.partition(";")
     name = _NAME.match(what)
     if name is None or "extra" in marker:
@@ -43,7 +43,7 @@ def read_requirement(line: str, python: tuple[int, ...] = sys.version_info[:2]) 
 
 
 def in_range(version: str, versions: str) -> bool:
-    """Tell whether a version is one of those; what stands behind its numbers does not count."""
+    """Tell whether a version is in a range; only its leading numbers count."""
     found = _numbers("".join(takewhile(lambda sign: sign.isdigit() or sign == ".", version)))
     return all(_holds(found, sign, _numbers(bound)) for sign, bound in _BOUND.findall(versions))
 

@@ -1,4 +1,4 @@
-"""The terminal: whether there is one, its colours, its signs, its size, and what lies between it and here."""
+"""Examines the terminal: its presence, colours, glyphs and size, and multiplexers in between."""
 
 import os
 from collections.abc import Iterator, Mapping
@@ -8,14 +8,14 @@ from cbtui.doctor.examination import Examination, fault, note, well
 from cbtui.terminal.capabilities import is_dumb
 
 WIDTH, HEIGHT = 80, 24
-"""What the console needs."""
+"""The smallest terminal."""
 _SAMPLE = "⣿⣷⣶⣤⣀ ▏▎▍▌▋▊▉█ ╱╲╳ ─│┊ ▲◂▸"
 
 
 class TerminalFacts(NamedTuple):
-    """What there is to draw on, and with which signs (see ``cbtui.terminal.capabilities.charset_of``).
+    """The terminal's environment, charset and size.
 
-    ``size`` is None where a standard stream is no terminal.
+    ``size`` is None if a standard stream is not a terminal.
     """
 
     environment: Mapping[str, str]
@@ -24,7 +24,7 @@ class TerminalFacts(NamedTuple):
 
 
 def screen(shown_on: TerminalFacts) -> Iterator[Examination]:
-    """Look at the terminal."""
+    """Examine the terminal."""
     yield _terminal(shown_on)
     if not is_dumb(shown_on.environment):
         yield _colours(shown_on.environment)

@@ -1,4 +1,4 @@
-"""An ament_python package as text: what its files are called, and what is in them.
+"""The files of an ament_python package, as text.
 
 Source of the form: ``ros2 pkg create --build-type ament_python``; REP 149 for ``package.xml``.
 """
@@ -25,7 +25,7 @@ _KEYS = {
     "tf2_ros": "tf2_ros_py",
     "yaml": "python3-yaml",
 }
-"""What rosdep calls a module whose package has another name."""
+"""Rosdep keys of modules whose package has another name."""
 _ROBOT_INTERFACES = frozenset(("geometry_msgs", "nav_msgs", "sensor_msgs"))
 
 
@@ -34,19 +34,19 @@ class LessonProgram:
     """One lesson's node: an executable and a launch file of the package."""
 
     name: str
-    """The executable's: letters, digits and underscores."""
+    """The executable's name: letters, digits and underscores."""
     title: str
     teaches: str
     source: bytes
-    """The node's file, as it is; it has a ``main()``."""
+    """The unchanged source of the node; it has a ``main()``."""
     arguments: tuple[str, ...] = ()
-    """The command line that the lesson gives it, without the program's name."""
+    """The command-line arguments from the lesson."""
     service: tuple[str, str] | None = None
-    """Name and type of the SetBool service that the node itself offers, if it does."""
+    """Name and type of the SetBool service that the node offers, if any."""
 
     @property
     def module(self) -> str:
-        """The name of its module, which must be one that ``import`` takes."""
+        """The name of its module, a valid identifier."""
         importable = self.name.isidentifier() and not keyword.iskeyword(self.name)
         return self.name if importable else f"lesson_{self.name}"
 
@@ -66,7 +66,7 @@ class AmentPackage:
     launch_files: Mapping[str, bytes] = field(default_factory=dict)
 
     def files(self) -> dict[PurePosixPath, bytes]:
-        """The content of every file, by its place in the package's folder."""
+        """The content of every file by its path in the package's folder."""
         launch_files = {
             **self.launch_files,
             **{f"{each.name}.launch.py": _launch_file(self.name, each).encode() for each in self.programs},
@@ -113,7 +113,7 @@ class AmentPackage:
         )
 
     def _launching(self) -> Iterator[str]:
-        """How to give a launch file other values, shown on the first one that takes some."""
+        """An example of launch arguments, for the first program that has some."""
         for program in self.programs:
             for name, value in _launch_arguments(program.arguments).values():
                 argument = shlex.quote(f"{name}:={value}")
@@ -153,9 +153,9 @@ def _launch_file(package: str, program: LessonProgram) -> str:
 
 
 def _launch_arguments(words: tuple[str, ...]) -> dict[int, tuple[str, str]]:
-    """Name and value of what a launch file lets a person change, by the value's place on the command line.
+    """Names and values of launch arguments by the value's position on the command line.
 
-    That is what stands behind an option of the program's own; ROS's own arguments stay as they are.
+    They are the values of the program's own options; ROS arguments are left as they are.
     """
     found: dict[int, tuple[str, str]] = {}
     names: set[str] = set()

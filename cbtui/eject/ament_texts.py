@@ -1,4 +1,4 @@
-"""The texts that an ament_python package is filled from: templates with ``$package`` and the like in them."""
+"""Templates of an ament_python package's files, with placeholders such as ``$package``."""
 
 MANIFEST = """\
 <?xml version="1.0"?>

@@ -1,4 +1,4 @@
-"""Takes lessons home: each unit as a ROS 2 package, written to a folder without a loss to what is there."""
+"""Writes each unit of lessons as a ROS 2 package into a folder, without overwriting changed files."""
 
 import ast
 import os
@@ -16,22 +16,22 @@ _NUMBERED = re.compile(r"(?P<number>\d[\w.]*)\s+(?P<title>.*)", re.DOTALL)
 
 
 class EjectError(Exception):
-    """What stands in the way, in one sentence for the person."""
+    """The packages cannot be written; the text is a sentence."""
 
 
 @dataclass(frozen=True)
 class CourseUnit:
-    """A unit of the course, and its lessons in teaching order; ``number`` is empty for one that has none."""
+    """A unit of the course and its lessons in order; ``number`` may be empty."""
 
     number: str
     title: str
     package: str
-    """The name of the package that it becomes; a valid one by REP 144."""
+    """The name of its package, valid by REP 144."""
     lessons: tuple[Lesson, ...]
 
 
 def units_of(lessons: Iterable[Lesson]) -> list[CourseUnit]:
-    """Return the units that the lessons belong to, in the lessons' order."""
+    """Return the units of some lessons in the lessons' order."""
     units: dict[str, CourseUnit] = {}
     for lesson in lessons:
         number, title = _number_and_title(lesson.unit)
@@ -57,8 +57,7 @@ def chosen(units: Sequence[CourseUnit], names: Sequence[str]) -> list[CourseUnit
 def package_of(unit: CourseUnit) -> AmentPackage:
     """Return the unit as a package.
 
-    If a package of that name lies beside the lessons, the names that it gives their nodes stay valid, and its
-    launch files come along.
+    If a package of that name lies beside the lessons, its executable names and launch files are included.
 
     Raises:
         EjectError: a node cannot be read, or cannot be part of a package as it is.
@@ -82,14 +81,14 @@ def package_of(unit: CourseUnit) -> AmentPackage:
 
 
 def changed_files(files: Mapping[Path, bytes]) -> list[Path]:
-    """Return those of the files that are there already with another content. Raises OSError."""
+    """Return the files that exist with different content. Raises OSError."""
     return [path for path, content in files.items() if os.path.lexists(path) and not _holds(path, content)]
 
 
 def write_files(files: Mapping[Path, bytes]) -> int:
-    """Write what is not there yet as it should be; returns how many files that were.
+    """Write the files that are missing or different; returns their number.
 
-    A file is there whole or as it was before, and a link is replaced rather than followed. Raises OSError.
+    Each write is atomic; a link is replaced, not followed. Raises OSError.
     """
     missing = {path: content for path, content in files.items() if not _holds(path, content)}
     for path, content in missing.items():
@@ -120,9 +119,9 @@ def _packages_beside(unit: CourseUnit) -> list[Package]:
 
 
 def _further_names(package: Package, programs: Sequence[LessonProgram]) -> dict[str, LessonProgram]:
-    """The lesson's program for each executable of a package; they are known by their text.
+    """The lesson's program for each executable of a package, matched by its source.
 
-    A package may hold links to the nodes, or, once installed, copies of them.
+    A package has links to the nodes, or, once installed, copies of them.
     """
     found: dict[str, LessonProgram] = {}
     for name in package.executables:

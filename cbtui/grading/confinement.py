@@ -1,7 +1,7 @@
-"""What a program of somebody else's may see and touch while it runs; ``bwrap`` (bubblewrap) sees to it.
+"""Confines submissions with ``bwrap`` (bubblewrap).
 
-In namespaces of its own it has no other processes, no network but loopback, nothing to write to but its own
-copy and a private ``/tmp``, and sees little more than Python, its packages and the engine.
+In namespaces of its own a program has no other processes and no network but loopback. It can write to its own
+copy and a private ``/tmp``, and read little more than Python, its packages and the engine.
 """
 
 import os
@@ -17,7 +17,7 @@ from typing import Self
 from lessons.catalogue import ROOT as LESSONS
 
 PACKAGES = LESSONS.parent
-"""The folder that cbtui and the engine are in: a checkout, or one with many packages."""
+"""The folder that contains cbtui's packages: a checkout, or that of all installed packages."""
 _SYSTEM = (
     *("/usr", "/bin", "/sbin", "/lib", "/lib32", "/lib64", "/nix", "/etc/ld.so.cache", "/etc/alternatives"),
     *("/etc/localtime", "/etc/passwd", "/etc/group", "/etc/nsswitch.conf", "/etc/hosts"),
@@ -37,9 +37,9 @@ exit $code
 
 @dataclass(frozen=True)
 class Confinement:
-    """How submissions are confined: by ``bwrap``, or (None) by a copy and an environment of their own alone.
+    """How submissions are confined: by ``bwrap``, or if that is None by a copy and a clean environment.
 
-    ``missing`` says why there is none. ``hidden`` are files and folders that are covered wherever they lie.
+    ``missing`` says why ``bwrap`` is not used. ``hidden`` are files and folders that are masked.
     """
 
     bwrap: str | None
@@ -47,11 +47,11 @@ class Confinement:
     missing: str = ""
 
     libraries: tuple[Path, ...] = field(default_factory=lambda: tuple(_libraries()))
-    """Folders with Python, installed packages and the engine."""
+    """Readable folders: Python, installed packages and the engine."""
 
     @property
     def import_path(self) -> list[str]:
-        """Where programs import from: ``sys.path`` without the folder that the grader was started in."""
+        """``sys.path`` of programs, without the folder in which the grader was started."""
         return [
             entry
             for entry in sys.path
@@ -60,7 +60,7 @@ class Confinement:
 
     @classmethod
     def best(cls, hidden: Sequence[Path]) -> Self:
-        """Return the strictest that works on this machine, tried once."""
+        """Return the strictest confinement that works on this machine; it is tried once."""
         bwrap = shutil.which("bwrap")
         if bwrap is None:
             return cls(None, missing="bwrap (of the package bubblewrap) is not installed")
@@ -80,7 +80,7 @@ class Confinement:
         return confinement
 
     def launcher(self, folder: Path, script: Path) -> Path | None:
-        """Write a script that starts Python confined to a folder; None where Python itself does."""
+        """Write a script that starts Python confined to a folder; returns None without ``bwrap``."""
         if self.bwrap is None:
             return None
         text = _SCRIPT.format(bwrap=shlex.join(self._words(folder)), python=shlex.quote(sys.executable))
@@ -89,7 +89,7 @@ class Confinement:
         return script
 
     def environment(self, folder: Path) -> dict[str, str]:
-        """The environment of a program that is confined to a folder."""
+        """The environment variables of a program that is confined to a folder."""
         kept = {name: os.environ[name] for name in _KEPT if name in os.environ}
         temporary = {} if self.bwrap else {"TMPDIR": str(folder)}
         python = {"PYTHONDONTWRITEBYTECODE": "1", "PYTHONNOUSERSITE": "1"}

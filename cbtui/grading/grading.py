@@ -1,4 +1,4 @@
-"""The files of many learners, each run and judged apart, so that none can change another's marks."""
+"""Grades the files of many learners in isolation, so that none can change another's marks."""
 
 import compileall
 import hashlib
@@ -18,14 +18,14 @@ _PYTHON = ".py"
 
 
 class PackagesChangedError(Exception):
-    """The program or its lessons are no longer what they were; the text is a sentence."""
+    """Files of cbtui or of a lesson have changed; the text is a sentence."""
 
 
 @dataclass(frozen=True)
 class HandIn:
-    """What one learner handed in for one exercise; without a lesson or a file, why it cannot be checked.
+    """The file that a learner handed in for an exercise; without a lesson or file, ``problem`` says why.
 
-    ``folder`` is the learner's own, if the file is in one.
+    ``folder`` is the learner's folder, if the file is in one.
     """
 
     learner: str
@@ -37,7 +37,7 @@ class HandIn:
 
 @dataclass(frozen=True, eq=False)
 class LoadedHandIn:
-    """A paper as it was read at the start; without a submission ``problem`` says why it cannot be run."""
+    """A hand-in as it was read at the start; without a submission, ``problem`` says why it cannot be run."""
 
     paper: HandIn
     total: int = 0
@@ -46,7 +46,7 @@ class LoadedHandIn:
 
     @property
     def key(self) -> tuple[str, str, str]:
-        """Whose it is, for which exercise, and what tells its files from others."""
+        """Learner, lesson id, and digest of the files."""
         lesson, submission = self.paper.lesson, self.submission
         digest = "" if submission is None else submission.digest
         return self.paper.learner, "" if lesson is None else lesson.id, digest
@@ -54,7 +54,7 @@ class LoadedHandIn:
 
 @dataclass(frozen=True)
 class Grade:
-    """What came of an entry."""
+    """The grade of a hand-in."""
 
     entry: LoadedHandIn
     marks: Marks
@@ -71,12 +71,12 @@ class Grade:
 
     @property
     def suspicion(self) -> str:
-        """What gives the run away as forged; empty where nothing does."""
+        """Signs of a forged trace; empty if there are none."""
         return "; ".join(self.marks.doubts)
 
 
 def hand_ins_in(folder: Path, exercises: Sequence[Lesson], only: Lesson | None) -> list[HandIn]:
-    """Return what lies in a folder: a folder or a file for each learner, in order of their names.
+    """Return the hand-ins in a folder, which has a folder or a file for each learner, in order of names.
 
     A file is told by its name: ``split_groups.py`` in a learner's folder, ``split_groups_ann.py`` or
     ``ann_split_groups.py`` beside others'. With ``only`` all is for that exercise, and a learner's only
@@ -99,7 +99,7 @@ def hand_ins_in(folder: Path, exercises: Sequence[Lesson], only: Lesson | None) 
 
 
 class Grader:
-    """All papers, read at once: what a program does to the files later changes nobody's marks."""
+    """Grades hand-ins that were all read at the start, so that a program cannot change other marks later."""
 
     def __init__(self, papers: Iterable[HandIn]) -> None:
         """Read them.
@@ -114,7 +114,7 @@ class Grader:
 
     @property
     def most_checks(self) -> int:
-        """How many checks the exercise with the most has."""
+        """The number of checks of the exercise with the most checks."""
         return max(self._totals.values(), default=0)
 
     def grades(
@@ -124,9 +124,9 @@ class Grader:
         confinement: Confinement,
         watch: Callable[[], str | None],
     ) -> Iterator[Grade]:
-        """Grade some of the entries one after another, each for at most ``limit`` real seconds.
+        """Grade hand-ins one after another, each for at most ``limit`` real seconds.
 
-        ``watch`` says after each what else it changed that it must not.
+        ``watch`` is called after each; it returns a sentence on a forbidden change, or None.
 
         Raises:
             PackagesChangedError: a program changed files of cbtui or of a lesson; its own grade came before.
@@ -165,7 +165,7 @@ class Grader:
             return LoadedHandIn(paper, total, problem=str(error))
 
     def _changed_papers(self) -> Iterator[Path | None]:
-        """The files that are no longer what they were when this was last asked."""
+        """Yield the files that have changed since the last call."""
         for entry in self.entries:
             key = self._entry(entry.paper).key
             if key != self._on_disk[entry]:
@@ -174,18 +174,18 @@ class Grader:
 
 
 class _PackageFiles:
-    """The files of cbtui, of the engine and of lessons, as they are when this is made."""
+    """Digests of the files of cbtui, of the engine and of lessons at construction."""
 
     def __init__(self, lessons: Iterable[Lesson | None]) -> None:
         own = [PACKAGES / name for name in ("cbtui", "lessons", "sim")]
         folders = {lesson.folder for lesson in lessons if lesson is not None}
         self._folders = [*own, *sorted(each for each in folders if not each.is_relative_to(PACKAGES))]
         for folder in self._folders:
-            compileall.compile_dir(folder, quiet=2)  # so that nothing is compiled into it later
+            compileall.compile_dir(folder, quiet=2)  # so that no bytecode is written later
         self._digests = self._now()
 
     def changed(self) -> list[Path]:
-        """Return the files that were changed, added or removed since."""
+        """Return the files that were changed, added or removed since construction."""
         now = self._now()
         paths = dict.fromkeys([*self._digests, *now])
         return [path for path in paths if self._digests.get(path) != now.get(path)]
@@ -251,7 +251,7 @@ def _of_file(path: Path, exercises: Sequence[Lesson], only: Lesson | None) -> Ha
 
 
 def _without(stem: str, lesson: Lesson) -> str | None:
-    """What a file's name has beside the lesson's; None where it does not have that."""
+    """The part of a file's name beside the lesson's file name; None if it does not contain that."""
     name = lesson.file_name.removesuffix(_PYTHON)
     for rest in (stem.removeprefix(name), stem.removesuffix(name)):
         if rest != stem:

@@ -1,4 +1,4 @@
-"""The table of marks as CSV: each row is written as soon as it is known, and a table can be gone on with."""
+"""The table of marks as CSV: rows are written as they are graded, and an earlier table can be resumed."""
 
 import csv
 import io
@@ -15,7 +15,7 @@ _AFTER = ("problem", "suspicious", "digest")
 
 
 class BadSheetError(Exception):
-    """A table that cannot be gone on with; the text is a sentence."""
+    """A table cannot be resumed; the text is a sentence."""
 
 
 class UnwritableSheetError(Exception):
@@ -57,7 +57,7 @@ class MarkSheet:
         return self._line(self.rows[-1])
 
     def read(self, text: str, wanted: Iterable[tuple[str, str, str]]) -> None:
-        """Take the whole rows of an earlier table whose learner, lesson and digest are among ``wanted``.
+        """Take those rows of an earlier table whose learner, lesson and digest are among ``wanted``.
 
         Raises:
             BadSheetError: it has other columns.
@@ -101,12 +101,12 @@ def _result(passed: bool, text: str) -> str:
 
 
 def _harmless(cell: str) -> str:
-    """A cell that no spreadsheet takes for a formula: what a learner's program says can stand in it."""
+    """A cell that no spreadsheet evaluates as a formula: it may contain output of a learner's program."""
     return f"'{cell}" if cell.lstrip(" ").startswith(("=", "+", "-", "@", "\t", "\r", "\n")) else cell
 
 
 class SheetStream:
-    """A table that goes row by row to where nobody can change it; ``write`` takes text."""
+    """A table that is written row by row to a stream; ``write`` takes text."""
 
     def __init__(self, sheet: MarkSheet, write: Callable[[str], None]) -> None:
         self._sheet = sheet
@@ -127,13 +127,13 @@ class SheetStream:
     def end(self) -> None:
         """Leave it as it is."""
 
-    def mended(self) -> str | None:
-        """Say nothing: it is as it was."""
+    def restored(self) -> str | None:
+        """Return None: a stream cannot be changed."""
         return None
 
 
 class SheetFile:
-    """A table in a file, which grows row by row; one that somebody else changes is put right.
+    """A table in a file that is written row by row; changes by others are undone.
 
     The last row is begun before its program runs: if that ends the grader, the table tells whose it was.
     """
@@ -172,8 +172,8 @@ class SheetFile:
         if self._begun:
             self._write(self._written, "wb")
 
-    def mended(self) -> str | None:
-        """Look whether the file is as it was written, and write it again if not; says so then."""
+    def restored(self) -> str | None:
+        """Write the file again if it was changed; returns a sentence then, else None."""
         whole = self._written + self._begun
         if not self._is_ordinary() or self._holds(whole):
             return None

@@ -1,4 +1,4 @@
-"""What a learner handed in, read once into memory, and written out again as the copy that is run."""
+"""A submission: a learner's files, read once into memory and written to the copy that is run."""
 
 import hashlib
 import os
@@ -14,7 +14,7 @@ _SKIPPED = (".", "__pycache__")
 
 
 class BadSubmissionError(Exception):
-    """Files that cannot be graded; the text is a sentence."""
+    """A submission cannot be graded; the text is a sentence."""
 
 
 @dataclass(frozen=True)
@@ -26,7 +26,7 @@ class Submission:
 
     @cached_property
     def digest(self) -> str:
-        """Tells whether two submissions have the same files."""
+        """A digest that is equal for submissions with the same files."""
         digest = hashlib.sha256(self.program.encode(errors="surrogateescape"))
         for name, content in sorted(self.files.items()):
             digest.update(f"\0{name}\0{len(content)}\0".encode(errors="surrogateescape") + content)
@@ -42,10 +42,11 @@ class Submission:
 
 
 def read_submission(program: Path, folder: Path | None) -> Submission:
-    """Read a program and, if it is in a folder of its learner's, all that is in there but links.
+    """Read a program and, if ``folder`` is given, all files in that except links.
 
     Raises:
-        BadSubmissionError: the program is a link or no file, something cannot be read, or it is too much.
+        BadSubmissionError: the program is a link or not a file, a file is unreadable, or the size is too
+        large.
     """
     files: dict[str, bytes] = {}
     try:
@@ -63,17 +64,17 @@ def read_submission(program: Path, folder: Path | None) -> Submission:
 
 
 def _files_in(folder: Path) -> Iterator[Path]:
-    for place, folders, names in os.walk(folder, onerror=_give_up):
+    for place, folders, names in os.walk(folder, onerror=_raise):
         folders[:] = sorted(name for name in folders if not name.startswith(_SKIPPED))
         yield from (Path(place, name) for name in sorted(names) if not name.startswith(_SKIPPED))
 
 
-def _give_up(error: OSError) -> None:
+def _raise(error: OSError) -> None:
     raise error
 
 
 def _content(path: Path, room: int) -> bytes | None:
-    """What a file holds; None for a link, a pipe or a device."""
+    """A file's content; None for a link, a pipe or a device."""
     if not stat.S_ISREG(path.lstat().st_mode):
         return None
     with open(os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK), "rb") as file:  # noqa: PTH123

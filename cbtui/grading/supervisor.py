@@ -1,6 +1,6 @@
-"""The process between the grader and a submission: it runs the copy, judges the trace and hands on the marks.
+"""The process between the grader and a submission: it runs the copy, judges the trace and returns the marks.
 
-A submission that kills its parent ends this process, which the grader notices.
+A submission that kills its parent kills this process, which the grader notices.
 """
 
 import multiprocessing
@@ -33,18 +33,18 @@ from lessons.judge import Judge
 from lessons.lesson import read_lesson
 
 _LARGEST_FILE = 1 << 28
-"""Bytes that a program may write to one file."""
+"""The largest file in bytes that a program may write."""
 _JUDGING_TIMEOUT = 30.0
-"""Real seconds beyond a run's own limit that its judging may take."""
+"""Real seconds for judging, beyond the limit of the run."""
 _EXIT_TIMEOUT = 2.0
 _MOST_BYTES = 1 << 24
 _PRELOADED = (__name__,)
 
 
 class Marks(msgspec.Struct, frozen=True):
-    """What came of a submission: a line for each check, and whether it passed.
+    """The marks of a submission: for each check whether it passed, and a line on it.
 
-    ``trouble`` says why nothing could be judged, ``doubts`` what gives away a forgery: then there are none.
+    Without checks, ``trouble`` says why nothing could be judged, or ``doubts`` are signs of a forgery.
     """
 
     checks: tuple[tuple[bool, str], ...] = ()
@@ -54,7 +54,7 @@ class Marks(msgspec.Struct, frozen=True):
 
 @dataclass(frozen=True)
 class MarkingJob:
-    """A submission to run and judge. ``limit`` is in real seconds; ``folder`` is empty, for its copy."""
+    """A submission to run and judge. ``limit`` is in real seconds; ``folder`` is for the copy."""
 
     submission: Submission
     lesson: Path
@@ -66,7 +66,7 @@ class MarkingJob:
 
 
 def mark(submission: Submission, lesson: Path, limit: float, confinement: Confinement) -> Marks:
-    """Run a submission and judge it by the checks in a lesson's folder, whatever it does."""
+    """Run a submission and judge it by the checks in a lesson's folder."""
     with tempfile.TemporaryDirectory(prefix="cbtui-grade-", ignore_cleanup_errors=True) as place:
         folder = Path(place).resolve() / "copy"
         folder.mkdir()
@@ -104,7 +104,7 @@ def _marks_by_supervisor(assignment: MarkingJob) -> Marks:
 
 
 def _supervise(assignment: MarkingJob, grader: Connection) -> None:
-    """Be the supervisor, in a session of its own, with nothing of the terminal's."""
+    """Run the supervisor in a session of its own, without the terminal."""
     os.setsid()
     signal.signal(signal.SIGTERM, _leave)
     threading.Thread(target=_end_with_grader, name="grader-watch", daemon=True).start()
@@ -146,7 +146,7 @@ def _leave(_number: int, _frame: FrameType | None) -> NoReturn:
 
 
 def _end_with_grader() -> None:
-    """End this process in order when the grader is killed."""
+    """Exit when the grader is killed."""
     parent = multiprocessing.parent_process()
     if parent is not None:
         parent.join()

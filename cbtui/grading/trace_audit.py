@@ -1,4 +1,4 @@
-"""Reads the sealed trace of a program that may have forged it, and notes what gives that away."""
+"""Reads the sealed trace of a program that is not trusted, and collects signs of a forgery."""
 
 import ast
 import re
@@ -17,10 +17,10 @@ _WORD = re.compile(r"\w+")
 
 
 class TraceAudit:
-    """Takes the batches of one run.
+    """Audits the batches of one run.
 
-    ``folder`` is where its program's files are, ``libraries`` are folders of other code. ``virtual`` tells
-    that the run is on virtual time, where all events are in order.
+    ``folder`` has the program's files, ``libraries`` are folders of other code. ``virtual`` tells that the
+    run is on virtual time, where all events are in order.
     """
 
     def __init__(
@@ -37,10 +37,10 @@ class TraceAudit:
         self._words = {word for source in submission.files.values() for word in _words(source)}
 
     def unpack(self, data: bytes) -> list[AnyEvent]:
-        """Return the events of a batch; none of one that somebody else than the engine wrote.
+        """Return the events of a batch; none if its seal is not the engine's.
 
         Raises:
-            msgspec.DecodeError: the engine itself sent no events.
+            msgspec.DecodeError: a sealed batch cannot be decoded.
         """
         try:
             batch = self._seal.open(data)
@@ -60,7 +60,7 @@ class TraceAudit:
         return events
 
     def doubts(self, *, whole: bool) -> tuple[str, ...]:
-        """Return what gives the run away, when it is over; ``whole``: it came to its end by itself."""
+        """Return the signs of a forgery after the run; ``whole`` tells that it ended normally."""
         if self._plausibility is not None:
             if whole:
                 self._plausibility.finish()
@@ -99,7 +99,7 @@ def _words(source: bytes) -> list[str]:
 
 
 def _spans(source: bytes) -> Iterator[tuple[int, int]]:
-    """First and last line of every function in a source; none in what is no Python."""
+    """Yield the first and last line of every function in a source; nothing if it is not valid Python."""
     try:
         waiting: list[object] = [compile(source, "", "exec", dont_inherit=True)]
     except (SyntaxError, ValueError, RecursionError, MemoryError):

@@ -1,1 +1,1 @@
-"""What a learner goes through: pages, predictions, exercises and progress; and the proof of a lesson."""
+"""Lessons as a learner meets them: pages, predictions, exercises; and the verification of lessons."""

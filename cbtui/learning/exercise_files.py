@@ -1,4 +1,4 @@
-"""A learner's own file for an exercise: put where they work, and never over what they have written."""
+"""The learner's file for an exercise: created from the starter, and never overwritten."""
 
 from dataclasses import dataclass
 from enum import Enum
@@ -10,22 +10,22 @@ from sim.whole_file import write_whole
 
 
 class StarterPlacement(Enum):
-    """What became of putting a starter somewhere."""
+    """The result of placing a starter file."""
 
     NEW = "new"
     THERE_ALREADY = "there already"
-    """As it was put there before; nothing was written."""
+    """The unchanged starter was there; nothing was written."""
     CHANGED = "changed"
-    """A file of that name with something else in it is there; nothing was written."""
+    """Another file of that name was there; nothing was written."""
 
 
 class CannotPlaceError(Exception):
-    """A starter that cannot be put somewhere; the text is a sentence."""
+    """A starter cannot be placed; the text is a sentence."""
 
 
 @dataclass(frozen=True)
 class ExerciseFile:
-    """A learner's file, and a sentence on where it is and what became of it."""
+    """The learner's file, and a sentence on where it is and whether it is new."""
 
     path: Path
     sentence: str
@@ -41,7 +41,7 @@ _SENTENCES = {
 
 
 def own_file(lesson: Lesson, folder: Path) -> ExerciseFile:
-    """Return a learner's file for a lesson's exercise in a folder: what is there, or else the starter.
+    """Return the learner's file for a lesson's exercise in a folder, created from the starter if missing.
 
     Raises:
         CannotPlaceError: as ``place_starter``, or what is there is not a file.
@@ -57,7 +57,7 @@ def place_starter(lesson: Lesson, folder: Path) -> StarterPlacement:
     """Put the starter of a lesson's exercise into a folder, as ``lesson.file_name``.
 
     Raises:
-        CannotPlaceError: the lesson has no exercise, or the folder is not there or takes no files.
+        CannotPlaceError: the lesson has no exercise, or the folder is missing or takes no files.
     """
     starter = lesson.starter_path
     if starter is None:

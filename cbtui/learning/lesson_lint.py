@@ -1,4 +1,4 @@
-"""Proves a lesson: that all its files say of its node, its starter and its solution is so when they run."""
+"""Verifies a lesson: the claims of its files about its node, starter and solution, tested by running them."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -19,7 +19,7 @@ from sim import foreign_file
 from sim.diagnosis import RULES
 
 WIDTH = 79
-"""Columns of a guide: it is read beside the lanes, and on the narrowest terminals."""
+"""The longest line of a guide in columns, for the narrowest terminals."""
 _LIMIT = 60.0
 _REAL_CLOCK_FACTOR = 3
 _QUOTED = re.compile(r"`([^`\n]+)`")
@@ -30,7 +30,7 @@ _KEY = re.compile(
 
 
 def faults_of(folder: Path, limit: float = _LIMIT) -> Iterator[str]:
-    """Yield a sentence on everything that is not as the lesson in a folder says; nothing for a right one.
+    """Yield a sentence on each fault of the lesson in a folder.
 
     Runs up to three programs, for ``limit`` real seconds each at most.
     """
@@ -43,7 +43,7 @@ def faults_of(folder: Path, limit: float = _LIMIT) -> Iterator[str]:
 
 
 def faults_in_texts(lesson: Lesson) -> Iterator[str]:
-    """Yield what is wrong with what a learner reads, and with what the description names."""
+    """Yield the faults of a lesson's texts and of the names in its description."""
     if not lesson.predictions:
         yield f"{_in(lesson, DESCRIPTION_FILE)}: there is no [[prediction]]; a lesson asks one or two"
     guide = lesson.guide
@@ -54,7 +54,7 @@ def faults_in_texts(lesson: Lesson) -> Iterator[str]:
             if len(line) > WIDTH:
                 yield f"{_in(lesson, file)}:{number}: the line is {len(line)} characters long; {WIDTH} fit"
         yield from _key_faults(_in(lesson, file), text)
-    yield from _key_faults(_in(lesson, DESCRIPTION_FILE), _spoken(lesson))
+    yield from _key_faults(_in(lesson, DESCRIPTION_FILE), _texts(lesson))
     for tried in lesson.tries:
         if tried.key not in _keys():
             yield f"{_in(lesson, DESCRIPTION_FILE)}: no key {tried.key!r} exists, which a [[try]] names"
@@ -67,7 +67,7 @@ def faults_in_texts(lesson: Lesson) -> Iterator[str]:
 
 
 def _drift(lesson: Lesson) -> Iterator[str]:
-    """Name the lines that starter and solution share and the node lacks: the exercise is not about them."""
+    """Yield a fault if starter and solution share lines that the node lacks: the three files have drifted."""
     exercise = lesson.exercise
     if exercise is None or exercise.beyond_node is not None:
         return
@@ -85,8 +85,8 @@ def _lines(lesson: Lesson, file: str) -> list[str]:
     return [line.strip() for line in foreign_file.read_text(lesson.folder / file).splitlines()]
 
 
-def _spoken(lesson: Lesson) -> str:
-    """The texts of the description in which keys can be named."""
+def _texts(lesson: Lesson) -> str:
+    """The texts of the description that may name keys."""
     texts = [lesson.task or "", *(tried.text for tried in lesson.tries)]
     if lesson.exercise is not None:
         texts += [lesson.exercise.asks, *lesson.exercise.hints]
@@ -94,7 +94,7 @@ def _spoken(lesson: Lesson) -> str:
 
 
 def _key_faults(file: str, text: str) -> Iterator[str]:
-    """Name every key in a text that no action has; a key is what stands in quotes and looks like one."""
+    """Yield the unknown keys in a text; a key is in backticks and looks like one."""
     quoted = dict.fromkeys(_QUOTED.findall(text))
     for name in quoted:
         if _KEY.fullmatch(name) and name not in _keys():
@@ -102,16 +102,16 @@ def _key_faults(file: str, text: str) -> Iterator[str]:
 
 
 def _keys() -> set[str]:
-    """The keys of all actions, by their names and by what is printed on them."""
+    """The keys of all actions, by name and by character."""
     names = {key for action in ACTIONS for key in action.key.split(",")}
     return names | {character for character in map(character_of, names) if character is not None}
 
 
 def faults_in_runs(lesson: Lesson, judge: Judge, limit: float) -> Iterator[str]:
-    """Yield what a lesson says that its node, starter and solution do not do.
+    """Yield claims of a lesson that the runs of its node, starter and solution refute.
 
-    On the real clock a busy computer may not come far enough: there a fault counts if it is still one in runs
-    of three times the length.
+    On the real clock, where a busy machine may be too slow, a fault counts only if it also occurs in runs of
+    three times the length.
 
     Raises:
         BadLesson: an answer cannot be read off a run.
@@ -159,10 +159,10 @@ def _faults_in_runs(lesson: Lesson, judge: Judge, limit: float) -> Iterator[str]
 
 
 def _shown(lesson: Lesson, judge: Judge, prediction: Prediction, node: ObservedRun) -> int:
-    """Which answer the node's run shows to be true.
+    """Return the answer that the node's run shows to be true.
 
     Raises:
-        BadLesson: none can be read off it; of a run that failed the text says why.
+        BadLesson: the run shows no answer; if it failed, the text says why.
     """
     try:
         return judge.true_answer(prediction, node.timeline)
@@ -173,7 +173,7 @@ def _shown(lesson: Lesson, judge: Judge, prediction: Prediction, node: ObservedR
 
 
 def _run_faults(lesson: Lesson, file: str, run: ObservedRun, declared: Iterable[str]) -> Iterator[str]:
-    """What is wrong with a run, whatever a lesson asks of it: cut short, or with other diagnoses."""
+    """Yield faults of a run apart from its checks: an abort, or undeclared or missing diagnoses."""
     if run.broken_off:
         yield f"{_in(lesson, file)}: {run.trouble}"
         return

@@ -1,4 +1,4 @@
-"""A lesson's page as text: what of it can be read already, given how far the learner has come."""
+"""A lesson's page as Markdown: the sections that are unlocked at the learner's progress."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -13,7 +13,7 @@ from lessons.progress import LessonProgress
 
 
 class PageSection(StrEnum):
-    """The parts of a page, from its top to its bottom."""
+    """The sections of a page in their order."""
 
     ABOUT = "about"
     TASK = "task"
@@ -27,12 +27,12 @@ class PageSection(StrEnum):
 
 
 Page: TypeAlias = Mapping[str, str]
-"""The Markdown of the parts that can be read now."""
+"""The Markdown of the unlocked sections."""
 
 
 @dataclass(frozen=True)
 class PageKeys:
-    """The keys that the page names, as people write them."""
+    """The keys that the page names, in display form."""
 
     predict: str
     explain: str
@@ -43,10 +43,10 @@ class PageKeys:
 
 @dataclass(frozen=True)
 class PageState:
-    """How far a learner is in a lesson.
+    """The state that a page depends on.
 
-    ``outcome`` is what the lesson's run showed, None as long as that is not known; ``held`` tells that a run
-    is going on to find out.
+    ``outcome`` is the result of the lesson's run, None while unknown; ``held`` tells that the run is in
+    progress.
     """
 
     progress: LessonProgress
@@ -60,12 +60,12 @@ def all_predicted(lesson: Lesson, progress: LessonProgress) -> bool:
 
 
 def introduction(guide: str) -> str:
-    """Return the beginning of a guide, which describes the scene and gives no answers away."""
+    """Return the first section of a guide, which contains no answers."""
     return _HEADING.split(guide, maxsplit=1)[0]
 
 
 def short_description(lesson: Lesson, progress: LessonProgress) -> str:
-    """Return what a lesson teaches; as long as that would answer a question, how its guide begins."""
+    """Return what a lesson teaches, or, while that would give away an answer, the start of its guide."""
     if progress.seen or not lesson.predictions:
         return lesson.teaches
     _title, paragraph, *_ = lesson.guide.split("\n\n")
@@ -74,13 +74,13 @@ def short_description(lesson: Lesson, progress: LessonProgress) -> str:
 
 
 def page_of(lesson: Lesson, standing: PageState, signs: PageKeys) -> Page:
-    """Return a lesson's page; what a prediction asks for is not on it before the learner has answered."""
+    """Return a lesson's page; answers to predictions stay locked until the learner has answered."""
     parts = dict(_parts(lesson, standing, signs))
     return {part: parts[part] for part in PageSection if parts.get(part)}
 
 
 def page_of_exercise(lesson: Lesson, standing: PageState, signs: PageKeys, task: str) -> Page:
-    """Return the page beside the exercise: the task, the hints, and what was explained already."""
+    """Return the page of the exercise screen: the task, the hints, and unlocked explanations."""
     assert lesson.exercise is not None, "it is on screen"
     told = page_of(lesson, standing, signs) if standing.progress.seen else {}
     return {
@@ -120,7 +120,7 @@ def _parts(lesson: Lesson, standing: PageState, signs: PageKeys) -> Iterator[tup
 
 
 def _predictions(lesson: Lesson, progress: LessonProgress, signs: PageKeys) -> str:
-    """What was predicted, without a word on whether it is true."""
+    """The given predictions without their results."""
     given = [
         f"{each.question}\n\n> {each.answers[answer]}"
         for each, answer in zip(lesson.predictions, progress.answers, strict=False)
@@ -157,7 +157,7 @@ def _shown(lesson: Lesson, standing: PageState, signs: PageKeys) -> str:
 
 
 def tally(lesson: Lesson, standing: PageState) -> str:
-    """Say how many predictions came true."""
+    """Return how many predictions were right, in words."""
     answers, true = standing.progress.answers, standing.outcome.true if standing.outcome else ()
     if not answers:
         return "not predicted"

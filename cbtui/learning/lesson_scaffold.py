@@ -1,4 +1,4 @@
-"""A new lesson to begin with: small, whole, and right as it is."""
+"""Creates a new lesson from a small, valid template."""
 
 import re
 import shutil
@@ -8,20 +8,20 @@ from lessons.catalogue import ROOT
 from lessons.lesson import DESCRIPTION_FILE, GUIDE_FILE
 
 TEMPLATE = ROOT / "scaffold"
-"""A lesson like any other, which is copied; it is in no catalogue."""
+"""The template lesson, which is in no catalogue."""
 _ID = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 _TITLE = "Scaffold"
 
 
 class CannotScaffoldError(Exception):
-    """A lesson that cannot be made; the text is a sentence."""
+    """A lesson cannot be created; the text is a sentence."""
 
 
 def make_lesson(folder: Path) -> list[Path]:
-    """Make a folder with a lesson that is called as the folder is; returns its files.
+    """Create a folder with a lesson of its name; returns the lesson's files.
 
     Raises:
-        CannotScaffoldError: the name is no lesson's, or the folder is there already or cannot be made.
+        CannotScaffoldError: the name is not a valid id, or the folder exists or cannot be created.
     """
     folder = folder.absolute()
     if not _ID.fullmatch(folder.name):

@@ -1,4 +1,4 @@
-"""What a lesson's own run shows: which answers of its predictions are true, read off a trace."""
+"""The true answers to a lesson's predictions, read off a trace of its own run."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -13,21 +13,21 @@ if TYPE_CHECKING:
     from sim.engine.setup import RunSetup
 
 Observe: TypeAlias = Callable[["RunSetup", str, Event], "ObservedRun"]
-"""Runs a set-up to its end on the caller's thread; the event breaks the run off."""
+"""Runs a set-up to its end on the caller's thread; the event aborts the run."""
 
 
 @dataclass(frozen=True)
 class PredictionOutcome:
-    """The true answer of each prediction, by its place; or none, and in a sentence why there are none."""
+    """The true answer to each prediction in order, or ``trouble``, a sentence on why there are none."""
 
     true: tuple[int, ...] = ()
     trouble: str | None = None
 
 
 class OutcomeRun:
-    """One run that predictions are held against.
+    """The run that predictions are compared with.
 
-    ``run`` blocks a thread of its own, ``give_up`` may be called from any other.
+    ``run`` blocks and needs a thread of its own; ``give_up`` may be called from any other.
     """
 
     def __init__(self, lesson: Lesson, observe: Observe) -> None:
@@ -37,15 +37,15 @@ class OutcomeRun:
         self._ended = Event()
 
     def give_up(self) -> None:
-        """Let ``run`` end its engine and come back; again does nothing."""
+        """Make ``run`` end its engine and return. Idempotent."""
         self._given_up.set()
 
     def wait(self, seconds: float) -> None:
-        """Wait until the engine has ended, no longer than so many real seconds."""
+        """Wait for the engine's end, at most so many real seconds."""
         self._ended.wait(seconds)
 
     def run(self) -> PredictionOutcome:
-        """Run the lesson and read the answers off; its engine has ended when this comes back."""
+        """Run the lesson and return the true answers; the engine has ended when this returns."""
         try:
             return self._outcome()
         except BadLesson as error:
@@ -78,7 +78,7 @@ def observe_engine(setup: "RunSetup", name: str, given_up: Event) -> "ObservedRu
 
 
 def run_text(lesson: Lesson) -> str:
-    """Say which run a lesson's predictions are held against."""
+    """Describe the run that a lesson's predictions are compared with."""
     run = lesson.run
     parts = [f"a run of {run.seconds:g} s"]
     if run.threads is not None:

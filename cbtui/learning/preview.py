@@ -1,4 +1,4 @@
-"""A lesson's first seconds, run headless and as fast as it goes, for the menu to draw them small."""
+"""The first seconds of a lesson, run headless at full speed for the menu's preview."""
 
 from threading import Event
 from typing import TYPE_CHECKING
@@ -14,19 +14,19 @@ if TYPE_CHECKING:
     from sim.trace.timeline import Timeline
 
 LENGTH = 20 * SECOND
-"""How long such a run lasts in its own time: nanoseconds."""
+"""Length of a preview run in nanoseconds of its own time."""
 CALLS = (5 * SECOND, 7 * SECOND)
-"""When the lesson's service is called in it, as ``s`` would: a lesson on a service shows nothing without."""
+"""When the lesson's service is called, as ``s`` would: without a call some lessons show nothing."""
 _TIMEOUT = 30.0
-"""Real seconds after which a run that has not come to its end is given up."""
+"""Limit of a preview run in real seconds."""
 
 
 class CannotPreviewError(Exception):
-    """A lesson that could not be run; the text is a sentence."""
+    """A preview failed; the text is a sentence."""
 
 
 def why_no_preview(lesson: Lesson) -> str | None:
-    """Return why a lesson is not run before it is opened; None if it can be."""
+    """Return why a lesson has no preview; None if it has one."""
     if not is_built_in(lesson):
         return "it comes from somebody else, and is only run once you open it"
     if lesson.setup.clock == "real":
@@ -35,7 +35,7 @@ def why_no_preview(lesson: Lesson) -> str | None:
 
 
 class PreviewRun:
-    """One such run. ``run`` blocks a thread of its own, ``give_up`` may be called from any other."""
+    """A preview run. ``run`` blocks and needs its own thread; ``give_up`` is for any other."""
 
     def __init__(self, lesson: Lesson, open_session: "OpenSession") -> None:
         self.lesson = lesson
@@ -44,19 +44,18 @@ class PreviewRun:
         self._ended = Event()
 
     def give_up(self) -> None:
-        """Let ``run`` end its engine and come back; again does nothing."""
+        """Make ``run`` end its engine and return. Idempotent."""
         self._given_up.set()
 
     def wait(self, seconds: float) -> None:
-        """Wait until the engine has ended, no longer than so many real seconds."""
+        """Wait for the engine's end, at most so many real seconds."""
         self._ended.wait(seconds)
 
     def run(self) -> "Timeline":
-        """Run the lesson; its engine has ended when this comes back, whatever way.
+        """Run the lesson; the engine has ended when this returns or raises.
 
         Raises:
-            CannotPreviewError: the run did not come to its end, or its lesson runs on the real clock or is
-                none of the package's own.
+            CannotPreviewError: the run failed, or the lesson has no preview.
             GivenUpError: ``give_up`` was called.
         """
         try:

@@ -1,4 +1,4 @@
-"""How far a learner is in a lesson, as a sign and in words."""
+"""The stages of a lesson's progress, as signs and in words."""
 
 from enum import Enum
 
@@ -7,18 +7,18 @@ from lessons.progress import LessonProgress
 
 
 class Stage(Enum):
-    """The stages from nothing to all, each with its sign in the menu."""
+    """The stages in their order, each with its sign in the menu."""
 
     UNTOUCHED = "·"
     OPENED = "○"
     PREDICTED = "◐"
     WATCHED = "●"
-    """Only of a lesson with an exercise: that is to be done yet."""
+    """Only of a lesson with an exercise, which is still to be done."""
     DONE = "✓"
 
 
 def stage_of(lesson: Lesson, progress: LessonProgress, *, opened: bool) -> Stage:
-    """Return how far a learner is in a lesson; one without an exercise is done when it was watched."""
+    """Return the stage of a lesson; one without an exercise is done once it was watched."""
     if progress.passed or (progress.seen and lesson.exercise is None):
         return Stage.DONE
     if progress.seen:
@@ -36,5 +36,5 @@ _WORDS = {
 
 
 def stage_text(stage: Stage) -> str:
-    """Return a sign with what it stands for; "" for what being opened or not says already."""
+    """Return a stage's sign and meaning; "" for the stages before a prediction."""
     return f"{stage.value} {_WORDS[stage]}" if stage in _WORDS else ""

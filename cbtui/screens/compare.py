@@ -7,7 +7,6 @@ from typing import ClassVar
 from textual import on
 from textual.app import ComposeResult
 from textual.binding import BindingType
-from textual.screen import Screen, ScreenResultCallbackType, ScreenResultType
 
 from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
@@ -37,25 +36,25 @@ _STRONG = Ink(Role.STRONG)
 _FAINT = Ink(Role.FAINT)
 _TABLE_ALONE = "-table-alone"
 _LANES_ALONE = "-lanes-alone"
-"""Classes of the screen when the table, or the lanes, fill it."""
+"""Style classes of the screen while the table, or the lanes, fill it."""
 _REST_FACTOR = 9
-"""How many times as long as a comparison took the next one is put off: it may take a tenth of the time."""
+"""Rest after a comparison, as a multiple of its duration: comparing takes at most a tenth of the time."""
 _TIME_SLICE = 0.008
-"""Seconds for which a comparison goes on before the keys have their turn."""
+"""Seconds of comparing before other tasks get their turn."""
 _YIELD_TIME = 0.002
-"""Seconds that they have at least."""
+"""Least seconds for other tasks."""
 _PROGRESS_AFTER = 0.5
-"""Seconds after which it is told that a comparison is being made."""
+"""Seconds after which progress is shown."""
 _ROWS_A_KEY = 3
 
 
 class CompareScreen(SizedScreen[None]):
     """Compares two runs; one that is still going on is drawn and counted as it grows.
 
-    Both have the same stretch of time on screen and the same cursor, which stands at the end of a run that
-    does not reach it. While a run goes on, its end is the end that is followed; else the longer run's.
-    ``bounds`` is the part that the table is about when it is not about the stretch on screen, None for all
-    that both runs have. Timelines are read on the UI thread.
+    Both share the window of time and the cursor, which is clamped to the end of each run. The playhead
+    follows the end of a live run, else that of the longer one. ``bounds`` is the window of the table when it
+    is not about the window on screen; None stands for all that both runs cover. Timelines are read on the UI
+    thread.
     """
 
     SCOPE = Scope.COMPARE
@@ -101,16 +100,8 @@ class CompareScreen(SizedScreen[None]):
         """What the terminal can show."""
         return self._charset
 
-    def ask(
-        self,
-        question: Screen[ScreenResultType],
-        take: ScreenResultCallbackType[ScreenResultType] | None,
-    ) -> None:
-        """Lay another screen over this one; ``take`` gets what it comes to."""
-        self.app.push_screen(question, take)
-
     def on_mount(self) -> None:
-        """Begin to draw, and say what cannot be trusted."""
+        """Start drawing, and warn of damaged or failed runs."""
         for number, side in enumerate(self._sides):
             lanes = self._lanes(number)
             lanes.charset, lanes.service, lanes.can_focus = self._charset, side.service, False
@@ -123,7 +114,7 @@ class CompareScreen(SizedScreen[None]):
     # drawing
 
     def draw(self) -> None:
-        """Show the moment that the playhead is at, if that or a run has changed."""
+        """Show the playhead's moment if it or a run has changed."""
         ends = tuple((side.timeline.end, side.alive()) for side in self._sides)
         now = (self.navigation.playhead, ends, self.layout_now)
         if self.layout_now is Layout.SMALL:
@@ -148,12 +139,12 @@ class CompareScreen(SizedScreen[None]):
         for number, side in enumerate(self._sides):
             self.query_one(f"#run{number}", HeadingLine).words = _about(number, side, at)
             lanes = self._lanes(number)
-            # Nothing is known of a run after its end, even if that came while a callback ran.
+            # Nothing is known of a run after its end, even of a callback that was still running.
             lanes.window, lanes.now = shown, min(at, side.timeline.end)
             lanes.timeline = side.timeline
 
     def _draw_table(self) -> None:
-        """Compare anew if there is something new, but never so often that the keys have to wait."""
+        """Start a new comparison if the window changed, but rarely enough to keep the keys responsive."""
         asked = self._common(self._asked)
         if asked == self._compared or self._comparing or monotonic() < self._rest_until:
             return
@@ -162,7 +153,7 @@ class CompareScreen(SizedScreen[None]):
         self.run_worker(self._compare(asked), group="comparison", exclusive=True)
 
     async def _compare(self, asked: Window) -> None:
-        """Compare bit by bit, here where timelines are read, and show what comes of it."""
+        """Compare in slices on the UI thread, which alone reads timelines, and show the result."""
         began = turn = monotonic()
         worked = 0.0
         work = self._figures(asked)
@@ -185,11 +176,11 @@ class CompareScreen(SizedScreen[None]):
         self._rest_until = monotonic() + _REST_FACTOR * (worked + monotonic() - turn)
 
     def _title(self, words: str) -> None:
-        """Say above the table what it is about."""
+        """Set the heading of the table."""
         self.query_one("#window", HeadingLine).words = (TextRun(f" {words} ", _STRONG),)
 
     def _forget_comparison(self) -> None:
-        """Begin anew: something else is asked for."""
+        """Discard the comparison, as another one is needed."""
         self.workers.cancel_group(self, "comparison")
         self._comparing = False
         self._compared = None
@@ -211,7 +202,7 @@ class CompareScreen(SizedScreen[None]):
 
     @property
     def _asked(self) -> Window:
-        """What the table is to be about, whether or not both runs have it."""
+        """The requested window of the table, which may exceed a run."""
         if not self._whole:
             return self.navigation.window
         return self._bounds or Window(0, max(side.timeline.end for side in self._sides))
@@ -222,7 +213,7 @@ class CompareScreen(SizedScreen[None]):
 
     @property
     def _end(self) -> Nanoseconds:
-        """Where the axis ends: with the run that goes on, else with the longer one."""
+        """The end of the axis: that of the running run, else that of the longer one."""
         going_on = [side.timeline.end for side in self._sides if side.alive()]
         return max(going_on or [side.timeline.end for side in self._sides])
 
@@ -232,7 +223,7 @@ class CompareScreen(SizedScreen[None]):
     # actions
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer what has a meaning now."""
+        """Offer the actions that are available now."""
         match action:
             case "deselect":
                 return self.bars.selection is not None
@@ -293,7 +284,7 @@ class CompareScreen(SizedScreen[None]):
 
 
 def _about(number: int, side: ComparedSide, at: Nanoseconds) -> tuple[TextRun, ...]:
-    """What the line above a run's lanes tells."""
+    """The line above a run's lanes."""
     timeline = side.timeline
     state = "goes on" if side.alive() else f"ends at {timestamp(timeline.end)}"
     told = [text for text in (executor_label(timeline), f"dropped {timeline.dropped(at)}", state) if text]
@@ -311,6 +302,6 @@ def _shorter(first: ComparedSide, second: ComparedSide) -> str:
 
 
 def _at_the_end_of(bounds: Window, end: Nanoseconds) -> Playhead:
-    """Where one looks at the bounds, in runs that go to ``end``."""
+    """The playhead that shows the bounds, in runs that go to ``end``."""
     span = next((span for span in SPANS if span >= bounds.length), SPANS[-1])
     return Playhead(span, start=bounds.start).moved_to(bounds.end, end)

@@ -1,4 +1,4 @@
-"""Reads and runs what is to be compared, tells how far that has come, and opens the comparison."""
+"""Loads two runs for a comparison, shows the progress, and opens the comparison."""
 
 from threading import Event
 from time import monotonic
@@ -28,16 +28,16 @@ from cbtui.screens.sized import SizedScreen
 from cbtui.widgets.key_bar import KeyBar
 
 _QUIET_TIME = 1.0
-"""Seconds in which nothing is said: most runs are there by then."""
+"""Seconds before progress is shown: most runs are loaded by then."""
 _PROGRESS_INTERVAL = 0.1
-"""Seconds between two messages on how far it has come."""
+"""Seconds between two progress messages."""
 _ENABLED_ACTIONS = {"leave", "help", "command_palette"}
 
 
 class ComparisonLoadingScreen(SizedScreen[None]):
-    """Gets two runs ready on a thread of its own.
+    """Loads two runs on a worker thread.
 
-    What cannot be compared is said; the console ends with exit code 2 when that is left.
+    If that fails the reason is shown, and leaving the screen ends the console with exit code 2.
     """
 
     SCOPE = Scope.COMPARE
@@ -45,21 +45,21 @@ class ComparisonLoadingScreen(SizedScreen[None]):
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.COMPARE)]
 
     class Progressed(Message):
-        """How far it has come."""
+        """Loading has progressed."""
 
         def __init__(self, progress: RunProgress) -> None:
             super().__init__()
             self.progress = progress
 
     class Ready(Message):
-        """Both runs are there."""
+        """Both runs are loaded."""
 
         def __init__(self, found: RunPair) -> None:
             super().__init__()
             self.found = found
 
     class GatheringFailed(Message):
-        """There is nothing to compare, for the reason in the sentence."""
+        """The runs cannot be compared; ``sentence`` says why."""
 
         def __init__(self, sentence: str) -> None:
             super().__init__()
@@ -89,11 +89,11 @@ class ComparisonLoadingScreen(SizedScreen[None]):
         self.run_worker(self._gather, thread=True)
 
     def on_unmount(self) -> None:
-        """End what still runs, whatever way the screen is left."""
+        """Abort loading when the screen is left."""
         self._given_up.set()
 
     def on_screen_resume(self) -> None:
-        """Open the comparison that came while another screen lay over this one."""
+        """Open a comparison that became ready while another screen covered this one."""
         self._open()
 
     # on the worker's thread
@@ -137,11 +137,11 @@ class ComparisonLoadingScreen(SizedScreen[None]):
             self.app.switch_screen(CompareScreen(found.first, found.second, self._charset, bounds))
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer nothing but the way out until there is something to look at."""
+        """Offer only leaving, help and palette while loading."""
         return action in _ENABLED_ACTIONS
 
     def action_leave(self) -> None:
-        """Give the comparison up."""
+        """Abort the comparison."""
         self._given_up.set()
         if self._failed:
             self.app.exit(return_code=2)
@@ -150,7 +150,7 @@ class ComparisonLoadingScreen(SizedScreen[None]):
 
 
 def progress_text(progress: RunProgress) -> str:
-    """How far a run has come, in words."""
+    """The progress of a run in words."""
     at = f"{progress.at / 1e9:.1f} s"
     of = "" if progress.until is None else f" of {progress.until / 1e9:g} s"
     return f"{progress.doing} {progress.name}: {at}{of}"

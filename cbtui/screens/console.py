@@ -1,4 +1,4 @@
-"""What screens ask of the console that shows them."""
+"""The interface of the app that screens use."""
 
 from typing import Any, Protocol, cast
 
@@ -11,12 +11,12 @@ from lessons.progress import Progress
 
 
 class Console(Protocol):
-    """The application, as far as its screens know it."""
+    """The app as its screens see it."""
 
     progress: Progress
-    """How far the learner has come."""
+    """The learner's progress."""
     observe: Observe
-    """Runs a lesson in the background, to tell which answers of its predictions are true."""
+    """Runs a lesson in the background, to find the true answers to its predictions."""
 
     def open_lesson(self, lesson: Lesson) -> None:
         """Run a lesson on screen, in place of another that may be open."""
@@ -32,7 +32,7 @@ class Console(Protocol):
         """
 
     def tell_saved(self, sentence: str) -> None:
-        """Say what was saved when a screen was left."""
+        """Report what was saved as a screen closed."""
 
 
 def console_of(screen: Screen[Any]) -> Console:

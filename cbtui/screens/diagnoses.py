@@ -1,22 +1,19 @@
-"""What the rules found in a run: what happened, why, what to do about it, and the way there."""
+"""The window with a run's diagnosis: what happened, why, what to do, and where."""
 
 from collections.abc import Sequence
-from typing import ClassVar
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import BindingType
-from textual.containers import Container, VerticalScroll
+from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
 from cbtui.keys.action import Scope
-from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import Keymap
 from cbtui.looks.theme import GLYPHS, Charset
 from cbtui.runs.live.findings import ExplainedFinding, problem_count_text
-from cbtui.screens.sized import SizedModal
+from cbtui.screens.window import WindowScreen
 from cbtui.text.cells import visible
 from cbtui.widgets.key_bar import KeyBar
 from sim.diagnosis import sentence, whereabouts
@@ -27,29 +24,24 @@ _ALL_IS_WELL = "✓ Nothing has gone wrong so far: the rules have found no probl
 _TIME = 10
 
 
-class DiagnosesScreen(SizedModal[ExplainedFinding]):
-    """Lists findings, problems first; gives the one to go to, None to stay."""
+class DiagnosesScreen(WindowScreen[ExplainedFinding]):
+    """Lists findings, problems first; its result is the finding to go to, None to stay."""
 
     SCOPE = Scope.DIAGNOSES
-    CSS_PATH = "window.tcss"
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.DIAGNOSES)]
 
     def __init__(self, findings: Sequence[ExplainedFinding], charset: Charset) -> None:
-        super().__init__()
+        super().__init__(charset)
         self._findings = findings
-        self._charset = charset
+        self.heading = title_of(findings)
 
-    def compose(self) -> ComposeResult:
+    def content(self) -> ComposeResult:
         """Lay out the list, and what there is to say of the highlighted one."""
-        with Container(classes="window") as window:
-            window.border_title = title_of(self._findings)
-            if self._findings:
-                yield FindingList(*(Option(row_of(each, self._charset)) for each in self._findings))
-                with VerticalScroll(can_focus=False):
-                    yield Static(classes="told")
-            else:
-                yield Static(_ALL_IS_WELL, classes="well", markup=False)
-            yield KeyBar(Scope.DIAGNOSES, self._charset)
+        if self._findings:
+            yield FindingList(*(Option(row_of(each, self._charset)) for each in self._findings))
+            with VerticalScroll(can_focus=False):
+                yield Static(classes="told")
+        else:
+            yield Static(_ALL_IS_WELL, classes="well", markup=False)
 
     def on_mount(self) -> None:
         """Highlight the worst."""
@@ -57,7 +49,7 @@ class DiagnosesScreen(SizedModal[ExplainedFinding]):
             listed.highlighted = 0
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer to go where there is something to go to."""
+        """Offer ``go`` if the finding has a moment or a place in the code."""
         match action:
             case "previous" | "next":
                 return len(self._findings) > 1
@@ -83,10 +75,6 @@ class DiagnosesScreen(SizedModal[ExplainedFinding]):
         """Go to what is highlighted."""
         self.dismiss(self._chosen)
 
-    def action_close(self) -> None:
-        """Stay where the person is."""
-        self.dismiss(None)
-
     @property
     def _chosen(self) -> ExplainedFinding | None:
         place = next((listed.highlighted for listed in self.query(FindingList)), None)
@@ -94,11 +82,11 @@ class DiagnosesScreen(SizedModal[ExplainedFinding]):
 
 
 class FindingList(OptionList, inherit_bindings=False):
-    """The findings, a line each; the screen's keys move the highlight, a click does."""
+    """The list of findings; its highlight is moved by the screen's keys and by clicks."""
 
 
 def title_of(findings: Sequence[ExplainedFinding]) -> str:
-    """Return how many there are of what: ``Diagnoses: 2 problems, 1 remark``."""
+    """Return the heading: ``Diagnoses: 2 problems, 1 remark``."""
     problems = sum(each.is_problem for each in findings)
     counts = ((problems, "problem"), (len(findings) - problems, "remark"))
     words = [counted(count, name) for count, name in counts if count]

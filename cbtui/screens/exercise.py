@@ -1,4 +1,4 @@
-"""An exercise on screen: the learner's file is run and judged by its checks, anew whenever it is saved."""
+"""The exercise screen: the learner's file is run and judged each time it is saved."""
 
 import asyncio
 from collections.abc import Iterator, Mapping, Sequence
@@ -35,13 +35,13 @@ from cbtui.widgets.diagnosis import Diagnosis, DiagnosisLevel
 from lessons.lesson import Lesson
 
 _BUDGET_INTERVAL = 0.2
-"""Seconds after which it is looked whether a run has taken too much."""
+"""Seconds between two checks of a run's budget."""
 
 
 class ExerciseScreen(RunScreen[LiveRun]):
-    """Shows the run of a learner's file that a lesson's checks are about, and what came of them.
+    """Shows the judged run of a learner's file, and the results of its checks.
 
-    The run gets what the lesson says and nothing from the person: what is on the lanes is what was judged.
+    The run gets only the lesson's inputs, so that the lanes show exactly what was judged.
     """
 
     CSS_PATH: ClassVar[list[Path]] = [  # type: ignore[assignment]  # a list is as good as one path
@@ -53,7 +53,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
     AUTO_FOCUS = f"#{CHECKS}"
 
     class Saved(Message):
-        """The file holds ``content``, maybe another than before; None: it is gone."""
+        """The file was read; ``content`` may be unchanged, None if the file is missing."""
 
         def __init__(self, content: bytes | None) -> None:
             super().__init__()
@@ -67,7 +67,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
         open_session: OpenSession,
         charset: Charset,
     ) -> None:
-        """Make ready to run a file for a lesson's exercise.
+        """Prepare the first run of the learner's file.
 
         Raises:
             BadLesson: its checks cannot be read.
@@ -84,8 +84,10 @@ class ExerciseScreen(RunScreen[LiveRun]):
             lesson,
             lambda standing: page_of_exercise(lesson, standing, signs(), self._task_in_words),
         )
-        self.restarts = Restarts(self, runs, Changes(), self.begun_anew, speed=lambda: None, at_any_time=True)
-        self.put_together(
+        self.restarts = Restarts(
+            self, runs, Changes(), self.show_new_run, speed=lambda: None, at_any_time=True
+        )
+        self.add_parts(
             PaceKeys(self, runs),
             RecordingKey(self, runs, self.finisher),
             self.restarts,
@@ -113,7 +115,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
 
     @property
     def is_judged(self) -> bool:
-        """Whether it is known what came of the run on screen."""
+        """Whether the run on screen has been judged."""
         return self._judging.sheet is not None
 
     def _make_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
@@ -125,7 +127,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
     # what is shown
 
     def compose_panes(self) -> Iterator[Widget]:
-        """Yield the panes, the checks first: where there is room for all, they come before the code."""
+        """Yield the panes, the checks first: in the grid they stand before the code."""
         yield ChecksView(self._sheet, id=CHECKS)
         yield from super().compose_panes()
 
@@ -146,7 +148,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
         return self._learning.page()
 
     def diagnosis(self) -> Diagnosis:
-        """Return what to say of the moment on screen; of a run that is over, what came of it."""
+        """Return the diagnosis of the moment on screen, or the result of a finished run."""
         if self.navigation.playhead.at is not None or self.runs.run.alive:
             return super().diagnosis()
         sheet = self._sheet
@@ -166,7 +168,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
 
     @property
     def _task_in_words(self) -> str:
-        """The task, with the registry's keys: the guide shows those in force."""
+        """The task with the registry's keys, which the guide replaces by those in force."""
         return self._words_in(STANDARD, Charset.ASCII).page(self._judging.file)
 
     @property
@@ -186,17 +188,17 @@ class ExerciseScreen(RunScreen[LiveRun]):
             self._come_to_an_end(ended_run(self.runs.timeline, self._judging.file.name, message.trouble))
 
     def allow(self, budget: RunBudget) -> None:
-        """Let the run on screen take this much."""
+        """Replace the budget of the run on screen."""
         self._judging.budget = budget
 
     def look_at_budget(self) -> None:
-        """End the run if it has taken too much."""
+        """Abort the run if it exceeds its budget."""
         sentence = self._judging.spent(self.runs.run)
         if sentence is not None:
             self._break_off(sentence)
 
     def _break_off(self, sentence: str) -> None:
-        """End a run that has taken too much; what its engine still sends no longer counts."""
+        """Abort a run; further events of its engine are ignored."""
         self.runs.disown()
         run = self.runs.run
         self.finisher.finish(run.over(sentence))
@@ -214,7 +216,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
         self.look_for_findings()
         if checked.good:
             self._learning.store.passes(self._learning.lesson.id)
-            await self._learning.learnt()
+            await self._learning.update_page()
 
     # the file
 
@@ -234,5 +236,5 @@ class ExerciseScreen(RunScreen[LiveRun]):
             self.redraw()
 
     async def action_watch(self) -> None:
-        """Run the file again at the pace of real time."""
+        """Run the file again at real-time speed."""
         await self.restarts.start(Changes(), speed=1.0)

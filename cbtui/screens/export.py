@@ -1,26 +1,22 @@
-"""Asks in which format a run is to be exported."""
+"""The window that asks for an export format."""
 
-from typing import ClassVar, NamedTuple
+from typing import NamedTuple
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import BindingType
-from textual.containers import Container
 from textual.content import Content
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
 from cbtui.keys.action import Scope
-from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import keymap_of
 from cbtui.looks.theme import Charset
-from cbtui.screens.sized import SizedModal
-from cbtui.widgets.key_bar import KeyBar
+from cbtui.screens.window import WindowScreen
 from cbtui.widgets.pageable_option_list import PageableOptionList
 
 
 class ExportChoice(NamedTuple):
-    """A format of ``exporting.FORMATS``, and whether it is to be of the stretch on screen only."""
+    """A format of ``exporting.FORMATS``, for the window on screen or for the whole run."""
 
     form: str
     on_screen: bool = False
@@ -34,27 +30,22 @@ CHOICES = {
     "perfetto": (ExportChoice("perfetto"), "Perfetto", "a trace for ui.perfetto.dev"),
     "chrome": (ExportChoice("chrome"), "Chrome", "a trace for chrome://tracing and Speedscope"),
 }
-"""What can be chosen, by the names that the registry's actions have, with a name and a meaning."""
+"""The choices by their names in the registry's actions, with a title and a description."""
 
 
-class ExportScreen(SizedModal[ExportChoice]):
-    """Gives what was chosen; None if the person thinks better of it."""
+class ExportScreen(WindowScreen[ExportChoice]):
+    """Its result is the choice; None if it was closed."""
 
     SCOPE = Scope.EXPORT
-    CSS_PATH = "window.tcss"
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.EXPORT)]
+    heading = "Export"
 
     def __init__(self, charset: Charset) -> None:
-        super().__init__()
-        self._charset = charset
+        super().__init__(charset)
 
-    def compose(self) -> ComposeResult:
+    def content(self) -> ComposeResult:
         """Lay out the question."""
-        with Container(classes="window") as window:
-            window.border_title = "Export"
-            yield Static("What is to be made of the run so far?\nThe file comes into the current folder.")
-            yield PageableOptionList(*(self._option(name) for name in CHOICES))
-            yield KeyBar(Scope.EXPORT, self._charset)
+        yield Static("What is to be made of the run so far?\nThe file comes into the current folder.")
+        yield PageableOptionList(*(self._option(name) for name in CHOICES))
 
     def on_mount(self) -> None:
         """Highlight the first."""
@@ -67,10 +58,6 @@ class ExportScreen(SizedModal[ExportChoice]):
     def action_choose(self, name: str) -> None:
         """Take one."""
         self.dismiss(CHOICES[name][0])
-
-    def action_close(self) -> None:
-        """Export nothing."""
-        self.dismiss(None)
 
     def _option(self, name: str) -> Option:
         key = keymap_of(self.app).sign(Scope.EXPORT, f"choose({name!r})", self._charset)

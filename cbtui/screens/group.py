@@ -1,28 +1,22 @@
-"""Asks which callback group a callback is to be in."""
-
-from typing import ClassVar
+"""The window that asks for a callback's group."""
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import BindingType
-from textual.containers import Container
 from textual.content import Content
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
 from cbtui.keys.action import Scope
-from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import keymap_of
 from cbtui.looks.theme import Charset
 from cbtui.runs.setup.changeable import ChangeableCallback
 from cbtui.runs.setup.changes import GROUP_CHOICES
 from cbtui.runs.setup.equivalent_code import code_of_group
-from cbtui.screens.sized import SizedModal
-from cbtui.widgets.key_bar import KeyBar
+from cbtui.screens.window import WindowScreen
 from cbtui.widgets.pageable_option_list import PageableOptionList
 
 UNCHANGED = ""
-"""What the screen gives for the group that the program says."""
+"""The result for the program's own group."""
 
 _MEANINGS = {
     "own": "an exclusive group that nobody else can hold",
@@ -33,33 +27,28 @@ _MEANINGS = {
 }
 
 
-class GroupScreen(SizedModal[str]):
-    """Gives one of ``GROUP_CHOICES``, or ``UNCHANGED``; None if the person thinks better of it."""
+class GroupScreen(WindowScreen[str]):
+    """Its result is one of ``GROUP_CHOICES``, or ``UNCHANGED``; None if it was closed."""
 
     SCOPE = Scope.GROUP
-    CSS_PATH = "window.tcss"
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.GROUP)]
+    heading = "Callback group"
 
     def __init__(self, callback: ChangeableCallback, chosen: str | None, charset: Charset) -> None:
-        super().__init__()
+        super().__init__(charset)
         self._callback = callback
         self._choices = (*GROUP_CHOICES, UNCHANGED)
         self._chosen = chosen or UNCHANGED
-        self._charset = charset
 
-    def compose(self) -> ComposeResult:
+    def content(self) -> ComposeResult:
         """Lay out the question."""
-        with Container(classes="window") as window:
-            window.border_title = "Callback group"
-            now = f"In this run: group {self._callback.group}."
-            question = f"Which callback group does {self._callback.name} get?"
-            yield Static(f"{question} The run starts again.\n{now}", markup=False)
-            yield PageableOptionList(*(self._option(choice) for choice in self._choices))
-            yield Static(classes="code")
-            yield KeyBar(Scope.GROUP, self._charset)
+        now = f"In this run: group {self._callback.group}."
+        question = f"Which callback group does {self._callback.name} get?"
+        yield Static(f"{question} The run starts again.\n{now}", markup=False)
+        yield PageableOptionList(*(self._option(choice) for choice in self._choices))
+        yield Static(classes="code")
 
     def on_mount(self) -> None:
-        """Highlight what is in force."""
+        """Highlight the current choice."""
         self.query_one(OptionList).highlighted = self._choices.index(self._chosen)
 
     @on(OptionList.OptionHighlighted)
@@ -78,10 +67,6 @@ class GroupScreen(SizedModal[str]):
     def action_choose(self, choice: str) -> None:
         """Take a group."""
         self.dismiss(choice)
-
-    def action_close(self) -> None:
-        """Leave everything as it is."""
-        self.dismiss(None)
 
     def _option(self, choice: str) -> Option:
         name = choice or "the program's"

@@ -1,4 +1,4 @@
-"""Which of the layouts a terminal has room for."""
+"""The layout of a screen by the terminal's size."""
 
 from enum import StrEnum
 
@@ -12,7 +12,7 @@ GRID_FROM = Size(120, 34)
 
 
 class Layout(StrEnum):
-    """How a screen is laid out; the value is the style class that says so."""
+    """A screen's layout; the value is its style class."""
 
     SMALL = "-small"
     TABBED = "-tabbed"

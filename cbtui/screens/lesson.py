@@ -1,4 +1,4 @@
-"""A lesson, or a program of one's own, on screen: it is commanded, changed, predicted and explained."""
+"""The screen of a lesson or of the user's own program."""
 
 from collections.abc import Iterator, Mapping
 
@@ -27,9 +27,9 @@ from sim.engine.setup import Keyboard
 
 
 class LessonScreen(RunScreen[LiveRun]):
-    """Runs a program, and lets the person do to it whatever an engine can do.
+    """Runs a program with all commands of an engine.
 
-    Where the program is a lesson's, it is predicted before the run and explained after it.
+    A lesson asks for predictions before its run and explains them after it.
     """
 
     def __init__(
@@ -43,14 +43,14 @@ class LessonScreen(RunScreen[LiveRun]):
         runs = RunController(self._make_run, self.post)
         super().__init__(subject, charset, runs, live=lambda: runs.run)
         self.restarts = Restarts(
-            self, runs, changes or Changes(), self.begun_anew, speed=lambda: runs.run.speed
+            self, runs, changes or Changes(), self.show_new_run, speed=lambda: runs.run.speed
         )
         self._learning: Learning | None = None
         self._predictions: Predictions | None = None
         lesson, more = subject.lesson, {}
         if lesson is not None and lesson.exercise is not None:
             more["exercise"] = lambda: self.console.open_exercise(lesson)
-        self.put_together(
+        self.add_parts(
             PaceKeys(self, runs),
             RecordingKey(self, runs, self.finisher),
             WorldKeys(runs),
@@ -80,7 +80,7 @@ class LessonScreen(RunScreen[LiveRun]):
 
     @property
     def changes(self) -> Changes:
-        """What the run has other than its program says."""
+        """The user's changes to the program's set-up."""
         return self.restarts.changes
 
     @property
@@ -89,7 +89,7 @@ class LessonScreen(RunScreen[LiveRun]):
         return self.runs.run.recording
 
     def page(self) -> Mapping[str, str]:
-        """Return the parts of the guide that can be read now."""
+        """Return the unlocked sections of the guide."""
         return super().page() if self._learning is None else self._learning.page()
 
     def _make_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
@@ -101,7 +101,7 @@ class LessonScreen(RunScreen[LiveRun]):
     # the lesson
 
     def start(self) -> None:
-        """Let time begin when the questions are done with: those are about the node as it is written."""
+        """Start after the predictions, which are about the unchanged node."""
         predictions = self._predictions
         if predictions is not None and predictions.can_predict and not self.changes.words:
             predictions.ask(self._start_after)
@@ -111,14 +111,14 @@ class LessonScreen(RunScreen[LiveRun]):
     async def _start_after(self, way: PredictionExit | None) -> None:
         learning = self._learning
         if way is PredictionExit.ON and learning is not None:
-            await learning.learnt()
+            await learning.update_page()
             learning.guide.go_to(PageSection.TASK)
             super().start()
         else:
             self.action_leave()
 
     def drawn(self) -> None:
-        """Unlock what comes after the run when enough of it was seen."""
+        """Unlock the explanation once enough of the run was watched."""
         if self._predictions is not None:
             self._predictions.look_whether_watched()
 

@@ -1,4 +1,4 @@
-"""The menu: the lessons by unit and what was opened lately, and what the highlighted one is about."""
+"""The menu: lessons by unit, recent files, and a description of the highlighted entry."""
 
 import asyncio
 from collections.abc import Callable, Sequence
@@ -40,9 +40,9 @@ if TYPE_CHECKING:
     from cbtui.engines.session import OpenSession
 
 _HOVER_DELAY = 0.3
-"""Seconds that the highlight has to rest on a lesson before it is run for its picture."""
+"""Seconds that a lesson must stay highlighted before its preview is run."""
 _EXIT_TIMEOUT = 1.0
-"""Seconds that the console waits at its end for an engine that draws; it is killed before."""
+"""Seconds to wait at exit for the engine of a preview, which is killed sooner."""
 _CALLED = " and ".join(f"{at / 1e9:g}" for at in CALLS)
 _TITLE = f"first {LENGTH / 1e9:g} s, {{key}} pressed at {_CALLED} s"
 _NO_PICTURE = "no picture"
@@ -50,17 +50,16 @@ _WAIT = f"Rest on a lesson, and {LENGTH / 1e9:g} s of it are run and drawn here.
 
 
 class MenuScreen(SizedScreen[None]):
-    """Where the console begins and every lesson comes back to.
+    """The first screen, to which every lesson returns.
 
-    The lesson on which the highlight rests is run once for its picture, one at a time and only while the menu
-    is on top.
+    The highlighted lesson is run once for its preview: one engine at a time, only while the menu is active.
     """
 
     SCOPE = Scope.MENU
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.MENU)]
 
     class Drawn(Message):
-        """A lesson's short run is over: ``subject`` is what to draw, a sentence, or None if given up."""
+        """A preview run has ended; ``subject`` is its picture, a sentence, or None if aborted."""
 
         def __init__(self, lesson: Lesson, subject: PreviewPicture | str | None) -> None:
             super().__init__()
@@ -99,11 +98,11 @@ class MenuScreen(SizedScreen[None]):
         yield KeyBar(Scope.MENU, self._charset)
 
     def on_mount(self) -> None:
-        """Let the list have the keys."""
+        """Focus the list."""
         self._list.focus()
 
     def on_screen_resume(self) -> None:
-        """Show what was opened and learnt meanwhile, here and in other consoles, and draw again."""
+        """Refresh recent entries and progress, which other consoles may have changed."""
         self._progress.refresh()
         if self._filled_with == self._contents:
             self._describe()
@@ -111,13 +110,13 @@ class MenuScreen(SizedScreen[None]):
             self._fill()
 
     def on_screen_suspend(self) -> None:
-        """End the engine that draws: another one may start now."""
+        """Abort the preview, as another engine may start now."""
         if self._rest is not None:
             self._rest.stop()
         self._give_up()
 
     async def on_unmount(self) -> None:
-        """Leave no engine behind."""
+        """Wait for the preview's engine to end."""
         if self._run is not None:
             self._run.give_up()
             await asyncio.to_thread(self._run.wait, _EXIT_TIMEOUT)
@@ -131,12 +130,12 @@ class MenuScreen(SizedScreen[None]):
 
     @property
     def _contents(self) -> object:
-        """What the list depends on beside the search."""
+        """Everything that the list depends on except the search."""
         return self.layout_now, self._recents.entries, self._stages
 
     @property
     def _stages(self) -> dict[str, Stage]:
-        """How far the learner is in each lesson, by its id."""
+        """The stage of each lesson by its id."""
         opened = self._recents.lessons
         return {
             lesson.id: stage_of(lesson, self._progress.of(lesson.id), opened=lesson.id in opened)
@@ -157,7 +156,7 @@ class MenuScreen(SizedScreen[None]):
             self.notify(sentence, severity="warning", markup=False)
 
     def _describe(self) -> None:
-        """Tell about what is highlighted, and draw it, if it is a lesson, when it stays so."""
+        """Describe the highlighted entry, and start its preview after a delay."""
         chosen = self._list.chosen
         about = self.query_one(DescriptionPane)
         about.description = self._description
@@ -199,7 +198,7 @@ class MenuScreen(SizedScreen[None]):
     # the picture
 
     def _draw(self) -> None:
-        """Run the highlighted lesson for its picture; another one that is being run is given up first."""
+        """Start the preview of the highlighted lesson, after aborting another one."""
         chosen = self._list.chosen
         if not isinstance(chosen, Lesson) or chosen.id in self._subjects or not self.is_active:
             return
@@ -211,7 +210,7 @@ class MenuScreen(SizedScreen[None]):
         self.run_worker(lambda: self._draw_with(run, chosen), thread=True)
 
     def _draw_with(self, run: PreviewRun, lesson: Lesson) -> None:
-        """Run a lesson, on a thread of its own."""
+        """Run a preview, on a worker thread."""
         subject: PreviewPicture | str | None
         try:
             timeline = run.run()
@@ -274,18 +273,18 @@ class MenuScreen(SizedScreen[None]):
         self._fill()
 
     def on_descendant_focus(self, event: DescendantFocus) -> None:
-        """Show the keys of what is typed in."""
+        """Show the keys of the widget with the focus."""
         self.query_one(KeyBar).show(Scope.SEARCH if isinstance(event.widget, MenuSearch) else Scope.MENU)
 
     def on_descendant_blur(self, event: DescendantBlur) -> None:
-        """Have no search that looks for nothing."""
+        """Remove an empty search line."""
         if isinstance(event.widget, MenuSearch) and not self._words:
             self.query(MenuSearch).remove()
 
     # the keys
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer what has a meaning for what is highlighted, and the numbers of lessons that exist."""
+        """Offer the actions of the highlighted entry, and the numbers of existing lessons."""
         match action:
             case "open_number":
                 return any(lesson.number == parameters[0] for lesson in self._lessons)

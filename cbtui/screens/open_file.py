@@ -1,57 +1,49 @@
-"""Asks for a program or a recording of the person's own."""
+"""The window that asks for a program or a recording to open."""
 
 from time import time
 from typing import ClassVar
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import BindingType
-from textual.containers import Container
 from textual.widgets import Input, Static
 
 from cbtui.keys.action import Scope
-from cbtui.keys.bindings import bindings_of
 from cbtui.looks.theme import Charset
 from cbtui.runs.setup.own_files import CannotOpenError, completed, entry_for
 from cbtui.screens.console import console_of
-from cbtui.screens.sized import SizedModal
+from cbtui.screens.window import WindowScreen
 from cbtui.text.cells import visible
-from cbtui.widgets.key_bar import KeyBar
 
 _MOST_NAMES = 24
-"""Names that are listed at most."""
+"""The most names that are listed."""
 
 
 class PathInput(Input):
-    """Where the path is typed; tab is the screen's."""
+    """The input of the path; tab is left to the screen."""
 
     def __init__(self) -> None:
         super().__init__(placeholder="my_node.py", compact=True, select_on_focus=False)
 
 
-class OpenFileScreen(SizedModal[None]):
-    """Opens the file in its own place; what cannot be opened is said, and the path stays to be mended."""
+class OpenFileScreen(WindowScreen[None]):
+    """Opens a file in place of itself; on failure it shows why and stays open."""
 
     SCOPE = Scope.OPENING
+    heading = "Open a file of your own"
     CSS_PATH: ClassVar = ["window.tcss", "open_file.tcss"]
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.OPENING)]
 
     def __init__(self, charset: Charset) -> None:
-        super().__init__()
-        self._charset = charset
+        super().__init__(charset)
 
-    def compose(self) -> ComposeResult:
+    def content(self) -> ComposeResult:
         """Lay out the question."""
-        with Container(classes="window") as window:
-            window.border_title = "Open a file of your own"
-            yield Static(
-                "A program is run: a node (.py) or a launch file. "
-                "A recording (.mcap) is shown, and nothing in it is run.",
-                markup=False,
-            )
-            yield PathInput()
-            yield Static(id="said", markup=False)
-            yield KeyBar(Scope.OPENING, self._charset)
+        yield Static(
+            "A program is run: a node (.py) or a launch file. "
+            "A recording (.mcap) is shown, and nothing in it is run.",
+            markup=False,
+        )
+        yield PathInput()
+        yield Static(id="said", markup=False)
 
     def action_go(self) -> None:
         """Open what was typed."""
@@ -70,10 +62,6 @@ class OpenFileScreen(SizedModal[None]):
         self._say("  ".join([*shown, more]) if len(names) != 1 else "", wrong=not names)
         if not names:
             self._say("No folder, program or recording begins like that.", wrong=True)
-
-    def action_close(self) -> None:
-        """Open nothing."""
-        self.dismiss()
 
     @on(Input.Submitted)
     def _submit(self, event: Input.Submitted) -> None:

@@ -1,37 +1,34 @@
-"""Asks before a run what the learner expects of it."""
+"""The window that asks for predictions before a run."""
 
 from collections.abc import Callable
 from enum import Enum, auto
-from typing import ClassVar
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import BindingType
-from textual.containers import Container, VerticalScroll
+from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
 from cbtui.keys.action import Scope
-from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import keymap_of
 from cbtui.keys.named_keys import with_keys_in_force
 from cbtui.looks.theme import Charset
-from cbtui.screens.sized import SizedModal
+from cbtui.screens.window import WindowScreen
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.prose import Prose
 from lessons.description import Prediction
 
 
 class PredictionExit(Enum):
-    """Where a person wants to go from the questions."""
+    """How the window was left."""
 
     ON = auto()
     """To the run, with or without answers."""
     BACK = auto()
 
 
-class PredictionScreen(SizedModal[PredictionExit]):
+class PredictionScreen(WindowScreen[PredictionExit]):
     """Asks the questions that are not answered yet, one after the other.
 
     ``answered`` is how many are; ``answer`` takes the place of a question and that of its answer at the
@@ -39,8 +36,6 @@ class PredictionScreen(SizedModal[PredictionExit]):
     """
 
     SCOPE = Scope.PREDICTION
-    CSS_PATH = "window.tcss"
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.PREDICTION)]
 
     def __init__(
         self,
@@ -50,29 +45,25 @@ class PredictionScreen(SizedModal[PredictionExit]):
         answer: Callable[[int, int], None],
         charset: Charset,
     ) -> None:
-        super().__init__()
+        super().__init__(charset)
         self._introduction = introduction
         self._predictions = predictions
         self._place = answered
         self._answer = answer
-        self._charset = charset
 
-    def compose(self) -> ComposeResult:
+    def content(self) -> ComposeResult:
         """Lay out what the lesson is about, the question, and the answers to choose from."""
-        with Container(classes="window") as window:
-            window.border_subtitle = "a given answer stays"
-            with VerticalScroll(can_focus=False):
-                yield Prose(with_keys_in_force(self._introduction, keymap_of(self.app)))
-            yield Static(classes="question", markup=False)
-            yield Answers()
-            yield KeyBar(Scope.PREDICTION, self._charset)
+        with VerticalScroll(can_focus=False):
+            yield Prose(with_keys_in_force(self._introduction, keymap_of(self.app)))
+        yield Static(classes="question", markup=False)
+        yield Answers()
 
     def on_mount(self) -> None:
         """Ask the first question."""
         self._ask()
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer the answers that there are, and to take one when one is highlighted."""
+        """Offer the numbers of existing answers, and ``take`` once one is highlighted."""
         match action:
             case "choose":
                 place = parameters[0]
@@ -88,7 +79,8 @@ class PredictionScreen(SizedModal[PredictionExit]):
     def _ask(self) -> None:
         several = len(self._predictions) > 1
         number = f" ({self._place + 1} of {len(self._predictions)})" if several else ""
-        self.query_one(".window").border_title = f"What do you expect?{number}"
+        window = self.query_one(".window")
+        window.border_title, window.border_subtitle = f"What do you expect?{number}", "a given answer stays"
         self.query_one(".question", Static).update(self._prediction.question)
         answers = self.query_one(Answers)
         answers.set_options(
@@ -109,7 +101,7 @@ class PredictionScreen(SizedModal[PredictionExit]):
 
     @on(OptionList.OptionSelected)
     def _highlight_clicked(self, event: OptionList.OptionSelected) -> None:
-        """Let a click choose, and no more."""
+        """Highlight a clicked answer without giving it."""
         self.query_one(Answers).highlighted = event.option_index
 
     def action_choose(self, number: int) -> None:
@@ -154,4 +146,4 @@ class PredictionScreen(SizedModal[PredictionExit]):
 
 
 class Answers(OptionList, inherit_bindings=False):
-    """The answers; the screen's keys move the highlight, a click does."""
+    """The list of answers; its highlight is moved by the screen's keys and by clicks."""

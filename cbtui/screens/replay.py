@@ -1,4 +1,4 @@
-"""A recording on screen: a run that is over, and a moment of it that can be played."""
+"""The screen of a recording, which can be played."""
 
 from collections.abc import Callable
 from time import monotonic_ns
@@ -17,7 +17,7 @@ from sim.recording import Recording
 
 
 class Playback(PaceKeys):
-    """Moves the cursor through a recording, at the speed that was chosen for it.
+    """Plays a recording by moving the cursor at the chosen speed.
 
     ``clock`` tells real time in nanoseconds.
     """
@@ -36,14 +36,14 @@ class Playback(PaceKeys):
         self._played_at = 0
 
     def action_resume(self) -> None:
-        """Play from the moment on screen; from the beginning, if that is the end."""
+        """Play from the cursor, or from the beginning if the cursor is at the end."""
         if self._navigation.playhead.at is None:
             self._navigation.seek(0)
         self._played_at = self._clock()
         super().action_resume()
 
     def play(self) -> bool:
-        """Go to the moment that playing has come to by now, and tell whether it goes on."""
+        """Advance the cursor by the time since the last call; returns whether it is being played."""
         run = self._recorded.run
         if run.paused:
             return False
@@ -54,7 +54,7 @@ class Playback(PaceKeys):
 
 
 class ReplayScreen(RunScreen[RecordedRun]):
-    """Shows a recording: as far as it has been read at once, the rest while it is being read."""
+    """Shows a recording while it is being read."""
 
     def __init__(self, recording: Recording, charset: Charset) -> None:
         recorded = setup_of(recording.about)
@@ -66,7 +66,7 @@ class ReplayScreen(RunScreen[RecordedRun]):
         )
         super().__init__(subject, charset, runs)
         self._playback = Playback(self, runs, self.navigation, monotonic_ns)
-        self.put_together(self._playback)
+        self.add_parts(self._playback)
         runs.begin(speed=None)
 
     @property
@@ -76,14 +76,14 @@ class ReplayScreen(RunScreen[RecordedRun]):
 
     @property
     def changes(self) -> Changes:
-        """What the recorded run had other than its program says."""
+        """The changes that were made to the recorded program's set-up."""
         return self._changes
 
     def on_mount(self) -> None:
-        """Start the clock that plays."""
+        """Start the playback timer."""
         self.set_interval(1 / FRAMES_A_SECOND, self.play)
 
     def play(self) -> None:
-        """Show the moment that playing has come to by now."""
+        """Show the current moment of playback."""
         if self._playback.play():
             self.go_on()

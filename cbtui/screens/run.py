@@ -1,4 +1,4 @@
-"""A run on screen: on lanes, in panes, the moment in words, and the keys that every run has."""
+"""The base of screens with a run: lanes, panes, the moment in words, and common keys."""
 
 import asyncio
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -11,7 +11,6 @@ from textual.binding import BindingType
 from textual.containers import Container
 from textual.events import DescendantFocus
 from textual.message import Message
-from textual.screen import Screen, ScreenResultCallbackType, ScreenResultType
 from textual.widget import Widget
 
 from cbtui.keys.action import PANES, Scope
@@ -56,19 +55,18 @@ from cbtui.widgets.status_line import StatusLine, status_of
 from cbtui.widgets.tabs import Tabs, title_of
 
 _TEXTS = (CodeView, LogView)
-"""Panes that are lines of text."""
+"""Panes that show lines of text."""
 
 _DISK = 1.0
-"""Seconds after which the source's file is looked at again."""
+"""Seconds between two checks whether the source file has changed."""
 
 
 class RunScreen(SizedScreen[None], Generic[RunT_co]):
-    """Shows a run: everything on it is a function of the run's timeline and of a moment.
+    """Shows a run as a function of its timeline and a moment.
 
-    A timer draws what there is new. However fast a run is, the lanes are drawn ``FRAMES_A_SECOND`` times at
-    most, the other panes less often; what the person does is seen on all of them in the next frame. ``live``
-    gives the run as long as an engine may make more of it. What a screen's own parts are, its class says in
-    ``put_together``; it begins the first run.
+    A timer draws what is new: the lanes at most ``FRAMES_A_SECOND`` times a second, the other panes less
+    often; the effect of a key is drawn everywhere in the next frame. ``live`` returns the run if it has an
+    engine. A subclass adds its own parts with ``add_parts`` and begins the first run.
     """
 
     SCOPE = Scope.LESSON
@@ -104,8 +102,8 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         self._exports = Exports(self, runs, self.navigation, self.finisher)
         self._copy = DetailsCopy(self, self, runs, self.navigation, subject.heading)
 
-    def put_together(self, *parts: ScreenPart, **more: Callable[[], object]) -> None:
-        """Add a screen's own parts, and actions by their ids, to those that every run's screen has."""
+    def add_parts(self, *parts: ScreenPart, **more: Callable[[], object]) -> None:
+        """Add a screen's own parts, and actions by their ids, to the common ones."""
         following = self.subject.following
         if following is not None:
             more["next_lesson"] = lambda: self.console.open_lesson(following)
@@ -114,10 +112,10 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         self._keys = OfferedKeys(self, self._parts, self._charset)
 
     def post(self, message: Message) -> None:
-        """Bring a message from any thread to the screen's; a screen that is closing lets it drop."""
+        """Post a message from any thread; a closing screen drops it."""
         self.post_message(message)
 
-    # what parts ask of their screen
+    # the interface for parts
 
     @property
     def charset(self) -> Charset:
@@ -129,14 +127,6 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         """The app."""
         return console_of(self)
 
-    def ask(
-        self,
-        question: Screen[ScreenResultType],
-        take: ScreenResultCallbackType[ScreenResultType] | None,
-    ) -> None:
-        """Lay another screen over this one; ``take`` gets what it comes to."""
-        self.app.push_screen(question, take)
-
     def tell(self, sentence: str | None) -> None:
         """Show a sentence for a few seconds; nothing for None."""
         if sentence is not None:
@@ -147,44 +137,44 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         return keymap_of(self.app).sign(Scope.LESSON, action, self._charset)
 
     def redraw(self) -> None:
-        """Draw everything soon, at once if that was not just done."""
+        """Draw everything in the next frame, or at once if none was just drawn."""
         self._frames.invalidate()
         if self.is_running:
             self.call_next(self._draw_at_once)
 
     def go_on(self) -> None:
-        """Draw soon what has gone on by itself."""
+        """Note that the run has grown, which the next frames draw."""
         self._frames.grow()
 
     # what differs from screen to screen
 
     @property
     def changes(self) -> Changes:
-        """What the run has other than its program says."""
+        """The changes to the program's set-up."""
         return Changes()
 
     @property
     def recording(self) -> LiveRecording | None:
-        """What records the run, where it can be recorded."""
+        """The recording of the run, if it can be recorded."""
         return None
 
     def page(self) -> Mapping[str, str]:
-        """Return the parts of the guide that can be read now."""
+        """Return the unlocked sections of the guide."""
         return {"guide": self.subject.guide}
 
     def drawn(self) -> None:
-        """Do what comes when more of the run has been shown."""
+        """Hook that is called after each drawing."""
 
     def diagnosis(self) -> Diagnosis:
-        """Return what to say of the moment on screen."""
+        """Return the diagnosis of the moment on screen."""
         runs = self.runs
         return diagnosis_on_screen(runs.run, self.navigation.playhead, runs.concurrency, keymap_of(self.app))
 
-    def begun_anew(self) -> None:
-        """Show another run from its beginning, which is not started yet."""
+    def show_new_run(self) -> None:
+        """Show another run from its beginning, before it is started."""
         self.navigation.action_live()
         self.query_one(Lanes).changes = self.changes.words
-        self.panes.entitle()
+        self.panes.update_titles()
         self.bars.select(None)
         self.query_one(CodeView).read_anew()
 
@@ -230,10 +220,10 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         for name in self.PANES_HERE:
             pane = self.panes.pane(name)
             if isinstance(pane, CodeView | LogView | ChecksView):
-                self.watch(pane, "note", self.panes.entitle)
+                self.watch(pane, "note", self.panes.update_titles)
         for lines in (*self.query(CodeView), *self.query(LogLines), *self.query(ChecksView)):
             self.watch(lines, "picked", self.redraw)
-        # Old garbage goes before the first key: collecting it takes longer than drawing.
+        # Collect garbage before the first key: it takes longer than drawing.
         self.call_after_refresh(collect_now)
 
     def start(self) -> None:
@@ -265,14 +255,14 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
             self.redraw()
 
     def look_for_findings(self) -> None:
-        """Have the rules look at the run now, not when their time has come."""
+        """Update the findings now."""
         self.runs.findings.look()
         self.redraw()
 
     # drawing
 
     def draw(self) -> None:
-        """Show the moment that the playhead is at."""
+        """Show the playhead's moment."""
         self._draw(FrameContent.ALL, self.PANES_HERE)
 
     def _draw_all_but_texts(self) -> None:
@@ -306,7 +296,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         self.drawn()
 
     def draw_lanes(self) -> None:
-        """Show it on the lanes alone."""
+        """Show it on the lanes only."""
         lanes = self.query_one(Lanes)
         lanes.window, lanes.now = self.navigation.window, self.navigation.now
         lanes.timeline = self.runs.timeline
@@ -328,7 +318,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
                 pane.now, pane.timeline = now, run.timeline
 
     def laid_out(self) -> None:
-        """Draw what the new layout shows."""
+        """Draw again for the new layout."""
         self.redraw()
 
     def _draw_at_once(self) -> None:
@@ -355,17 +345,17 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
     # keys
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer what has a meaning now."""
+        """Offer the actions that are available now."""
         return self._keys.offer(action, parameters)
 
     def action_leave(self) -> None:
         """Go back to the menu."""
         self.dismiss()
 
-    # what widgets tell
+    # messages of widgets
 
     def on_descendant_focus(self, event: DescendantFocus) -> None:
-        """Make the pane current that the person clicked on, and tell of its keys."""
+        """Make the pane with the focus current, and show its keys."""
         self.panes.follow_focus(event.widget)
         self._keys.follow_focus()
 

@@ -1,62 +1,55 @@
-"""The set-up of a run in one window: everything that can be changed, and the code that would change it."""
+"""The window with all changeable settings of a run, and the equivalent code."""
 
 from collections.abc import Callable
 from functools import partial
-from typing import Any, ClassVar
+from typing import Any
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import BindingType
-from textual.containers import Container, VerticalScroll
+from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
 from cbtui.keys.action import Scope
-from cbtui.keys.bindings import bindings_of
 from cbtui.looks.theme import Charset
 from cbtui.runs.setup.changeable import ChangeableSetup
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.equivalent_code import code_of
 from cbtui.screens.setup_rows import SettingRow, rows_of
-from cbtui.screens.sized import SizedModal
+from cbtui.screens.window import WindowScreen
 from cbtui.text.cells import fit
 from cbtui.widgets.key_bar import KeyBar
 from cbtui.widgets.pageable_option_list import PageableOptionList
 
 _COLUMNS = (19, 7, 30, 12)
-"""Of a row: what it is about, which aspect of it, how it is, what it was changed to."""
+"""Column widths: subject, aspect, value in this run, changed value."""
 
 
-class SetupScreen(SizedModal[Changes]):
-    """Gives the changes that the run is to start again with; None if it is to go on as it is.
+class SetupScreen(WindowScreen[Changes]):
+    """Its result is the changes to restart the run with; None if it was closed.
 
-    ``first`` tells which row is highlighted first.
+    ``first`` selects the row that is highlighted first.
     """
 
     SCOPE = Scope.SETUP
-    CSS_PATH = "window.tcss"
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.SETUP)]
+    heading = "Set-up"
 
     def __init__(
         self, about: ChangeableSetup, changes: Changes, first: Callable[[SettingRow], bool], charset: Charset
     ) -> None:
-        super().__init__()
+        super().__init__(charset)
         self._about = about
         self._changes = changes
         self._rows = rows_of(about)
         self._first = first
-        self._charset = charset
 
-    def compose(self) -> ComposeResult:
+    def content(self) -> ComposeResult:
         """Lay out the rows, and the code of what is changed."""
-        with Container(classes="window") as window:
-            window.border_title = "Set-up"
-            yield Static(Content.styled(self._line("", "", "in this run", "changed to"), "$text-muted"))
-            yield PageableOptionList()
-            with VerticalScroll(can_focus=False):
-                yield Static(classes="code")
-            yield KeyBar(Scope.SETUP, self._charset)
+        yield Static(Content.styled(self._line("", "", "in this run", "changed to"), "$text-muted"))
+        yield PageableOptionList()
+        with VerticalScroll(can_focus=False):
+            yield Static(classes="code")
 
     def on_mount(self) -> None:
         """Highlight the row that was asked for."""
@@ -65,7 +58,7 @@ class SetupScreen(SizedModal[Changes]):
         self.query_one(OptionList).highlighted = next(wanted, 0)
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer to undo what there is."""
+        """Offer ``undo_all`` if there are changes."""
         return action != "undo_all" or self._changes != Changes()
 
     @on(OptionList.OptionSelected)
@@ -83,17 +76,13 @@ class SetupScreen(SizedModal[Changes]):
         self.query_one(OptionList).action_select()
 
     def action_undo_all(self) -> None:
-        """Have everything as the program says."""
+        """Discard all changes."""
         self._changes = Changes(whole_tracebacks=self._changes.whole_tracebacks)
         self._show()
 
     def action_run(self) -> None:
         """Run again with what is chosen."""
         self.dismiss(self._changes)
-
-    def action_close(self) -> None:
-        """Leave the run as it is."""
-        self.dismiss(None)
 
     def _show(self) -> None:
         rows = self.query_one(OptionList)

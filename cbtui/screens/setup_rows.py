@@ -1,4 +1,4 @@
-"""The lines of the set-up window: what each can change, how it asks, and what it makes of the answer."""
+"""The rows of the set-up window: each shows a setting, asks for a new value and applies it."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ from sim.units import SECOND, nearest_ns
 
 
 class SettingRow(Protocol):
-    """One thing that can be changed: ``what`` of it, and how the run on screen has it ``now``."""
+    """One changeable setting: ``what`` it belongs to, and its value ``now``."""
 
     @property
     def what(self) -> str:
@@ -28,20 +28,20 @@ class SettingRow(Protocol):
 
     @property
     def aspect(self) -> str:
-        """What of it can be changed."""
+        """The name of the setting."""
 
     @property
     def now(self) -> str:
-        """How the run on screen has it."""
+        """The value in the run on screen."""
 
     def changed_to(self, changes: Changes) -> str:
-        """What it was changed to; "" if it was not."""
+        """The changed value; "" if it is unchanged."""
 
     def ask(self, changes: Changes, charset: Charset) -> ModalScreen[Any]:
-        """The window that asks for it."""
+        """Return the window that asks for a value."""
 
     def take(self, changes: Changes, answer: Any) -> Changes:
-        """The changes with what that window gave."""
+        """Return the changes with that window's result."""
 
 
 @dataclass(frozen=True)
@@ -102,7 +102,7 @@ class GroupRow:
 
 @dataclass(frozen=True)
 class NumberRow:
-    """A number: ``chosen`` finds it among the changes, ``changed`` puts it there, ``code`` is its line."""
+    """A number: ``chosen`` reads it from the changes, ``changed`` sets it there, ``code`` is its line."""
 
     what: str
     aspect: str

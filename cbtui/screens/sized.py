@@ -1,11 +1,11 @@
-"""A screen that knows which layout its terminal has room for."""
+"""Screens whose layout depends on the terminal's size."""
 
 from typing import TypeVar
 
 from textual.await_complete import AwaitComplete
 from textual.events import Resize
 from textual.geometry import Size
-from textual.screen import ModalScreen, Screen
+from textual.screen import ModalScreen, Screen, ScreenResultCallbackType, ScreenResultType
 from textual.widgets import Static
 
 from cbtui.screens.layout import Layout, layout_for, too_small
@@ -14,28 +14,36 @@ Result = TypeVar("Result")
 
 
 class SizedScreen(Screen[Result]):
-    """Carries its layout as a style class; too small a terminal gets a sentence instead of the screen."""
+    """Sets its layout as a style class; in a terminal that is too small it shows a sentence."""
 
     layout_now = Layout.TABBED
 
     def on_mount(self) -> None:
-        """Be laid out before the first picture."""
+        """Set the layout before the first drawing."""
         self.mount(Static(classes="too-small"))
         self._lay_out(self.app.size)
 
     def on_resize(self, event: Resize) -> None:
-        """Take the layout for the new size."""
+        """Set the layout for the new size."""
         self._lay_out(event.size)
 
     def dismiss(self, result: Result | None = None) -> AwaitComplete:
-        """Leave the screen. Once more while that goes on, or below another, does nothing.
+        """Leave the screen; does nothing unless it is active.
 
-        Textual takes away whatever screen is on top then.
+        Textual would remove whatever screen is on top.
         """
         return super().dismiss(result) if self.is_active else AwaitComplete()
 
+    def ask(
+        self,
+        question: Screen[ScreenResultType],
+        take: ScreenResultCallbackType[ScreenResultType] | None,
+    ) -> None:
+        """Lay another screen over this one; ``take`` gets its result."""
+        self.app.push_screen(question, take)
+
     def laid_out(self) -> None:
-        """Do what a screen has to do when its layout or size is another."""
+        """Hook that is called when the layout or size has changed."""
 
     def _lay_out(self, size: Size) -> None:
         self.layout_now = layout_for(size)
@@ -49,4 +57,4 @@ class SizedScreen(Screen[Result]):
 
 
 class SizedModal(ModalScreen[Result], SizedScreen[Result]):
-    """The same for a screen that lies over another."""
+    """A sized modal screen."""

@@ -1,19 +1,16 @@
-"""Shows the solution of an exercise, and in what it differs from another file."""
+"""The windows of an exercise's solution: the confirmation, and the solution as a difference or whole."""
 
 from collections.abc import Iterator
 from difflib import unified_diff
-from typing import ClassVar
 
 from textual.app import ComposeResult
-from textual.binding import BindingType
-from textual.containers import Container, VerticalScroll
+from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.widgets import Static
 
 from cbtui.keys.action import Scope
-from cbtui.keys.bindings import bindings_of
 from cbtui.looks.theme import Charset
-from cbtui.screens.sized import SizedModal
+from cbtui.screens.window import WindowScreen
 from cbtui.text.cells import visible
 from cbtui.widgets.code.highlight import TokenKind, highlight
 from cbtui.widgets.key_bar import KeyBar
@@ -31,26 +28,21 @@ _STYLES = {
 _CHANGED = {"+": "$text-success", "-": "$text-error", "@": "$text-muted"}
 
 
-class SolutionScreen(SizedModal[None]):
-    """Shows a solution as a difference to the file ``begun`` (its name and its text), or as a whole."""
+class SolutionScreen(WindowScreen[None]):
+    """Shows a solution as a difference to the file ``begun`` (name and text), or whole."""
 
     SCOPE = Scope.SOLUTION
-    CSS_PATH = "window.tcss"
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.SOLUTION)]
 
     def __init__(self, begun: tuple[str, str], solution: tuple[str, str], charset: Charset) -> None:
-        super().__init__()
+        super().__init__(charset)
         self._begun = begun
         self._solution = solution
-        self._charset = charset
         self._whole = False
 
-    def compose(self) -> ComposeResult:
+    def content(self) -> ComposeResult:
         """Lay out the text."""
-        with Container(classes="window"):
-            with VerticalScroll():
-                yield Static(classes="text", markup=False)
-            yield KeyBar(Scope.SOLUTION, self._charset)
+        with VerticalScroll():
+            yield Static(classes="text", markup=False)
 
     def on_mount(self) -> None:
         """Begin with what differs."""
@@ -75,10 +67,6 @@ class SolutionScreen(SizedModal[None]):
         self._whole = False
         self._show()
 
-    def action_close(self) -> None:
-        """Go back."""
-        self.dismiss()
-
     def _show(self) -> None:
         name, text = self._solution
         title = f"The solution: {name}" if self._whole else f"From {self._begun[0]} to the solution"
@@ -89,34 +77,25 @@ class SolutionScreen(SizedModal[None]):
         self.query_one(KeyBar).changed()
 
 
-class ConfirmSolutionScreen(SizedModal[bool]):
-    """Asks whether the solution is to be shown."""
+class ConfirmSolutionScreen(WindowScreen[bool]):
+    """Asks for a confirmation; its result is True to show the solution."""
 
     SCOPE = Scope.ASKING
-    CSS_PATH = "window.tcss"
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.ASKING)]
+    heading = "Look at the solution?"
 
     def __init__(self, hints_left: int, charset: Charset) -> None:
-        super().__init__()
+        super().__init__(charset)
         self._hints_left = hints_left
-        self._charset = charset
 
-    def compose(self) -> ComposeResult:
+    def content(self) -> ComposeResult:
         """Lay out the question."""
         left = self._hints_left
         there_are = f"{counted(left, 'hint')} {'is' if left == 1 else 'are'} left." if left else ""
-        with Container(classes="window") as window:
-            window.border_title = "Look at the solution?"
-            yield Static(f"What you find yourself stays with you longer. {there_are}".rstrip(), markup=False)
-            yield KeyBar(Scope.ASKING, self._charset)
+        yield Static(f"What you find yourself stays with you longer. {there_are}".rstrip(), markup=False)
 
     def action_take(self) -> None:
         """Look."""
         self.dismiss(True)
-
-    def action_close(self) -> None:
-        """Do not."""
-        self.dismiss(False)
 
 
 def code_of(source: str, charset: Charset) -> Content:

@@ -1,53 +1,42 @@
-"""Asks how many threads the executor is to get."""
-
-from typing import ClassVar
+"""The window that asks for the executor's number of threads."""
 
 from textual import on
 from textual.app import ComposeResult
-from textual.binding import BindingType
-from textual.containers import Container
 from textual.content import Content
 from textual.widgets import OptionList, Static
 from textual.widgets.option_list import Option
 
 from cbtui.keys.action import Scope
-from cbtui.keys.bindings import bindings_of
 from cbtui.keys.keymap import keymap_of
 from cbtui.looks.theme import Charset
 from cbtui.runs.setup.changeable import ChangeableSetup
 from cbtui.runs.setup.equivalent_code import code_of_threads
-from cbtui.screens.sized import SizedModal
-from cbtui.widgets.key_bar import KeyBar
+from cbtui.screens.window import WindowScreen
 from cbtui.widgets.pageable_option_list import PageableOptionList
 from sim.plural import counted
 
 MOST = 8
 
 
-class ThreadsScreen(SizedModal[int]):
-    """Gives the number of threads, or 0 for the program's own; None if the person thinks better of it."""
+class ThreadsScreen(WindowScreen[int]):
+    """Its result is the number, or 0 for the program's own; None if it was closed."""
 
     SCOPE = Scope.THREADS
-    CSS_PATH = "window.tcss"
-    BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.THREADS)]
+    heading = "Threads"
 
     def __init__(self, about: ChangeableSetup, chosen: int | None, charset: Charset) -> None:
-        super().__init__()
-        self._charset = charset
+        super().__init__(charset)
         self._about = about
         self._chosen = chosen or 0
 
-    def compose(self) -> ComposeResult:
+    def content(self) -> ComposeResult:
         """Lay out the question."""
-        with Container(classes="window") as window:
-            window.border_title = "Threads"
-            yield Static("How many threads does the executor get?\nThe run starts again with them.")
-            yield PageableOptionList(*self._options())
-            yield Static(classes="code")
-            yield KeyBar(Scope.THREADS, self._charset)
+        yield Static("How many threads does the executor get?\nThe run starts again with them.")
+        yield PageableOptionList(*self._options())
+        yield Static(classes="code")
 
     def on_mount(self) -> None:
-        """Highlight what is in force."""
+        """Highlight the current choice."""
         self.query_one(OptionList).highlighted = self._chosen
 
     @on(OptionList.OptionHighlighted)
@@ -63,10 +52,6 @@ class ThreadsScreen(SizedModal[int]):
     def action_choose(self, number: int) -> None:
         """Take a number."""
         self.dismiss(number)
-
-    def action_close(self) -> None:
-        """Leave everything as it is."""
-        self.dismiss(None)
 
     def _options(self) -> list[Option]:
         own = f"  the program's own: {self._about.executor}"

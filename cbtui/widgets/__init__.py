@@ -1,1 +1,1 @@
-"""The console's widgets: each draws a timeline at a time, and nothing else."""
+"""The console's widgets: each draws a timeline at a moment, and nothing else."""

@@ -1,4 +1,4 @@
-"""The menu's head: the name, and lanes as a picture of what it is about."""
+"""The menu's banner: the name, and a picture of lanes."""
 
 from collections.abc import Sequence
 
@@ -15,7 +15,7 @@ _STEPS = (6, 6)
 
 
 class Banner(PaintedWidget):
-    """Three lanes: one long callback, and two that go on beside it."""
+    """Three lanes: one long callback, and two that run beside it."""
 
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the three rows."""

@@ -11,7 +11,7 @@ from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.text.cells import fit
 from cbtui.widgets.comparison_painter import StyledLine, headings, table
 from cbtui.widgets.inked_view import InkedView
-from cbtui.widgets.painted_widget import PaintedWidget
+from cbtui.widgets.painted_widget import PaintedWidget, painted
 from sim.trace.figures.comparison_rows import Section
 
 _RULE = Ink(Role.FAINT)
@@ -20,7 +20,7 @@ _RULE = Ink(Role.FAINT)
 class HeadingLine(PaintedWidget):
     """One line of words; what does not fit is cut. ``ruled`` draws a line from their end to the edge."""
 
-    words: reactive[tuple[TextRun, ...]] = reactive((), repaint=False)
+    words: reactive[tuple[TextRun, ...]] = painted(())
 
     def __init__(self, charset: Charset, *, ruled: str = "", id: str | None = None) -> None:  # noqa: A002
         super().__init__(id=id)
@@ -36,10 +36,6 @@ class HeadingLine(PaintedWidget):
             line.append(TextRun(shown, ink))
             room -= len(shown)
         return [[*line, TextRun((self._ruled or " ") * room, _RULE)]]
-
-    def watch_words(self) -> None:
-        """Say something else."""
-        self.changed()
 
 
 class ComparisonHeadings(PaintedWidget):

@@ -1,4 +1,4 @@
-"""What the highlighted thing of the menu is about: a lesson, or a file that was opened before."""
+"""The description of the menu's highlighted entry: a lesson, or a recent file."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -13,7 +13,7 @@ from cbtui.keys.named_keys import key_in_force
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.runs.setup.recent import RecentEntry, RecentKind, time_ago
 from cbtui.text.cells import fit, visible
-from cbtui.widgets.painted_widget import PaintedWidget
+from cbtui.widgets.painted_widget import PaintedWidget, painted
 from lessons.lesson import Lesson
 
 _STRONG = Ink(Role.STRONG)
@@ -25,7 +25,7 @@ _FACTS = 10
 
 @dataclass(frozen=True)
 class EntryDescription:
-    """A title, what there is to say, what it is made of, and keys with what they do."""
+    """A title, a text, facts, and keys with their meanings."""
 
     title: str
     text: str
@@ -34,19 +34,15 @@ class EntryDescription:
 
 
 class DescriptionPane(PaintedWidget):
-    """Describes something; keys that have no room are left out, the rest is cut off at the bottom."""
+    """Shows a description; keys without room are left out, the rest is cut at the bottom."""
 
-    description: reactive[EntryDescription | None] = reactive(None, repaint=False)
+    description: reactive[EntryDescription | None] = painted(None)
 
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the description."""
         if self.description is None or not size.width:
             return []
         return described(self.description, size)[: size.height]
-
-    def watch_description(self) -> None:
-        """Describe something else."""
-        self.changed()
 
 
 def of_lesson(

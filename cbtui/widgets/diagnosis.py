@@ -1,4 +1,4 @@
-"""What a moment of a run means, in one sentence: who waits longest and why, or that nothing waits."""
+"""The diagnosis of a moment in one sentence: the longest wait and its reason, or that nothing waits."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
@@ -19,7 +19,7 @@ from sim.trace.timeline import Timeline
 from sim.units import SECOND
 
 WORTH_TELLING: Nanoseconds = 10_000_000
-"""Shorter waits are the ordinary hand-over from one callback to the next."""
+"""Shorter waits are the usual hand-over between callbacks, and are not reported."""
 
 _SERIOUS: Nanoseconds = SECOND
 _NOTICE_STAYS: Nanoseconds = 5_000_000_000
@@ -36,10 +36,10 @@ class DiagnosisLevel(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Diagnosis:
-    """A sentence about a moment, and how much it matters; ``at_length`` is said instead where it fits.
+    """A sentence about a moment, and its importance; ``at_length`` is shown instead if it fits.
 
-    One that stays (a notice, how a run ended) is shown whole, on several lines if need be; the others change
-    from moment to moment, and the screen must not jump with them.
+    One that stays (a notice, the end of a run) may take several lines; the others change from moment to
+    moment and take one line, so that the screen does not jump.
     """
 
     text: str
@@ -51,7 +51,7 @@ class Diagnosis:
 def diagnosis_on_screen(
     run: ShownRun, playhead: Playhead, concurrency: Concurrency, keymap: Keymap = STANDARD
 ) -> Diagnosis:
-    """Return what to say of the moment on screen; at a run's end, how it ended and how to go on."""
+    """Return the diagnosis of the moment on screen; at a run's end, how it ended and how to continue."""
     timeline = run.timeline
     if playhead.at is None:
         if run.loss is not None:
@@ -71,16 +71,16 @@ def diagnosis_on_screen(
 
 
 def way_on(run: ShownRun, keymap: Keymap) -> str:
-    """Return how to go on with a run in which callbacks wait for ever; "" for one that is over."""
+    """Return how to restart a run in which callbacks wait for ever; "" if the run is over."""
     return f"{_key('start_over', keymap)} starts over" if run.alive else ""
 
 
 def with_worst_problem(
     moment: Diagnosis, findings: Sequence[ExplainedFinding], way_on: str = ""
 ) -> Diagnosis:
-    """Replace a verdict without a problem by the worst problem that the rules found in the run.
+    """Replace a diagnosis without a problem by the worst problem that the rules found in the run.
 
-    What stays is said in any case; of what lasts for ever also the ``way_on``, where there is room.
+    A diagnosis that stays is kept. ``way_on`` is added to a wait for ever where there is room.
     """
     worst = next((each for each in findings if each.is_problem), None)
     if worst is None or moment.stays or moment.level is not DiagnosisLevel.FINE:
@@ -99,7 +99,7 @@ def _key(action: str, keymap: Keymap) -> str:
 
 
 def _of_a_loss(loss: str, key: str) -> Diagnosis:
-    """Say it so briefly that one line of 80 columns has room for it and for the number of problems."""
+    """The loss of the engine, short enough for a line of 80 columns with the number of problems."""
     how = loss.rstrip(".").removeprefix("the engine ").removeprefix("was ")
     return Diagnosis(f"engine lost: {how}; {key} runs again", DiagnosisLevel.TROUBLE, stays=True)
 
@@ -120,7 +120,7 @@ def _of_the_end(timeline: Timeline, way_on: str) -> Diagnosis:
 def diagnosis_at(
     timeline: Timeline, at: Nanoseconds, concurrency: Concurrency, keymap: Keymap = STANDARD
 ) -> Diagnosis:
-    """Return what matters most at a moment."""
+    """Return the most important fact of a moment."""
     notice = _latest_notice(timeline, at)
     if notice is not None:
         return Diagnosis(notice.text, DiagnosisLevel.TROUBLE, stays=True)
@@ -148,7 +148,7 @@ def _of_keyboard(asked: KeyboardAsked, keymap: Keymap) -> str:
 
 
 def call_note(timeline: Timeline, at: Nanoseconds) -> str:
-    """Return how the latest call from outside stands: waiting for its reply, or just answered; else ""."""
+    """Return the state of the latest call from outside: without reply, or just answered; else ""."""
     lately = Window(at - _REPLY_STAYS - 1, at + 1)
     calls = [call for call in timeline.calls_within(lately) if call.caller == 0]
     pending = [call for call in calls if call.replied is None or call.replied > at]
@@ -181,7 +181,7 @@ def _since(wait: Wait) -> Nanoseconds:
 
 
 def _overdue(wait: Wait, at: Nanoseconds, timeline: Timeline) -> str:
-    """Say that a callback only has to finish its own call before the next: nobody else is in its way."""
+    """The text on a callback that only waits for its own previous call."""
     return f"{name_of(wait.entity, timeline)}, due again {duration(at - wait.since)} ago, still runs"
 
 
@@ -212,7 +212,7 @@ def _group_of(wait: Wait, timeline: Timeline) -> str:
 
 
 def _busy_threads(moment: Moment, timeline: Timeline) -> str:
-    """Say what keeps every thread, the callback that is on most of them by name."""
+    """The text on what occupies all threads, the most frequent callback first."""
     running = [name_of(span.entity, timeline) for span in moment.running.values()]
     if not running:
         return "no thread is free"

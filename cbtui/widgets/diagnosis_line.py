@@ -1,4 +1,4 @@
-"""The line at the bottom: what the moment on screen means in words, and how many problems there are."""
+"""The diagnosis line at the bottom, with the number of problems."""
 
 from collections.abc import Sequence
 from textwrap import wrap
@@ -11,7 +11,7 @@ from textual.reactive import reactive
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.text.cells import fit
 from cbtui.widgets.diagnosis import Diagnosis, DiagnosisLevel
-from cbtui.widgets.painted_widget import PaintedWidget
+from cbtui.widgets.painted_widget import PaintedWidget, painted
 
 _INKS = {
     DiagnosisLevel.FINE: Ink(Role.TEXT),
@@ -20,40 +20,34 @@ _INKS = {
 }
 _INDENT = 3
 _GAP = 2
-"""Columns between what is said and what stands at the right."""
+"""Columns between the sentence and the text at the right."""
 _LEAST_NOTE = 12
 _MOST = 4
-"""Lines that a sentence may take."""
+"""The most lines of a sentence."""
 _SIGNS = {DiagnosisLevel.FINE: "✓", DiagnosisLevel.WAITS: "·", DiagnosisLevel.TROUBLE: "!"}
 
 
 class DiagnosisLine(PaintedWidget):
-    """Shows a diagnosis; at the right how the latest service call stands, and the number of problems."""
+    """Shows a diagnosis; at the right the state of the latest service call, and the number of problems."""
 
-    diagnosis: reactive[Diagnosis] = reactive(Diagnosis("", DiagnosisLevel.FINE), repaint=False)
-    note: reactive[str] = reactive("", repaint=False)
-    problems: reactive[str] = reactive("", repaint=False)
+    diagnosis: reactive[Diagnosis] = painted(Diagnosis("", DiagnosisLevel.FINE))
+    note: reactive[str] = painted("")
+    problems: reactive[str] = painted("")
 
     class Clicked(Message):
         """The person clicked on the line."""
 
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
-        """Paint the line; the note gives way when there is not room for all."""
+        """Paint the line; the note is dropped first if there is too little room."""
         return diagnosis_rows(self.diagnosis, self.note, self.problems, size.width)
 
     def watch_diagnosis(self) -> None:
         """Say something else, on as many lines as it takes."""
         self._take_room(self.size)
-        self.changed()
-
-    def watch_note(self) -> None:
-        """Say something else of the latest call."""
-        self.changed()
 
     def watch_problems(self) -> None:
         """Tell of another number of problems."""
         self._take_room(self.size)
-        self.changed()
 
     def on_resize(self, event: Resize) -> None:
         """Break the lines anew."""
@@ -82,7 +76,7 @@ def diagnosis_rows(diagnosis: Diagnosis, note: str, problems: str, width: int) -
 
 
 def diagnosis_row(diagnosis: Diagnosis, note: str, problems: str, width: int) -> list[TextRun]:
-    """Return the line in exactly ``width`` columns; at its right only the problems are there in any case."""
+    """Return the line in exactly ``width`` columns; of the text at the right only the problems always fit."""
     ink = _INKS[diagnosis.level]
     at_right = f"{problems} " if problems else ""
     gap = _GAP if problems else 0
@@ -101,5 +95,5 @@ def diagnosis_row(diagnosis: Diagnosis, note: str, problems: str, width: int) ->
 
 
 def _fitting(note: str, room: int) -> str:
-    """The note and a blank in the room that is left, cut if need be; nothing where that says too little."""
+    """The note and a blank, cut to the room that is left; "" if that is too short."""
     return fit(f"{note} ", min(len(note) + 1, room), Charset.BRAILLE) if note and room >= _LEAST_NOTE else ""

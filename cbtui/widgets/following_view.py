@@ -8,10 +8,10 @@ from cbtui.widgets.inked_view import InkedView
 
 
 class FollowingView(InkedView):
-    """Draws its lines itself, those in view only. ``grow`` tells it of more lines."""
+    """A view of lines that draws only visible ones; ``grow`` sets their number."""
 
     follows: var[bool] = var(True)
-    """Whether it goes on to its end when that moves."""
+    """Whether it scrolls to its end when it grows."""
 
     def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
         super().__init__(id=id)
@@ -20,7 +20,7 @@ class FollowingView(InkedView):
         self._fitting = False
 
     def beside(self) -> int:
-        """Columns that every line takes beside its text."""
+        """Columns of every line beside its text."""
         return 0
 
     def below(self) -> int:
@@ -34,12 +34,12 @@ class FollowingView(InkedView):
         self.refresh()
 
     def follow(self) -> None:
-        """Go to the end, and stay there however it moves."""
+        """Scroll to the end, and follow it."""
         self.follows = True
         self._go_to_end()
 
     def stay(self) -> None:
-        """Show the lines that are in view, whatever comes."""
+        """Keep the visible lines in view."""
         self.follows = False
 
     def on_resize(self) -> None:
@@ -47,7 +47,7 @@ class FollowingView(InkedView):
         self._fit_size()
 
     def watch_scroll_y(self, old_value: float, new_value: float) -> None:
-        """Follow the end if that is where the person has scrolled to."""
+        """Follow the end if the user has scrolled there."""
         super().watch_scroll_y(old_value, new_value)
         if not self._fitting:
             self.follows = new_value >= self.max_scroll_y

@@ -1,4 +1,4 @@
-"""The lesson's text, in parts that are put there as they can be read."""
+"""The lesson's text in sections, which are added as they are unlocked."""
 
 import asyncio
 from collections.abc import Mapping
@@ -12,9 +12,9 @@ from cbtui.widgets.prose import Prose
 
 
 class Guide(VerticalScroll):
-    """Shows parts of a Markdown text, by name and in their order; links are not opened.
+    """Shows named sections of a Markdown text in their order; links are not opened.
 
-    The texts name keys as the registry has them; the person reads of their own.
+    The registry's keys in the texts are replaced by those in force.
     """
 
     def __init__(self, parts: Mapping[str, str], *, id: str | None = None) -> None:  # noqa: A002 Textual's name
@@ -29,7 +29,7 @@ class Guide(VerticalScroll):
             yield self._part(name, text)
 
     async def show(self, parts: Mapping[str, str]) -> None:
-        """Show these parts, and leave alone what is as it was."""
+        """Show these sections; unchanged ones are not touched."""
         async with self._one_at_a_time:
             self._reading = self._reading or self._read_now(parts)
             before, self._parts = self._parts, dict(parts)
@@ -45,20 +45,20 @@ class Guide(VerticalScroll):
             self.call_after_refresh(self._keep_in_sight)
 
     def go_to(self, name: str) -> None:
-        """Bring the beginning of a part to the top, if it is there and there is enough below it."""
+        """Scroll a section to the top, if it exists."""
         if name in self._parts:
             self._reading = (self.query_one(f"#part-{name}", Prose), 0)
             self.call_after_refresh(self._keep_in_sight)
 
     def _read_now(self, parts: Mapping[str, str]) -> tuple[Prose, int] | None:
-        """Return which of the parts that stay is at the top, and how many of its rows are above it."""
+        """Return the topmost section that stays, and how many of its rows are scrolled out."""
         top = self.scroll_offset.y
         staying = (self.query_one(f"#part-{name}", Prose) for name in self._parts if name in parts)
         part = next((part for part in staying if part.virtual_region.bottom > top), None)
         return None if top == 0 or part is None else (part, max(0, top - part.virtual_region.y))
 
     def _keep_in_sight(self) -> None:
-        """Let a text that is or was to be read be where it was, whatever came and went above it."""
+        """Restore the scroll position of the text that was being read."""
         if self._reading is not None:
             part, above = self._reading
             self._reading = None

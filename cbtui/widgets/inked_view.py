@@ -1,4 +1,4 @@
-"""A scrolling view whose lines are drawn in inks, one by one as they come into view."""
+"""A scrolling view that draws its visible lines in inks and component classes."""
 
 from collections.abc import Sequence
 
@@ -13,7 +13,7 @@ from sim.trace.model import Nanoseconds
 
 
 class InkedView(ScrollView):
-    """Keeps the styles that its lines are drawn in until the theme changes."""
+    """A scroll view that caches the styles of its lines until the theme changes."""
 
     ALLOW_SELECT = False
 
@@ -50,7 +50,7 @@ class InkedView(ScrollView):
         return self._classes_drawn[component]
 
     def copy(self, lines: Sequence[str]) -> None:
-        """Put lines into the terminal's clipboard (OSC 52, which works over ssh), and say how many."""
+        """Copy lines to the terminal's clipboard (OSC 52, which works over ssh), and report their number."""
         if lines:
             self.app.copy_to_clipboard("\n".join(lines))
             self.notify(f"copied {counted(len(lines), 'line')}")

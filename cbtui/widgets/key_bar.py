@@ -1,4 +1,4 @@
-"""The line of keys at the very bottom: those that have a meaning now, as many as there is room for."""
+"""The key bar at the bottom: the available actions' keys, as many as fit."""
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -35,9 +35,9 @@ class KeyBarEntry:
 
 
 class KeyBar(PaintedWidget):
-    """Shows the keys of a scope; a click on one does what it does. Call ``changed`` when others work.
+    """Shows the keys of a scope; a click performs the action. Call ``changed`` when others are available.
 
-    ``first`` are labels of actions that come before all others.
+    ``first`` are labels of actions that come first.
     """
 
     first: Sequence[str] = ()
@@ -53,7 +53,7 @@ class KeyBar(PaintedWidget):
         self.changed()
 
     def working(self) -> list[Action]:
-        """Return the actions that have a meaning now, with the keys in force."""
+        """Return the available actions with the keys in force."""
         working = [action for action in actions_of(self._scope) if self._works(action)]
         working.sort(key=lambda action: action.label not in self.first)
         return keymap_of(self.app).of(working)
@@ -63,9 +63,9 @@ class KeyBar(PaintedWidget):
         return [key_row(self._entries(size.width), size.width)]
 
     async def on_click(self, event: Click) -> None:
-        """Do what the key under the pointer does; of several keys, the one that is nearest.
+        """Perform the action of the key under the mouse; of several keys, the nearest.
 
-        The second of two quick clicks finds another screen; what it would do there was not asked for.
+        The second of two quick clicks would reach another screen, and is ignored.
         """
         if not self.screen.is_active:
             return
@@ -85,14 +85,14 @@ class KeyBar(PaintedWidget):
 
 
 def key_bar_entries(actions: Iterable[Action], charset: Charset) -> list[KeyBarEntry]:
-    """Return what the bar says of some actions."""
+    """Return the entries of some actions."""
     return [
         KeyBarEntry(signs_of(group, charset), group[0].label, group) for group in group_by(actions, "label")
     ]
 
 
 def hint(actions: Iterable[Action], charset: Charset) -> str:
-    """Return what the frame of a widget says of some actions: ``zoom < >``, parted by dots."""
+    """Return the keys of some actions for a widget's frame: ``zoom < >``, separated by dots."""
     between = f" {GLYPHS[charset].between} "
     return between.join(f"{entry.label} {entry.keys}" for entry in key_bar_entries(actions, charset))
 
@@ -111,7 +111,7 @@ def key_row(shown: Iterable[KeyBarEntry], width: int) -> list[TextRun]:
 
 
 def fitting_entries(every: list[KeyBarEntry], width: int) -> list[KeyBarEntry]:
-    """Return the entries that fit: the way out and the help always, then the first ones."""
+    """Return the entries that fit: leaving and help always, then the first ones."""
     last = [entry for entry in every if entry.actions[0].id in _ALWAYS]
     room = width - sum(entry.width for entry in last) + len(_GAP)
     chosen = []

@@ -1,4 +1,4 @@
-"""The menu's list: lessons by unit, then files that were opened before; by words, some of them only."""
+"""The menu's list: lessons by unit, then recent files; a search filters it."""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from itertools import groupby
@@ -24,7 +24,7 @@ _TITLE, _EXECUTOR, _GROUPS = 24, 17, 24
 
 
 class MenuList(OptionList, inherit_bindings=False):
-    """What there is to choose from; the screen's keys move its highlight."""
+    """The list of lessons and files; its highlight is moved by the screen's keys."""
 
     def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
         super().__init__(id=id, markup=False)
@@ -37,11 +37,11 @@ class MenuList(OptionList, inherit_bindings=False):
         return None if option is None or option.id is None else self._choices[option.id]
 
     def choice(self, option_id: str) -> MenuChoice:
-        """Return what an option stands for."""
+        """Return the lesson or file of an option."""
         return self._choices[option_id]
 
     def show(self, lessons: Iterable[Lesson], files: Iterable[RecentEntry], rows: "MenuRows") -> None:
-        """Show these; the highlight stays on what it is on, if that is still there, or goes to the first."""
+        """Show entries; the highlight stays on its entry, or goes to the first if that is gone."""
         before = self.highlighted_option
         options: list[Option] = []
         self._choices = {}
@@ -72,7 +72,7 @@ class MenuList(OptionList, inherit_bindings=False):
 
 
 class MenuRows:
-    """The lines of the list where it is narrow: what they are about; the rest is told beside the list."""
+    """The lines of the narrow list: names only, as the details are shown beside it."""
 
     def __init__(self, lessons: Sequence[Lesson], stages: Mapping[str, Stage], now: float) -> None:
         """Take all lessons, how far the learner is in each by its id, and seconds since 1970."""
@@ -98,7 +98,7 @@ class MenuRows:
 
 
 class WideMenuRows(MenuRows):
-    """The lines where there is room to tell more."""
+    """The lines of the wide list, with details."""
 
     def lesson(self, lesson: Lesson) -> Content:
         """Return a lesson's line with its executor and groups."""
@@ -115,7 +115,7 @@ class WideMenuRows(MenuRows):
 
 
 def _briefly(executor: str) -> str:
-    """An executor without the word that all of them end with; About tells its whole name."""
+    """An executor's name without the ending that all of them share."""
     return executor.replace("ThreadedExecutor", "Threaded")
 
 
@@ -128,7 +128,7 @@ def _name(entry: RecentEntry, width: int) -> str:
 
 
 def with_words(text: str) -> Callable[[MenuChoice], bool]:
-    """Return what tells whether a choice has all words of a text, in upper or lower case, whole or begun."""
+    """Return a predicate: whether an entry contains all words of a text, ignoring case."""
     words = text.casefold().split()
     return lambda choice: all(word in _said(choice) for word in words)
 

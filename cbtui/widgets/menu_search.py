@@ -1,4 +1,4 @@
-"""Where words are typed that lessons and files of the menu are looked for with."""
+"""The search line of the menu."""
 
 from typing import ClassVar
 
@@ -11,15 +11,15 @@ from cbtui.keys.bindings import bindings_of
 
 
 class MenuSearch(Input):
-    """The line; the list below it can be gone through meanwhile."""
+    """The input of the search; up and down move the list's highlight."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.SEARCH)]
 
     class SearchCleared(Message):
-        """Everything is to be shown again."""
+        """The search was cancelled."""
 
     class HighlightMoved(Message):
-        """The highlight of the list is to go up (``step`` < 0) or down."""
+        """The user wants to move the list's highlight up (``step`` < 0) or down."""
 
         def __init__(self, step: int) -> None:
             super().__init__()

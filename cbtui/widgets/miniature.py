@@ -1,4 +1,4 @@
-"""A run's lanes drawn small, with a cursor that goes through them once."""
+"""A run's lanes as a small picture, with a cursor that passes through them once."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,7 +12,7 @@ from textual.timer import Timer
 
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.text.cells import fit, visible
-from cbtui.widgets.painted_widget import PaintedWidget
+from cbtui.widgets.painted_widget import PaintedWidget, painted
 
 if TYPE_CHECKING:
     from cbtui.widgets.lanes.painter import LanePainter
@@ -20,26 +20,26 @@ if TYPE_CHECKING:
 
 FRAMES_A_SECOND = 5
 SPEED = 2
-"""Seconds of the run that the cursor passes in a real one."""
+"""Seconds of the run per real second."""
 _STATUSES = (25, 16, 10, 0)
-"""The widths that the lanes' painter gives to what stands at the right of the lanes."""
+"""The widths of the status columns in the lane painter's layouts."""
 
 
 @dataclass(frozen=True)
 class PreviewPicture:
-    """A run that is over, and the painter that draws it and knows its past."""
+    """A finished run and its painter."""
 
     timeline: "Timeline"
     painter: "LanePainter"
 
 
 class Miniature(PaintedWidget):
-    """Draws ``subject``, faintly what comes after ``now`` (nanoseconds), or says a sentence."""
+    """Draws ``subject``, faintly after ``now`` (nanoseconds), or shows a sentence."""
 
-    subject: reactive[PreviewPicture | None] = reactive(None, repaint=False)
-    now: reactive[int] = reactive(0, repaint=False)
-    sentence: reactive[str] = reactive("", repaint=False)
-    """What stands there while there is nothing to draw."""
+    subject: reactive[PreviewPicture | None] = painted(None)
+    now: reactive[int] = painted(0)
+    sentence: reactive[str] = painted("")
+    """The text without a picture."""
 
     _began = 0.0
     _sweep: Timer | None = None
@@ -51,7 +51,7 @@ class Miniature(PaintedWidget):
         return miniature(self.subject, self.now, size)
 
     def watch_subject(self, subject: PreviewPicture | None) -> None:
-        """Begin to go through another run; where nothing is animated, stand at its end."""
+        """Start the cursor of another run; without animations it stands at the end."""
         if self._sweep is not None:
             self._sweep.stop()
             self._sweep = None
@@ -61,18 +61,9 @@ class Miniature(PaintedWidget):
             self.now = 0
             self._began = monotonic()
             self._sweep = self.set_interval(1 / FRAMES_A_SECOND, self._go_on)
-        self.changed()
-
-    def watch_now(self) -> None:
-        """Paint with the cursor elsewhere."""
-        self.changed()
-
-    def watch_sentence(self) -> None:
-        """Say something else."""
-        self.changed()
 
     def _go_on(self) -> None:
-        """Move the cursor; once through is enough, a picture that never rests keeps the eye from the text."""
+        """Move the cursor; it stops at the end, so as not to distract."""
         if self.subject is None or self._sweep is None:
             return
         end = self.subject.timeline.end
@@ -83,7 +74,7 @@ class Miniature(PaintedWidget):
 
 
 def miniature(subject: PreviewPicture, now: int, size: Size) -> list[Sequence[TextRun]]:
-    """Paint a whole run in a size, without what the lanes say at their right: there is no room for it."""
+    """Paint a whole run in a size, without the status column."""
     from cbtui.widgets.lanes.picture import layout_for  # here whoever has a subject has imported it
     from sim.trace.model import Window
 

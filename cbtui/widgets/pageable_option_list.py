@@ -1,13 +1,10 @@
-"""A list of choices in a window, which a terminal may be too small to show."""
+"""An option list that tolerates paging while it has no visible rows."""
 
 from textual.widgets import OptionList
 
 
 class PageableOptionList(OptionList):
-    """Textual's list, except that paging through it does nothing where none of it is shown.
-
-    Textual looks for the lines of the highlighted choice then, and there are none.
-    """
+    """Textual's list, except that paging does nothing while no row is visible, which fails in Textual."""
 
     def action_page_up(self) -> None:
         """Move the highlight up by a page."""

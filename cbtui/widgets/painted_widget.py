@@ -1,13 +1,15 @@
-"""A widget made of painted rows, of which only what changed is sent to the terminal."""
+"""A widget of painted rows, of which only the changed cells are sent to the terminal."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from itertools import takewhile
+from typing import Any, TypeVar
 
 from rich.cells import cell_len
 from rich.segment import Segment
 from rich.style import Style
 from textual.color import Color
 from textual.geometry import Region, Size
+from textual.reactive import reactive
 from textual.strip import Strip
 from textual.widget import Widget
 
@@ -16,9 +18,31 @@ from cbtui.looks.theme import Ink, TextRun, style_of
 from cbtui.terminal.textual_internals import is_being_removed
 from cbtui.text.cells import BLANK
 
+ValueT = TypeVar("ValueT")
+
+
+def painted(default: ValueT | Callable[[], ValueT], *, always_update: bool = False) -> reactive[ValueT]:
+    """Return a reactive attribute of a painted widget: setting another value paints the widget anew.
+
+    With ``always_update`` setting the same value does so too.
+    """
+    return _PaintedAttribute(default, always_update)
+
+
+class _PaintedAttribute(reactive[ValueT]):
+    def __init__(self, default: ValueT | Callable[[], ValueT], always_update: bool) -> None:
+        super().__init__(default, repaint=False, always_update=always_update)
+        self._paints_always = always_update
+
+    def __set__(self, widget: Any, value: ValueT) -> None:
+        before = getattr(widget, self.name)
+        super().__set__(widget, value)
+        if self._paints_always or getattr(widget, self.name) != before:
+            widget.changed()
+
 
 class PaintedWidget(Widget):
-    """Draws the rows that ``rows`` paints. Call ``changed`` when there is something new to paint.
+    """Draws the rows that ``rows`` paints. ``changed`` schedules a new painting.
 
     However often ``changed`` is called while a message is handled, it paints once.
     """
@@ -29,9 +53,9 @@ class PaintedWidget(Widget):
     _rows_size: Size | None = None
     _stale = False
     _background: Color | None = None
-    """The colour behind the text, as long as the styles do not change."""
+    """The cached background colour."""
     _sides: tuple[list[Segment], list[Segment]] | None = None
-    """The frame and the room left and right of the painted lines, as long as the styles do not change."""
+    """The cached frame and padding at the left and right of the painted lines."""
 
     def __init__(self, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
         super().__init__(id=id)
@@ -42,7 +66,7 @@ class PaintedWidget(Widget):
         raise NotImplementedError
 
     def changed(self) -> None:
-        """Paint anew as soon as the message at hand is dealt with."""
+        """Paint again after the current message has been handled."""
         if self.is_running and not self._stale:
             self._stale = True
             self.call_next(self._paint)
@@ -50,7 +74,7 @@ class PaintedWidget(Widget):
     def render_lines(self, crop: Region) -> list[Strip]:
         """Return lines of the widget, its frame included.
 
-        Textual's own way to them cares for what no painted widget has, such as tinted lines, and takes longer
+        Textual's own method handles features that no painted widget uses, such as tints, and takes longer
         than the painting.
         """
         size = self.size

@@ -1,7 +1,7 @@
 """A Markdown text in one widget.
 
-Textual's own Markdown makes a widget of every paragraph and bullet. A page of a lesson has dozens of them,
-and every change of focus looks at the style of each again: that was most of what going to another pane took.
+Textual's own Markdown creates a widget per paragraph and bullet. A lesson's page has dozens, and each change
+of focus restyles all of them, which dominated the time of changing panes.
 """
 
 from typing import ClassVar
@@ -16,7 +16,7 @@ _LOOKS = ("h1", "h2", "code", "bullet")
 
 
 class Prose(Widget):
-    """Shows a Markdown text, ``text``; links are not opened. Its looks stand in the console's style sheet."""
+    """Shows a Markdown text, ``text``; links are not opened. Its styles are in the console's style sheet."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {f"prose--{look}" for look in _LOOKS}
     DEFAULT_CSS = "Prose { height: auto; }"
@@ -44,7 +44,7 @@ class Prose(Widget):
 
 
 class _Page:
-    """A Markdown text with looks of its own."""
+    """A Markdown text with a theme of its own."""
 
     def __init__(self, text: str, theme: Theme) -> None:
         self._markdown = _Markdown(text, hyperlinks=False)

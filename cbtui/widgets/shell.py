@@ -1,8 +1,8 @@
-"""The shell pane: ``ros2`` lines and what they wrote, a prompt, and the terminal of programs that read."""
+"""The shell pane: ``ros2`` lines with their output, a prompt, and the keyboard of programs."""
 
 from bisect import bisect_right
-from collections.abc import Collection, Iterator, Sequence
-from itertools import takewhile
+from collections.abc import Collection, Iterator
+from os.path import commonprefix
 from typing import ClassVar, NamedTuple
 
 from rich.cells import cell_len
@@ -46,7 +46,7 @@ _SEQUENCES = {
     "delete": "\x1b[3~",
     "backspace": "\x7f",
 }
-"""What a terminal sends for keys that stand for no character, or not for the one that Textual names."""
+"""Escape sequences that a terminal sends for keys without a character of their own."""
 
 
 class _OutputRow(NamedTuple):
@@ -56,7 +56,7 @@ class _OutputRow(NamedTuple):
 
 
 class ShellOutput(FollowingView):
-    """The lines that were given and what they wrote, up to a moment."""
+    """The lines that were run and their output, up to a moment."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {"shell--given", "shell--said", "shell--error", "shell--status"}
 
@@ -125,22 +125,22 @@ def _shown(text: str) -> str:
 
 
 class Prompt(Input):
-    """Where a line is typed: up and down go through the lines before, tab completes, ctrl+c interrupts."""
+    """The prompt: up and down browse the history, tab completes, ctrl+c interrupts."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.PROMPT)]
 
     class LineSubmitted(Message):
-        """A line is to be carried out."""
+        """The user has entered a line."""
 
         def __init__(self, text: str) -> None:
             super().__init__()
             self.text = text
 
     class LineInterrupted(Message):
-        """The line that goes on is to end."""
+        """The user wants to interrupt the running line."""
 
     class CompletionWanted(Message):
-        """What could stand at the cursor is asked for."""
+        """The user wants completions at the cursor."""
 
         def __init__(self, text: str, cursor: int) -> None:
             super().__init__()
@@ -188,28 +188,23 @@ class Prompt(Input):
         self.post_message(self.LineInterrupted())
 
     def action_leave_prompt(self) -> None:
-        """Let the keys mean what they mean elsewhere again."""
+        """Move the focus to the output, where the other keys work again."""
         self.screen.query_one(ShellOutput).focus()
 
     def complete(self, start: int, words: tuple[str, ...]) -> None:
-        """Put in from ``start`` what all ``words`` have in common; the only one is followed by a blank."""
+        """Insert the common prefix of ``words`` at ``start``; a single word is followed by a blank."""
         rest = self.value[self.cursor_position :]
         if len(words) == 1:
             common, rest = f"{words[0]} ", rest.lstrip()
         else:
-            common = _common_beginning(words)
+            common = commonprefix(words)  # noqa: RUF071 -- letter by letter
         if common.startswith(self.value[start : self.cursor_position]) or len(words) == 1:
             self.value = self.value[:start] + common + rest
             self.cursor_position = start + len(common)
 
 
-def _common_beginning(words: Sequence[str]) -> str:
-    pairs = zip(min(words), max(words), strict=False)
-    return "".join(first for first, _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
-
-
 class ProgramKeyboard(Input):
-    """Where the person types for a program that reads: lines, or each key as it is pressed."""
+    """The keyboard of a program that reads: lines, or single keys."""
 
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.KEYBOARD)]
     reads: reactive[Reading] = reactive(Reading.NOTHING)
@@ -231,7 +226,7 @@ class ProgramKeyboard(Input):
             self.value = ""
 
     def on_key(self, event: Key) -> None:
-        """Give the program the key if it takes keys; else Textual's own handler, called next, takes it."""
+        """Forward the key if the program takes single keys; else Textual's handler, called next, takes it."""
         text = _SEQUENCES.get(event.key) or event.character
         if not self.reads.takes_keys or text is None or event.key in self._ways_out:
             return
@@ -255,7 +250,7 @@ class ProgramKeyboard(Input):
         self.post_message(self.TextTyped(INTERRUPT))
 
     def action_leave_keyboard(self) -> None:
-        """Let the keys mean what they mean elsewhere again."""
+        """Move the focus to the output, where the other keys work again."""
         self.screen.query_one(ShellOutput).focus()
 
 
@@ -276,7 +271,7 @@ class ShellView(Vertical):
         yield Prompt()
 
     def show(self, timeline: Timeline, now: Nanoseconds) -> None:
-        """Show the lines of a timeline up to a moment, and take a completion that has come."""
+        """Show the lines of a timeline up to a moment, and a completion that has arrived."""
         self.query_one(ShellOutput).show(timeline, now)
         completed = timeline.completed
         if completed is not None and completed.line != self._completed:
@@ -284,7 +279,7 @@ class ShellView(Vertical):
             self._offer(completed.start, completed.words)
 
     def ask(self, asked: KeyboardAsked | None, keymap: Keymap, charset: Charset) -> None:
-        """Be the terminal of a program that reads; None: of none."""
+        """Show the keyboard request of a program; None if no program reads."""
         keyboard = self.query_one(ProgramKeyboard)
         if asked is not None:
             keyboard.reads = asked.reads

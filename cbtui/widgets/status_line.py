@@ -1,4 +1,4 @@
-"""The line at the top: which lesson, whether time goes on and how fast, when, with which executor."""
+"""The status line at the top: title, state and speed of the run, moment, executor and losses."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from cbtui.runs.live.live_recording import LiveRecording
 from cbtui.runs.live.live_run import RunState, ShownRun
 from cbtui.runs.live.playhead import Playhead
 from cbtui.text.cells import fit
-from cbtui.widgets.painted_widget import PaintedWidget
+from cbtui.widgets.painted_widget import PaintedWidget, painted
 from sim.durations import duration, timestamp
 from sim.trace.descriptions import executor_label
 from sim.trace.model import Nanoseconds
@@ -22,16 +22,16 @@ _FAINT = Ink(Role.FAINT)
 _WARN = Ink(Role.WARN)
 _GAP = TextRun("   ", _PLAIN)
 _LEAST_TITLE = 5
-"""Columns of the title that are worth more than what is told of a recording."""
+"""The least columns of the title before the recording's state is dropped."""
 _WORTH_TELLING = 10_000_000
-"""Bytes from which on the size of a recording is told."""
+"""Bytes from which on the size of a recording is shown."""
 
 
 @dataclass(frozen=True, slots=True)
 class RunStatus:
-    """What the line tells.
+    """The content of the status line.
 
-    ``back`` is how long before the end the moment on screen lies, 0 for live; ``recorded`` how many events
+    ``back`` is the distance of the moment on screen from the end, 0 for live; ``recorded`` how many events
     have been recorded, None if nothing is being recorded, ``unrecorded`` how many came too fast for that,
     ``recorded_bytes`` how large the recording is;
     ``exported`` is how many per cent of an export are done, None if there is none.
@@ -59,7 +59,7 @@ def status_of(
     recording: LiveRecording | None = None,
     exported: int | None = None,
 ) -> RunStatus:
-    """Return what the line tells of a run; until its executor appears, what the lesson says of it."""
+    """Return the status of a run; until its executor appears, the lesson's own text stands for it."""
     timeline = run.timeline
     at = playhead.now(timeline.end)
     return RunStatus(
@@ -89,21 +89,17 @@ def _pace(run: ShownRun) -> str:
 class StatusLine(PaintedWidget):
     """Shows a status."""
 
-    status: reactive[RunStatus | None] = reactive(None, repaint=False)
+    status: reactive[RunStatus | None] = painted(None)
 
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the line."""
         return [] if self.status is None else [status_row(self.status, size.width)]
 
-    def watch_status(self) -> None:
-        """Tell something else."""
-        self.changed()
-
 
 def status_row(status: RunStatus, width: int) -> list[TextRun]:
-    """Return the line in exactly ``width`` columns; the executor gives way first, then pace and recording.
+    """Return the line in exactly ``width`` columns; the executor is dropped first, then pace and recording.
 
-    Last of all, what the trace lost is told and messages are not.
+    The losses of the trace are dropped last.
     """
     title = TextRun(f" {status.title}", _STRONG)
     state = _state(status)

@@ -1,4 +1,4 @@
-"""The line of panes where only one of them has room."""
+"""The tabs of a layout that shows one pane at a time."""
 
 from collections.abc import Iterator, Sequence
 
@@ -11,7 +11,7 @@ from textual.reactive import reactive
 from cbtui.keys.action import CHECKS, PANES
 from cbtui.looks.theme import Charset, Ink, Role, TextRun
 from cbtui.text.cells import fit
-from cbtui.widgets.painted_widget import PaintedWidget
+from cbtui.widgets.painted_widget import PaintedWidget, painted
 
 _LINE = Ink(Role.FAINT)
 _NOTE = Ink(Role.TEXT)
@@ -19,15 +19,15 @@ _SEPARATOR = " · "
 
 
 class Tabs(PaintedWidget):
-    """Names the panes with their numbers, the one that is shown in brackets."""
+    """Shows the panes with their numbers, the current one in brackets."""
 
     def __init__(self, panes: Sequence[str] = PANES) -> None:
         super().__init__()
         self._panes = panes
 
-    current: reactive[str] = reactive(PANES[0], repaint=False)
-    note: reactive[str] = reactive("", repaint=False)
-    """What the pane that is shown says of itself, the weightiest first; stands at the right."""
+    current: reactive[str] = painted(PANES[0])
+    note: reactive[str] = painted("")
+    """The current pane's note at the right, its most important part first."""
 
     class TabPicked(Message):
         """A pane was clicked."""
@@ -46,14 +46,6 @@ class Tabs(PaintedWidget):
         note = _shortened_note(self.note, room - 2)
         return [[*runs, TextRun("─" * (room - cell_len(note)), _LINE), TextRun(note, _NOTE)]]
 
-    def watch_current(self) -> None:
-        """Show another one in brackets."""
-        self.changed()
-
-    def watch_note(self) -> None:
-        """Say something else of the pane."""
-        self.changed()
-
     def on_click(self, event: Click) -> None:
         """Tell which pane was clicked."""
         start = 1
@@ -68,7 +60,7 @@ class Tabs(PaintedWidget):
 
 
 def _shortened_note(note: str, room: int) -> str:
-    """Return a note with as many of its parts as there is room for, the first one cut off if need be."""
+    """Return as many parts of a note as fit, the first one cut if need be."""
     parts = note.split(_SEPARATOR)
     while len(parts) > 1 and cell_len(_SEPARATOR.join(parts)) > room:
         parts.pop()

@@ -2,7 +2,6 @@
 
 import threading
 from collections.abc import Iterator
-from datetime import UTC, datetime
 from pathlib import Path
 
 from cbtui.engines.session import Deliver, Ended
@@ -11,7 +10,7 @@ from cbtui.runs.live.live_export import ExportableRun
 from cbtui.runs.live.live_recording import FinishFile
 from cbtui.runs.live.live_run import SPEEDS, RunState, neighbouring_speed
 from cbtui.runs.live.playhead import Playhead
-from cbtui.runs.recorded.recording_file import setup_of
+from cbtui.runs.recorded.recording_file import date_text, setup_of
 from cbtui.runs.setup.own_files import PROGRAMS
 from cbtui.runs.setup.shown_program import ShownProgram
 from sim.engine.setup import RunSetup
@@ -20,7 +19,6 @@ from sim.recording import Recording, RecordingError, RecordingMetadata, read
 from sim.trace.events import AnyEvent
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
-from sim.units import SECOND
 
 _BATCH = 2000
 """Events per batch: as many as the screen processes between two frames."""
@@ -225,7 +223,7 @@ def _facts(recording: Recording) -> list[str]:
     about = recording.about
     facts = [f"- file: {_escaped(_plain(str(recording.path)))}"]
     if about.recorded:
-        facts.append(f"- recorded: {_moment(about.recorded)} by cbtui {_escaped(_plain(about.version))}")
+        facts.append(f"- recorded: {date_text(about.recorded)} by cbtui {_escaped(_plain(about.version))}")
     facts.append(f"- clock: {_escaped(_plain(about.clock)) or 'unknown'}")
     facts.append(f"- threads: {_threads(about)}")
     facts += [f"- program: {_escaped(_plain(program))}" for program in about.programs]
@@ -236,13 +234,6 @@ def _facts(recording: Recording) -> list[str]:
 
 def _threads(about: RecordingMetadata) -> str:
     return "the program's own number" if about.threads is None else str(about.threads)
-
-
-def _moment(nanoseconds: int) -> str:
-    try:
-        return f"{datetime.fromtimestamp(nanoseconds // SECOND, UTC):%Y-%m-%d %H:%M:%S} UTC"
-    except (ValueError, OverflowError, OSError):
-        return "at no time that there is"
 
 
 def _plain(text: str) -> str:

@@ -1,6 +1,7 @@
 """Recordings of runs: where one is written, and what it tells of its run."""
 
 import time
+from datetime import UTC, datetime
 from importlib.metadata import version
 from pathlib import Path
 
@@ -8,6 +9,7 @@ import msgspec
 
 from sim.engine.setup import RunSetup
 from sim.recording import Recorder, RecordingMetadata
+from sim.units import SECOND
 
 
 class CannotRecordError(Exception):
@@ -63,3 +65,11 @@ def setup_of(recorded: RecordingMetadata) -> RunSetup | None:
         return msgspec.json.decode(recorded.setup.encode(), type=RunSetup)
     except (msgspec.DecodeError, RecursionError, UnicodeEncodeError):
         return None
+
+
+def date_text(nanoseconds: int) -> str:
+    """Return the date and time of so many nanoseconds since 1970, as recordings have it."""
+    try:
+        return f"{datetime.fromtimestamp(nanoseconds // SECOND, UTC):%Y-%m-%d %H:%M:%S} UTC"
+    except (ValueError, OverflowError, OSError):
+        return "at no time that there is"

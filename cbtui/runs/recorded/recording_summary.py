@@ -2,17 +2,15 @@
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from datetime import UTC, datetime
 from pathlib import Path
 
 from cbtui.runs.recorded.reading_progress import ReadingProgress
-from cbtui.runs.recorded.recording_file import setup_of
+from cbtui.runs.recorded.recording_file import date_text, setup_of
 from cbtui.runs.setup.changes import changes_in
 from cbtui.text.output import complain, say, shown
 from sim.durations import timestamp
 from sim.recording import Recording, RecordingError, Topic, read
 from sim.trace.events import AnyEvent, ContentsLost, EventsLost, RunEnded, RunEnding, RunStarted
-from sim.units import SECOND
 
 _LABEL = "{:<11}{}\n"
 
@@ -86,7 +84,7 @@ def _lines(recording: Recording, tally: _Tally, topics: list[Topic], size: int) 
     clock = about.clock or (started.clock if started else "unknown")
     yield _line("run", f"{title}, {clock} clock")
     if about.recorded:
-        yield _line("recorded", f"{_moment(about.recorded)} by cbtui {about.version}")
+        yield _line("recorded", f"{date_text(about.recorded)} by cbtui {about.version}")
     for program in about.programs:
         yield _line("program", program + (", with its source" if program in recording.sources else ""))
     if about.arguments:
@@ -108,13 +106,6 @@ def _changed(recording: Recording) -> str:
     """What a person changed about the program, beside its arguments."""
     setup = setup_of(recording.about)
     return "" if setup is None else changes_in(setup).words
-
-
-def _moment(nanoseconds: int) -> str:
-    try:
-        return f"{datetime.fromtimestamp(nanoseconds // SECOND, UTC):%Y-%m-%d %H:%M:%S} UTC"
-    except (ValueError, OverflowError, OSError):
-        return "at no time that there is"
 
 
 def _topic_lines(topics: list[Topic]) -> Iterator[str]:

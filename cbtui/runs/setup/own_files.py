@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Sequence
-from itertools import islice, takewhile
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -87,12 +87,8 @@ def completed(text: str) -> PathCompletion:
     names = _names(_expanded(folder or "."), beginning)
     if not names:
         return PathCompletion(text, ())
-    return PathCompletion(os.path.join(folder, _common_beginning(names)), names)  # noqa: PTH118 - as typed
-
-
-def _common_beginning(names: Sequence[str]) -> str:
-    pairs = zip(min(names), max(names), strict=False)
-    return "".join(first for first, _ in takewhile(lambda pair: pair[0] == pair[1], pairs))
+    common = os.path.commonprefix(names)  # noqa: RUF071 -- letter by letter
+    return PathCompletion(os.path.join(folder, common), names)  # noqa: PTH118 - as typed
 
 
 def _names(folder: Path, beginning: str) -> list[str]:

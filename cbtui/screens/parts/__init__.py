@@ -1,1 +1,1 @@
-"""The parts that screens with runs are put together from, each with a state and actions of its own."""
+"""The parts that screens with runs are composed of, each with its own state and actions."""

@@ -1,4 +1,4 @@
-"""Which bar on a screen's lanes is selected, and the keys that go from bar to bar."""
+"""The selection of a bar on a screen's lanes, and the keys that move it."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -10,7 +10,7 @@ from cbtui.widgets.lanes import Lanes, Selection, start_of
 
 @dataclass
 class BarSelection(ScreenPart):
-    """Selects one bar or lane, on one of the screen's lanes; ``changed`` is called when another one is."""
+    """Selects one bar or lane on the screen's lanes; ``changed`` is called for a new selection."""
 
     lanes: Callable[[], Sequence[Lanes]]
     navigation: TimeNavigation
@@ -23,7 +23,7 @@ class BarSelection(ScreenPart):
 
     @property
     def _chosen(self) -> Lanes:
-        """The lanes on which something is selected; the first, if nothing is."""
+        """The lanes with the selection; the first ones if there is none."""
         every = self.lanes()
         return next((lanes for lanes in every if lanes.selection is not None), every[0])
 
@@ -35,7 +35,7 @@ class BarSelection(ScreenPart):
         self.changed()
 
     def pick(self, message: Lanes.BarPicked) -> None:
-        """Select what was pointed at, and go to that moment."""
+        """Select the clicked bar, and go to its moment."""
         self.select(message.selection, message.control)
         self.navigation.seek(message.at)
 

@@ -1,4 +1,4 @@
-"""The key that takes what is on screen elsewhere, as plain text."""
+"""The key that copies what is on screen as plain text."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -21,7 +21,7 @@ from sim.trace.timeline import Timeline
 
 @dataclass
 class DetailsCopy(ScreenPart):
-    """Copies what is selected, or else what the moment on screen means."""
+    """Copies the selected bar's details, or else a summary of the moment on screen."""
 
     screen: Screen[None]
     host: ScreenHost
@@ -30,7 +30,7 @@ class DetailsCopy(ScreenPart):
     heading: str
 
     def action_copy_details(self) -> None:
-        """Put it into the terminal's clipboard (OSC 52, which works over ssh)."""
+        """Copy to the terminal's clipboard (OSC 52, which works over ssh)."""
         timeline, now = self.runs.timeline, self.navigation.now
         lanes = self.screen.query_one(Lanes)
         if lanes.selection is None:
@@ -45,7 +45,7 @@ class DetailsCopy(ScreenPart):
 
 
 def summary(heading: str, timeline: Timeline, now: Nanoseconds, concurrency: Concurrency) -> Iterator[str]:
-    """Say what a moment means, who runs and who waits for what."""
+    """Yield the lines of a summary: the diagnosis, what runs, and what waits for what."""
     label = executor_label(timeline)
     yield f"{heading}, t {timestamp(now)}" + (f", {label}" if label else "")
     yield diagnosis_at(timeline, now, concurrency).text

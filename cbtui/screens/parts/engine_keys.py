@@ -1,4 +1,4 @@
-"""Keys that command a run: its time, its service, its robot, its programs' keyboard and its recording."""
+"""Keys that command an engine: time, service, robot, keyboard of the programs, and recording."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,13 +15,13 @@ from sim.engine.setup import RobotUse
 
 @dataclass
 class PaceKeys(ScreenPart):
-    """Pauses a run, lets it go on, and changes its speed."""
+    """Pauses and resumes a run, and changes its speed."""
 
     host: ScreenHost
     runs: RunController[ShownRun]
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer what would change something."""
+        """Offer the actions that would have an effect."""
         run = self.runs.run
         changes = {
             "pause": not run.paused,
@@ -54,14 +54,14 @@ class PaceKeys(ScreenPart):
 
 @dataclass
 class RecordingKey(ScreenPart):
-    """Records stretches of a run to files in the current folder."""
+    """Records periods of a run to files in the current folder."""
 
     host: ScreenHost
     runs: RunController[LiveRun]
     finisher: FileFinisher
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer it as long as something comes."""
+        """Offer it while the engine lives."""
         return self.runs.run.alive
 
     def action_record(self) -> None:
@@ -84,7 +84,7 @@ class WorldKeys(ScreenPart):
     runs: RunController[LiveRun]
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer it to an engine that is there; a robot is put back by one that answers."""
+        """Offer them while the engine lives; resetting the robot needs one that answers."""
         run = self.runs.run
         has_robot = run.setup.robot is not RobotUse.NEVER and run.state is not RunState.SILENT
         return run.alive and (has_robot or action != "reset_world")
@@ -104,14 +104,14 @@ class WorldKeys(ScreenPart):
 
 @dataclass
 class TypingKeys(ScreenPart):
-    """Goes to the line where ``ros2`` lines are typed, or input for the programs."""
+    """Moves the focus to the prompt for ``ros2`` lines, or to the input of the programs."""
 
     runs: RunController[LiveRun]
     panes: PaneLayout
     shell: Callable[[], ShellView]
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer what somebody waits for."""
+        """Offer the prompt while the engine lives, and typing while a program reads."""
         run = self.runs.run
         if action == "prompt":
             return run.alive and run.setup.real is None

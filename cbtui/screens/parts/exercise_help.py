@@ -1,4 +1,4 @@
-"""What helps with an exercise: its hints, one by one, and its solution."""
+"""The keys for an exercise's hints and solution."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,15 +15,15 @@ from lessons.description import Exercise
 from sim.foreign_file import MOST_OF_A_PROGRAM, read_text
 
 _READING = 15.0
-"""Seconds that a hint stays which is told over another pane than the guide."""
+"""Seconds for which a hint is shown as a notification."""
 
 
 @dataclass
 class ExerciseHelp(ScreenPart):
-    """Gives hints and shows the solution, once the exercise can be read.
+    """Gives hints and shows the solution, once the exercise is unlocked.
 
-    ``is_readable`` tells whether it can, ``is_done`` whether no hint is wanted any more; ``file`` is the
-    learner's, None where the exercise has not been begun.
+    ``is_readable`` tells whether it is unlocked, ``is_done`` whether it is solved; ``file`` is the learner's,
+    None before the exercise was begun.
     """
 
     screen: Screen[None]
@@ -35,7 +35,7 @@ class ExerciseHelp(ScreenPart):
 
     @property
     def _exercise(self) -> Exercise | None:
-        """The exercise, if it can be read."""
+        """The exercise, if it is unlocked."""
         standing = self.learning.standing
         return self.learning.lesson.exercise if standing is not None and self.is_readable(standing) else None
 
@@ -47,7 +47,7 @@ class ExerciseHelp(ScreenPart):
         return action == "solution" or (standing.progress.hints < len(exercise.hints) and not self.is_done())
 
     async def action_hint(self) -> None:
-        """Take the next hint: it is added to the page, and told where the page is not in sight."""
+        """Take the next hint: it is added to the page, and shown as a notification if the page is hidden."""
         exercise, learning = self._exercise, self.learning
         if exercise is None:
             return
@@ -55,7 +55,7 @@ class ExerciseHelp(ScreenPart):
         if number > len(exercise.hints):
             return
         learning.store.take_hint(self.learning.lesson.id, number)
-        await learning.learnt()
+        await learning.update_page()
         if learning.guide.display:
             learning.guide.go_to(PageSection.HINTS)
         else:
@@ -64,7 +64,7 @@ class ExerciseHelp(ScreenPart):
             self.screen.notify(hint, title=title, timeout=_READING, markup=False)
 
     def action_solution(self) -> None:
-        """Show the solution; the first time, ask whether that is wanted."""
+        """Show the solution, after a confirmation the first time."""
         from cbtui.screens.solution import ConfirmSolutionScreen  # with Pygments
 
         exercise, progress = self._exercise, self.learning.progress
@@ -89,7 +89,7 @@ class ExerciseHelp(ScreenPart):
 
 
 def _text_in(path: Path) -> str:
-    """The text of a file; of one that is gone or no text, as much as there is."""
+    """The text of a file, with replacements for what is not text; "" if it is missing."""
     try:
         return read_text(path, MOST_OF_A_PROGRAM, "replace")
     except OSError:

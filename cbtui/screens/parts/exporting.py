@@ -1,4 +1,4 @@
-"""The key that takes the run on screen to other programs, as a file in the current folder."""
+"""The key that exports the run on screen to a file in the current folder."""
 
 import asyncio
 from collections.abc import Callable
@@ -14,11 +14,11 @@ from cbtui.screens.parts.part import ScreenHost, ScreenPart
 from cbtui.screens.parts.runs import RunController
 
 PROGRESS_INTERVAL = 0.25
-"""Seconds after which it is told anew how far an export has come."""
+"""Seconds between two updates of an export's progress."""
 _PROGRESS_AFTER = 1.0
-"""Seconds after which it is told how far an export has come."""
+"""Seconds after which an export's progress is shown."""
 _EXIT_TIMEOUT = 3.0
-"""Seconds that an export gets to come to its end when the screen is left."""
+"""Seconds that a running export has when the screen is left."""
 
 
 @dataclass
@@ -35,26 +35,26 @@ class Exports(ScreenPart):
 
     @property
     def percent(self) -> int | None:
-        """How many per cent of an export are done; None if there is none that takes its time."""
+        """The progress of an export in per cent; None if there is none or it has just begun."""
         export = self._export
         if export is None or export.over or self.clock() - self._began < _PROGRESS_AFTER:
             return None
         return int(100 * export.share)
 
     def look(self) -> None:
-        """Have it told how far an export has come."""
+        """Show the progress of an export."""
         if self._export is not None:
             if self._export.over:
                 self._export = None
             self.host.redraw()
 
     def leave(self) -> None:
-        """Let an export come to its end, but not for long: what is half done then is taken away."""
+        """Abort a running export after a timeout; its partial file is removed."""
         if self._export is not None:
             asyncio.get_running_loop().call_later(_EXIT_TIMEOUT, self._export.give_up)
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer an export of what there is."""
+        """Offer an export once there are events."""
         return self.runs.timeline.end > 0
 
     def action_export(self) -> None:

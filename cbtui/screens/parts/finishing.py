@@ -1,4 +1,4 @@
-"""Files that are written to their end while the screen goes on, or is left."""
+"""Finishes files in the background, also while the screen is left."""
 
 import asyncio
 from collections.abc import Callable
@@ -7,7 +7,7 @@ from cbtui.runs.live.live_recording import FinishFile
 
 
 class FileFinisher:
-    """Finishes files on threads of their own; ``tell`` gets a sentence on what each holds."""
+    """Finishes files on threads of their own; ``tell`` gets a sentence on each."""
 
     def __init__(self, tell: Callable[[str], None]) -> None:
         self.tell = tell

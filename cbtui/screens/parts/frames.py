@@ -1,4 +1,4 @@
-"""How much of a screen each frame draws."""
+"""The frame scheduler: how much of a screen each frame draws."""
 
 from collections.abc import Callable
 from enum import Enum, auto
@@ -8,17 +8,16 @@ from time import monotonic
 FRAMES_A_SECOND = 30
 
 _LANES_A_PANE = 6
-"""Frames of the lanes for each of the other panes while a run goes on: those tell in words and figures, which
-nobody reads as fast as lanes are seen to move."""
+"""Lane frames per frame of the other panes: their words and figures are read slower than lanes move."""
 
 _LANES_A_TEXT = 12
-"""Frames of the lanes for each of log and code: lines that scroll past are read no faster."""
+"""Lane frames per frame of log and code, whose scrolling lines are read slower still."""
 
 _REST_FACTOR = 2.0
-"""Seconds of rest for each second that a frame had to wait for a processor."""
+"""Seconds of rest per second that a frame waited for a CPU."""
 
 _MAX_REST = 0.5
-"""Seconds after which a frame is drawn however short of processors the machine is."""
+"""The longest rest in seconds."""
 
 
 class FrameContent(Enum):
@@ -31,7 +30,7 @@ class FrameContent(Enum):
 
 
 class FrameSchedule:
-    """Draws often what moves, seldom what is read, and at once what the person did.
+    """Draws moving parts often, text seldom, and the effects of keys at once.
 
     ``clock`` tells real time in seconds.
     """
@@ -42,15 +41,15 @@ class FrameSchedule:
         self._stale = True
         self._grown = False
         self._texts_behind = False
-        self._drawn_at = inf  # the first time is the timer's
+        self._drawn_at = inf  # the timer draws the first frame
         self._rests_until = -inf
 
     def invalidate(self) -> None:
-        """Note that there is more to draw than that the run has gone on."""
+        """Note that everything must be drawn, not only the growth of the run."""
         self._stale = True
 
     def grow(self) -> None:
-        """Note that the run has gone on."""
+        """Note that the run has grown."""
         self._grown = True
 
     def next(self) -> FrameContent:
@@ -65,15 +64,15 @@ class FrameSchedule:
         return FrameContent.ALL_BUT_TEXTS if self._frames % _LANES_A_PANE == 0 else FrameContent.LANES
 
     def is_due_before_next(self) -> bool:
-        """Tell whether to draw without waiting for a frame: not if that was just done."""
+        """Tell whether to draw at once: only if nothing was drawn within the last frame."""
         return self._stale and self._clock() - self._drawn_at >= 1 / FRAMES_A_SECOND
 
     def drawn(self, extent: FrameContent) -> None:
-        """Note that everything, or all but the texts, is being drawn."""
+        """Note what is being drawn: everything, or all but the texts."""
         self._stale = self._grown = False
         self._texts_behind = extent is not FrameContent.ALL
         self._drawn_at = self._clock()
 
     def rest(self, waited: float) -> None:
-        """Draw nothing unasked for a while: the last frame waited so many seconds for a processor."""
+        """Rest after a frame that waited so many seconds for a CPU; key effects are still drawn."""
         self._rests_until = self._clock() + min(_REST_FACTOR * waited, _MAX_REST)

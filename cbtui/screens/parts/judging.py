@@ -1,4 +1,4 @@
-"""The runs of a learner's file, held against the checks of an exercise."""
+"""Judges the runs of a learner's file by the checks of an exercise."""
 
 import asyncio
 from dataclasses import replace
@@ -16,7 +16,7 @@ from sim.trace.model import Nanoseconds
 
 
 class Judging:
-    """Knows what the file on screen holds, what its run has taken, and what came of it.
+    """The state of an exercise on screen: the file's content, the run's budget, and the results.
 
     Raises BadLesson if the lesson's checks cannot be read.
     """
@@ -24,29 +24,29 @@ class Judging:
     def __init__(self, lesson: Lesson, following: Lesson | None, file: Path) -> None:
         self.file = file
         self.budget = RunBudget()
-        """What the run may take, and has taken."""
+        """The run's budget."""
         self.sheet: ChecksSheet | None = None
-        """What came of the run on screen; None as long as it is not judged."""
+        """The results of the run on screen; None until it is judged."""
         self.is_gone = False
-        """Whether there is no file."""
+        """Whether the file is missing."""
         self._lesson = lesson
         self._following = following
         self._judge = Judge(lesson)
         self._content: bytes | None = None
 
     def begin(self) -> None:
-        """Note that the file is run as it is now."""
+        """Note that a run of the file's current content begins."""
         self._content = content_of(self.file)
         self.budget = RunBudget()
         self.sheet = None
 
     def is_changed_by(self, content: bytes | None) -> bool:
-        """Take what the file holds now (None: it is gone), and tell whether that is to be run."""
+        """Note the file's content (None: it is missing); returns whether it must be run."""
         self.is_gone = content is None
         return content is not None and content != self._content
 
     def spent(self, run: LiveRun) -> str | None:
-        """Count what the run takes, and say of what it has taken too much; None if it has not."""
+        """Update the budget; returns a sentence if the run exceeds it, else None."""
         if not run.alive:
             return None
         if run.paused or (run.virtual and run.speed is not None):
@@ -56,7 +56,7 @@ class Judging:
         return self.budget.spent(run.timeline, self.file.name)
 
     async def judge(self, observed: ObservedRun) -> CheckedFile:
-        """Judge a run that is over, on the thread that draws it: others may not read it meanwhile."""
+        """Judge a finished run on the UI thread, which alone reads its timeline."""
         judged = []
         if observed.trouble is None:
             for check in self._judge.checks:
@@ -65,10 +65,10 @@ class Judging:
         return CheckedFile(tuple(judged), len(self._judge.checks), observed)
 
     def words(self, keys: ExerciseKeys) -> ExerciseTexts:
-        """Return what makes sentences on the exercise that name these keys."""
+        """Return the texts on the exercise with these keys."""
         return ExerciseTexts(self._lesson, self._judge.checks, self.file.name, self._following, keys)
 
     def sheet_at(self, end: Nanoseconds, words: ExerciseTexts) -> ChecksSheet:
-        """Return what to show of the run, which has come to ``end``."""
+        """Return the results to show of a run that has come to ``end``."""
         sheet = self.sheet or words.running(end)
         return replace(sheet, news=words.gone, standing=CheckStatus.FAILED) if self.is_gone else sheet

@@ -1,4 +1,4 @@
-"""The keys that a run's screen offers, by what its parts can do now and what has the focus."""
+"""The keys that a run's screen offers, by the state of its parts and by the focus."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -19,10 +19,10 @@ from cbtui.widgets.log import LogFilter, LogLines
 from cbtui.widgets.shell import ProgramKeyboard, Prompt
 
 _ON_LANES = ("zoom", "pan", "select", "lane", "event", "code", "copy", "deselect")
-"""Labels of the actions that the lanes tell of themselves."""
+"""Labels of the actions that the lanes' frame shows."""
 
 _WITH_KEYS = (LogLines, CodeView, ChecksView)
-"""Panes that know which of their own actions have a meaning."""
+"""Panes with a ``check_action`` of their own."""
 
 _TYPED_INTO = (Prompt, ProgramKeyboard, LogFilter)
 _NOT_ON: Mapping[str, tuple[type[Widget], ...]] = {
@@ -34,7 +34,7 @@ _NOT_ON: Mapping[str, tuple[type[Widget], ...]] = {
     "filter_log": (LogLines,),
     "open_source": (CodeView,),
 }
-"""Widgets that make something else of an action's keys while they have the focus."""
+"""Widgets that use an action's keys otherwise while they have the focus."""
 
 _SCOPES: Mapping[type[Widget], Scope] = {
     Prompt: Scope.PROMPT,
@@ -44,12 +44,12 @@ _SCOPES: Mapping[type[Widget], Scope] = {
     CodeView: Scope.CODE,
     ChecksView: Scope.CHECKS,
 }
-"""Whose keys are told of while it has the focus."""
+"""The scope whose keys are shown while a widget has the focus."""
 
 
 @dataclass
 class OfferedKeys:
-    """Tells which actions have a meaning now, and shows their keys."""
+    """Tells which actions are available, and shows their keys."""
 
     screen: SizedScreen[Any]
     parts: ScreenParts
@@ -57,7 +57,7 @@ class OfferedKeys:
     _shown: tuple[Action, ...] = ()
 
     def offer(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Tell whether an action has a meaning now."""
+        """Tell whether an action is available now."""
         focused = self.screen.focused
         if isinstance(focused, _WITH_KEYS) and not focused.check_action(action, parameters):
             return False
@@ -68,9 +68,9 @@ class OfferedKeys:
         return self.parts.offer(action, parameters)
 
     def show(self) -> None:
-        """Tell the line of keys when others have a meaning, and the lanes of theirs."""
+        """Update the key bar and the lanes' frame if other actions are available."""
         lanes, bar = self.screen.query_one(Lanes), self.screen.query_one(KeyBar)
-        # Where the lanes have a frame, that tells of them.
+        # In the grid the lanes have a frame, which shows their keys.
         framed = self.screen.layout_now is Layout.GRID
         bar.first = (*_ON_LANES, "enlarge") if lanes.has_focus and not framed else ()
         working = tuple(bar.working())
@@ -80,7 +80,7 @@ class OfferedKeys:
         lanes.hint = hint([action for action in working if action.label in _ON_LANES], self.charset)
 
     def follow_focus(self) -> None:
-        """Show the keys of what has the focus now."""
+        """Show the keys of the widget with the focus."""
         focused = self.screen.focused
         scopes = (scope for kind, scope in _SCOPES.items() if isinstance(focused, kind))
         self.screen.query_one(KeyBar).show(next(scopes, Scope.LESSON))

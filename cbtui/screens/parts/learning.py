@@ -1,4 +1,4 @@
-"""How far the learner is in the lesson on screen, and what of its page can be read so far."""
+"""The learner's progress in the lesson on screen, and its page."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -17,17 +17,17 @@ from lessons.lesson import Lesson
 from lessons.progress import LessonProgress, Progress
 
 _NAMED = ("predict", "explain", "hint", "solution", "exercise")
-"""The actions whose keys the page names."""
+"""Actions whose keys the page names."""
 
 
 def signs() -> PageKeys:
-    """Return the registry's keys: the guide shows those in force, as for the lesson's own texts."""
+    """Return the registry's keys, which the guide replaces by those in force."""
     return PageKeys(*(STANDARD.sign(Scope.LESSON, action, Charset.ASCII) for action in _NAMED))
 
 
 @dataclass
 class Learning:
-    """Keeps how far the learner is in a lesson, and shows its page; ``write`` makes the page of that."""
+    """Tracks the learner's progress in a lesson, and shows its page, which ``write`` creates."""
 
     screen: Screen[None]
     host: ScreenHost
@@ -35,18 +35,18 @@ class Learning:
     lesson: Lesson
     write: Callable[[PageState], Page]
     standing: PageState | None = None
-    """How far the learner is; None until the page is shown first."""
-    finds_out: bool = False
-    """Whether a run is going on to find out what is true."""
+    """The state of the page; None until it is shown first."""
+    outcome_pending: bool = False
+    """Whether the run that shows the true answers is in progress."""
 
     @property
     def store(self) -> Progress:
-        """Where the learner's progress is kept."""
+        """The store of the learner's progress."""
         return self.host.console.progress
 
     @property
     def progress(self) -> LessonProgress:
-        """How far the learner is by what is kept."""
+        """The stored progress in the lesson."""
         return self.store.of(self.lesson.id)
 
     @property
@@ -55,25 +55,25 @@ class Learning:
         return self.screen.query_one(Guide)
 
     def page(self) -> Page:
-        """Return what can be read now."""
+        """Return the unlocked page."""
         if self.standing is None:
             self.standing = PageState(self.progress)
         return self.write(self.standing)
 
-    def take_stock(self, outcome: PredictionOutcome | None = None) -> None:
-        """Note how far the learner is; what a run showed stays known until the next is to find it out."""
-        known = None if self.standing is None or self.finds_out else self.standing.outcome
-        self.standing = PageState(self.progress, outcome or known, self.finds_out)
+    def update_state(self, outcome: PredictionOutcome | None = None) -> None:
+        """Update the state of the page; a known outcome is kept until the next run for one."""
+        known = None if self.standing is None or self.outcome_pending else self.standing.outcome
+        self.standing = PageState(self.progress, outcome or known, self.outcome_pending)
         self.host.redraw()
 
-    async def learnt(self, outcome: PredictionOutcome | None = None) -> None:
-        """Take in what was learnt, and show what can be read now."""
-        self.take_stock(outcome)
+    async def update_page(self, outcome: PredictionOutcome | None = None) -> None:
+        """Update the state, and show the unlocked page."""
+        self.update_state(outcome)
         for sentence in self.store.troubles():
             self.screen.notify(sentence, severity="warning", markup=False)
         await self.guide.show(self.page())
 
     def read(self, part: PageSection) -> None:
-        """Go to a part of the page."""
+        """Go to a section of the page."""
         self.panes.show("guide")
         self.guide.go_to(part)

@@ -1,4 +1,4 @@
-"""Keys that move the cursor and the stretch of time on screen."""
+"""Keys that move the cursor and the window of time on screen."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -6,20 +6,20 @@ from dataclasses import dataclass, field
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.live.playhead import SPANS, Playhead
 from cbtui.screens.moment import MomentScreen
-from cbtui.screens.parts.part import DialogHost, ScreenPart
+from cbtui.screens.parts.part import ScreenPart, WindowHost
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 
 @dataclass
 class TimeNavigation(ScreenPart):
-    """Holds the playhead of a screen, and moves it through the time of one run or of several.
+    """Holds and moves the playhead of a screen with one or more runs.
 
-    ``end`` is the last moment there is, ``moved`` is called whenever the playhead was moved, and ``live``
-    gives the run that can be asked for later moments, where there is one.
+    ``end`` returns the last moment, ``moved`` is called after each move, and ``live`` returns the run whose
+    engine can run on, if there is one.
     """
 
-    host: DialogHost
+    host: WindowHost
     timelines: Callable[[], Sequence[Timeline]]
     end: Callable[[], Nanoseconds]
     moved: Callable[[], None]
@@ -33,11 +33,11 @@ class TimeNavigation(ScreenPart):
 
     @property
     def window(self) -> Window:
-        """The stretch on screen."""
+        """The window on screen."""
         return self.playhead.window(self.end())
 
     def move(self, playhead: Playhead) -> None:
-        """Show what another playhead is at."""
+        """Set the playhead."""
         self.playhead = playhead
         self.moved()
 
@@ -50,7 +50,7 @@ class TimeNavigation(ScreenPart):
         self.move(self.playhead.zoomed(steps, self.end()))
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer what would move something."""
+        """Offer the actions that would have an effect."""
         playhead, end = self.playhead, self.end()
         run = self.live()
         meaningless = {
@@ -74,7 +74,7 @@ class TimeNavigation(ScreenPart):
         self.move(self.playhead.moved(1, self.end()))
 
     def action_step(self) -> None:
-        """Go on by one scheduling decision, or to the next event of what was looked back to."""
+        """Run to the next scheduling decision, or, looking back, go to the next event."""
         run = self.live()
         if self.playhead.at is None and run is not None:
             run.step()
@@ -94,7 +94,7 @@ class TimeNavigation(ScreenPart):
         self.host.ask(MomentScreen(self.now, self.end(), goes_on, self.host.charset), self._go_to_time)
 
     def _go_to_time(self, moment: Nanoseconds | None) -> None:
-        """Look back at a moment that has passed; have the run go on to one that has not."""
+        """Go to a past moment, or let the run continue to a future one."""
         if moment is None:
             return
         is_to_come = moment > self.end()
@@ -108,7 +108,7 @@ class TimeNavigation(ScreenPart):
         return run if run is not None and run.alive else None
 
     def action_live(self) -> None:
-        """Go back to the present."""
+        """Follow the end of the run."""
         self.move(self.playhead.live())
 
     def action_zoom_in(self) -> None:

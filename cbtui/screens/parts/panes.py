@@ -1,4 +1,4 @@
-"""The panes of a run: which of them is shown, which has the keys, and what stands in its frame."""
+"""The panes of a run: which is current, which has the focus, and their titles."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -22,18 +22,18 @@ from cbtui.widgets.tabs import Tabs, title_of
 
 _PANE_ALONE = "-maximised"
 _LANES_ALONE = "-lanes-alone"
-"""Classes of a screen that one pane, or the lanes, fill."""
+"""Style classes of a screen that one pane, or the lanes, fill."""
 _BEHIND = {"log": "shell", "checks": "guide"}
-"""Panes of the grid in whose place another is shown while that is the current one."""
+"""Panes of the grid that are replaced by another pane while that is current."""
 _INSIDES: dict[str, type[Widget]] = {"log": LogLines, "shell": ShellOutput}
-"""What takes the keys of a pane that does not take them itself."""
+"""The widget inside a pane that takes the focus."""
 
 
 @dataclass
 class PaneLayout(ScreenPart):
-    """Arranges the panes ``names`` of a screen, the current one of which can fill it, as the lanes can.
+    """Arranges the panes ``names`` of a screen; the current one, or the lanes, can fill it.
 
-    ``changes`` tells in words what the person changed about the run.
+    ``changes`` returns the user's changes to the run in words.
     """
 
     screen: Screen[None]
@@ -57,21 +57,21 @@ class PaneLayout(ScreenPart):
             self.pane(each).set_class(_BEHIND.get(each) == name, "-behind", update=False)
         screen.update_node_styles(animate=False)
         screen.query_one(Tabs).current = name
-        self.entitle()
+        self.update_titles()
         if not self.pane(name).has_focus_within:
             inside = _INSIDES.get(name)
             (self.pane(name) if inside is None else screen.query_one(inside)).focus()
         self.host.redraw()
 
     def follow_focus(self, focused: Widget) -> None:
-        """Make the pane current that the person clicked on."""
+        """Make the pane with the focus current."""
         ids = (widget.id for widget in focused.ancestors_with_self)
         name = next((each for each in ids if each in self.names), None)
         if name is not None and name != self.current:
             self.show(name)
 
-    def entitle(self) -> None:
-        """Say in frames and tabs what panes say of themselves."""
+    def update_titles(self) -> None:
+        """Show the notes of panes in their frames and in the tabs."""
         notes = {}
         for name in self.names:
             pane = self.pane(name)
@@ -94,7 +94,7 @@ class PaneLayout(ScreenPart):
         self.host.redraw()
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer the panes that there are."""
+        """Offer the existing panes."""
         return action != "show_pane" or not parameters or parameters[0] in self.names
 
     def action_show_pane(self, name: str) -> None:
@@ -106,7 +106,7 @@ class PaneLayout(ScreenPart):
         self.show(self.names[(self.names.index(self.current) + 1) % len(self.names)])
 
     def action_maximise(self) -> None:
-        """Let the current pane, or the lanes if they have the keys, fill the screen; or none of them."""
+        """Let the current pane, or the lanes if they have the focus, fill the screen, or undo that."""
         if self.screen.query_one(Lanes).has_focus:
             self.action_enlarge_lanes()
         else:
@@ -130,7 +130,7 @@ class PaneLayout(ScreenPart):
         self.screen.query_one(LogView).focus_filter()
 
     def action_open_source(self) -> None:
-        """Open the code in the person's editor; the run goes on meanwhile."""
+        """Open the code in the user's editor; the run continues meanwhile."""
         self.screen.run_worker(self._edit(), group="editor", exclusive=True)
 
     async def _edit(self) -> None:

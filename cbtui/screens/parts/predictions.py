@@ -1,4 +1,4 @@
-"""The predictions of a lesson: asked before its run, held against a run beside it, and explained."""
+"""The predictions of a lesson: asked before its run, compared with a separate run, and explained."""
 
 import asyncio
 from collections.abc import Awaitable, Callable
@@ -17,15 +17,15 @@ from cbtui.screens.prediction import PredictionExit, PredictionScreen
 
 _SECOND = 1_000_000_000
 _TIMEOUT = 1.0
-"""Seconds that the console waits for an engine that is held against a prediction; it is killed before."""
+"""Seconds to wait at exit for the separate run's engine, which is killed sooner."""
 
 
 @dataclass
 class Predictions(ScreenPart):
-    """Asks what the learner expects, and tells what is true when enough of the run was seen."""
+    """Asks for predictions, and unlocks the true answers once enough of the run was watched."""
 
     class Found(Message):
-        """The run that predictions are held against is over."""
+        """The run that predictions are compared with has ended."""
 
         def __init__(self, outcome: PredictionOutcome) -> None:
             super().__init__()
@@ -39,23 +39,23 @@ class Predictions(ScreenPart):
     _wanted: bool = False
 
     async def leave(self) -> None:
-        """Leave no engine behind."""
+        """Wait for the separate run's engine to end."""
         if self._run is not None:
             self._run.give_up()
             await asyncio.to_thread(self._run.wait, _TIMEOUT)
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer what is left to predict; the explanation always, once there is a page for it."""
+        """Offer open predictions, and the explanation once the page is shown."""
         return self.learning.standing is not None and (action == "explain" or self.can_predict)
 
     @property
     def can_predict(self) -> bool:
-        """Whether there is a question left, and nothing was shown yet that answers it."""
+        """Whether a question is open and its answer still locked."""
         progress = self.learning.progress
         return not progress.seen and not all_predicted(self.learning.lesson, progress)
 
     def ask(self, go_on: Callable[[PredictionExit | None], Awaitable[None]]) -> None:
-        """Ask the questions that are left."""
+        """Ask the open questions."""
         lesson, learning = self.learning.lesson, self.learning
         screen = PredictionScreen(
             introduction(lesson.guide),
@@ -67,28 +67,28 @@ class Predictions(ScreenPart):
         self.host.ask(screen, go_on)
 
     def action_predict(self) -> None:
-        """Answer the questions that are left."""
+        """Ask the open questions."""
 
         async def go_on(_: PredictionExit | None) -> None:
-            await self.learning.learnt()
+            await self.learning.update_page()
 
         if self.can_predict:
             self.ask(go_on)
 
     def look_whether_watched(self) -> None:
-        """Unlock what comes after the run when enough of it was seen."""
+        """Unlock the explanation once enough of the run was watched."""
         learning = self.learning
         if learning.standing is None or learning.standing.progress.seen or not self._was_watched():
             return
         learning.store.see(self.learning.lesson.id)
         self._find_out()
-        learning.take_stock()
-        self.screen.run_worker(learning.learnt(), group="page")
+        learning.update_state()
+        self.screen.run_worker(learning.update_page(), group="page")
         key = self.host.key("explain")
         self.host.tell(f"The guide now tells what the run showed, and why: {key} goes there.")
 
     def _was_watched(self) -> bool:
-        """Whether the run has come to where its predictions can be told from."""
+        """Whether enough of the run was watched to judge the predictions."""
         timeline, terms = self.runs.timeline, self.learning.lesson.run
         if timeline.ended is not None:
             return not timeline.ended.failed
@@ -99,7 +99,7 @@ class Predictions(ScreenPart):
         )
 
     async def action_explain(self) -> None:
-        """Tell what is true and why; who was not asked yet may say first what they expect."""
+        """Show the true answers and their reasons; open questions are asked first."""
         if self.can_predict:
             self.ask(self._explain_after)
         else:
@@ -109,7 +109,7 @@ class Predictions(ScreenPart):
         if way is PredictionExit.ON:
             await self._explain()
         else:
-            await self.learning.learnt()
+            await self.learning.update_page()
 
     async def _explain(self) -> None:
         learning = self.learning
@@ -118,26 +118,26 @@ class Predictions(ScreenPart):
         learning.store.see(self.learning.lesson.id)
         self._wanted = True
         self._find_out()
-        await learning.learnt()
+        await learning.update_page()
         learning.read(PageSection.SHOWN if self.learning.lesson.predictions else PageSection.EXPLANATION)
 
     def _find_out(self) -> None:
-        """Run the lesson once more beside the run on screen, if it is not known yet what is true."""
+        """Start the separate run of the lesson, unless its outcome is known."""
         standing = self.learning.standing
         if not self.learning.lesson.predictions or self._run is not None:
             return
         if standing is not None and standing.outcome is not None and standing.outcome.trouble is None:
             return
         run = self._run = OutcomeRun(self.learning.lesson, self.host.console.observe)
-        self.learning.finds_out = True
+        self.learning.outcome_pending = True
         self.screen.run_worker(
             lambda: self.screen.post_message(self.Found(run.run())), thread=True, group="outcome"
         )
 
     async def take(self, message: Found) -> None:
-        """Show what is true."""
+        """Show the outcome."""
         self._run = None
-        self.learning.finds_out = False
-        await self.learning.learnt(message.outcome)
+        self.learning.outcome_pending = False
+        await self.learning.update_page(message.outcome)
         if self._wanted:
             self.learning.guide.go_to(PageSection.SHOWN)

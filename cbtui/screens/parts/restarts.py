@@ -1,4 +1,4 @@
-"""Keys that run a program again, as it was or changed, and put both runs side by side."""
+"""Keys that restart a program, perhaps with changes, and compare both runs."""
 
 import asyncio
 from collections.abc import Callable
@@ -27,16 +27,15 @@ from cbtui.screens.setup import SetupScreen
 from cbtui.screens.setup_rows import GroupRow, NumberRow, SettingRow, ThreadsRow
 
 _TOLD = 2
-"""Statements of code that are told of as a run begins again; more would cover what there is to see."""
+"""The most statements of equivalent code in the notification of a restart."""
 
 
 @dataclass
 class Restarts(ScreenPart):
-    """Runs again with changes, and keeps the run before.
+    """Restarts the run with changes, and keeps the previous run.
 
-    ``changes`` is what the run on screen has other than its program says. ``began`` is called when another
-    run is there and not started yet, ``speed`` tells how fast it is to go. ``at_any_time`` lets the run be
-    run again before it is over.
+    ``changes`` are those of the run on screen. ``began`` is called when the new run exists and is not started
+    yet; ``speed`` returns its speed. ``at_any_time`` offers a restart before the run has ended.
     """
 
     host: ScreenHost
@@ -46,10 +45,10 @@ class Restarts(ScreenPart):
     speed: Callable[[], float | None]
     at_any_time: bool = False
     before: ComparedSide | None = None
-    """The run before the one on screen."""
+    """The previous run."""
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer to run again what is over or does not answer; ``start_over`` is there for all else."""
+        """Offer ``run_again`` for ended and silent runs; ``start_over`` always works."""
         run = self.runs.run
         match action:
             case "run_again":
@@ -78,11 +77,11 @@ class Restarts(ScreenPart):
         await self.again(self.changes)
 
     async def action_start_over(self) -> None:
-        """Run again although the run is not over: it may be one that cannot go on."""
+        """Restart a run that has not ended."""
         await self.again(self.changes)
 
     def action_compare(self) -> None:
-        """Put this run and the one before above each other."""
+        """Compare this run with the previous one."""
         if self.before is not None:
             now = compared_side(self.runs.run, self.changes)
             self.host.ask(CompareScreen(self.before, now, self.host.charset), None)
@@ -90,7 +89,7 @@ class Restarts(ScreenPart):
 
 @dataclass
 class SetUpKeys(ScreenPart):
-    """Changes how a program is set up, and runs it again so."""
+    """Changes a program's set-up, and restarts it."""
 
     host: ScreenHost
     runs: RunController[LiveRun]
@@ -107,7 +106,7 @@ class SetUpKeys(ScreenPart):
         self._ask(ThreadsRow(self._changeable))
 
     def action_group(self) -> None:
-        """Ask for the group of the selected callback; for the callback too where none is selected."""
+        """Ask for the group of the selected callback, or open the set-up window if none is selected."""
         callback = self._selected_callback
         if callback is None:
             self._open_set_up(lambda row: row.aspect == "group")
@@ -115,7 +114,7 @@ class SetUpKeys(ScreenPart):
             self._ask(GroupRow(callback))
 
     def action_set_up(self) -> None:
-        """Show all that can be changed, the selected timer's period first."""
+        """Open the set-up window at the selected timer's period."""
         callback = self._selected_callback
         name = callback.name if callback is not None and callback.period else None
         self._open_set_up(lambda row: isinstance(row, NumberRow) and row.what in {name, name or row.what})
@@ -129,12 +128,12 @@ class SetUpKeys(ScreenPart):
     def _selected_callback(self) -> ChangeableCallback | None:
         """The selected callback, if it is one of the program's own."""
         selected, timeline = self.selection.callback, self.runs.timeline
-        # A run that begins anew has yet to make it.
+        # A restarted run may not have created it yet.
         entity = None if selected is None else timeline.entities.get(selected)
         return None if entity is None else callbacks_of(timeline).get(place_of(entity, timeline))
 
     def _ask(self, row: SettingRow) -> None:
-        """Ask for one thing, and run again with the answer at once."""
+        """Ask for one setting, and restart with the answer."""
 
         async def take(answer: Any) -> None:
             if answer is not None:

@@ -1,4 +1,4 @@
-"""The run on screen: it is begun, and what its source delivers is brought to the UI thread."""
+"""The run on screen: creating it, and passing its events to the UI thread."""
 
 import threading
 import time
@@ -16,23 +16,22 @@ from sim.trace.figures.concurrency import Concurrency
 from sim.trace.timeline import Timeline
 
 _MESSAGE_SIZE = 256
-"""Events that the screen takes before keys have their turn: of lines as long as they come, a megabyte."""
+"""Events per message, so that keys get their turn in between; of the longest lines, a megabyte."""
 _TIMEOUT = 1.0
-"""Seconds for which a source waits for a screen that takes nothing: it may be gone."""
+"""Seconds for which a source waits for the screen, which may be gone."""
 _MAX_REST = 0.1
-"""Seconds after which more is handed over, however short of processors the machine is."""
+"""The longest rest of a source in seconds."""
 
 RunT_co = TypeVar("RunT_co", bound=ShownRun, covariant=True)
 MakeRun: TypeAlias = Callable[[float | None, Deliver, Ended], RunT_co]
-"""Makes a run at a speed (None: as fast as it can)."""
+"""Creates a run at a speed (None: unlimited)."""
 
 
 class RunController(Generic[RunT_co]):
-    """Begins one run after the other, and numbers them: what an earlier one still delivers no longer counts.
+    """Creates one run after the other and numbers them, so that late events of earlier runs are ignored.
 
-    ``make`` makes a run, ``post`` brings messages from any thread to the screen's, where one
-    that is closing lets them drop. ``deliver`` is called on
-    the thread of a run's source, everything else on the screen's.
+    ``make`` creates a run; ``post`` posts a message to the screen from any thread. ``deliver`` is called on
+    the thread of a run's source, everything else on the UI thread.
     """
 
     class Delivered(Message):
@@ -45,7 +44,7 @@ class RunController(Generic[RunT_co]):
             self.taken = threading.Event()
 
     class Over(Message):
-        """Nothing more comes of the run with this number; ``trouble`` says why, if that should not be."""
+        """The run with this number delivers no more; ``trouble`` is a sentence if that was unexpected."""
 
         def __init__(self, run: int, trouble: str | None) -> None:
             super().__init__()
@@ -68,7 +67,7 @@ class RunController(Generic[RunT_co]):
         return self._run.timeline
 
     def begin(self, speed: float | None) -> None:
-        """Make another run, which is not started yet."""
+        """Create another run without starting it."""
         self.disown()
         number = self.number
         self._run = self._make(
@@ -80,14 +79,14 @@ class RunController(Generic[RunT_co]):
         self.findings = FindingsMonitor(self._run.timeline)
 
     def disown(self) -> None:
-        """Take nothing more that the run delivers."""
+        """Ignore further events of the run."""
         self.number += 1
 
     def deliver(self, run: int, events: list[AnyEvent]) -> None:
-        """Hand a batch over, in parts.
+        """Post a batch in parts.
 
-        Another thread is held up until the screen has taken a part, and then rests for as long as both had
-        to wait for a processor: a process that always wants one gets it late when a key comes.
+        A source on another thread waits until the screen has processed a part, then rests for as long as both
+        waited for a CPU: a process that never rests is scheduled late when a key comes.
         """
         for first in range(0, len(events), _MESSAGE_SIZE):
             message = self.Delivered(run, events[first : first + _MESSAGE_SIZE])
@@ -98,6 +97,6 @@ class RunController(Generic[RunT_co]):
                 time.sleep(min(cpu_wait(before), _MAX_REST))
 
     def take(self, message: Delivered) -> str | None:
-        """Add events to the run, if they are of the one on screen; a sentence on what goes wrong."""
+        """Add events to the run on screen, ignoring those of others; returns a warning, if any."""
         message.taken.set()
         return self._run.take(message.events) if message.run == self.number else None

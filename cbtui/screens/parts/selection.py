@@ -1,4 +1,4 @@
-"""Keys and clicks that lead between lanes, code and findings."""
+"""Keys and clicks that navigate between lanes, code and findings."""
 
 from dataclasses import dataclass
 
@@ -21,7 +21,7 @@ from sim.trace.events import EntityId
 
 @dataclass
 class LaneSelection(ScreenPart):
-    """Goes along the lanes of one run, and from them to the code and back.
+    """Moves the selection along the lanes of one run, and between lanes and code.
 
     ``service`` has a lane before its first call.
     """
@@ -45,7 +45,7 @@ class LaneSelection(ScreenPart):
         return None if selection is None else selection.entity
 
     def offers(self, action: str, parameters: tuple[object, ...]) -> bool:
-        """Offer what can be done with what is selected."""
+        """Offer the actions for the selection."""
         lanes = self._lanes
         match action:
             case "select":
@@ -59,7 +59,7 @@ class LaneSelection(ScreenPart):
         return True
 
     def action_select(self) -> None:
-        """Go to the lanes, and select what is most worth a look if nothing is selected."""
+        """Focus the lanes, and select the most relevant bar if nothing is selected."""
         lanes = self._lanes
         lanes.focus()
         self.bars.select(lanes.selection or lanes.here())
@@ -93,7 +93,7 @@ class LaneSelection(ScreenPart):
         self.host.ask(DiagnosesScreen(monitor.findings, self.host.charset), self._go_to_finding)
 
     def _go_to_finding(self, told: ExplainedFinding | None) -> None:
-        """Go to the moment and the code of a finding, and select the lane of what it happened to."""
+        """Go to a finding's moment and code, and select its callback's lane."""
         if told is None:
             return
         if told.at is not None:
@@ -111,7 +111,7 @@ class LaneSelection(ScreenPart):
             self._lanes.focus()
 
     def _last_of(self, entity: EntityId) -> Selection | None:
-        """The lane of a callback, and the last bar on it up to the moment on screen."""
+        """The lane of a callback, and its last bar up to the moment on screen."""
         timeline = self.runs.timeline
         lanes = all_lanes(timeline, self.service)
         lane = next((lane for lane in lanes if Selection(lane).entity == entity), None)

@@ -1,4 +1,4 @@
-"""How an exercise stands, in sentences: what the pane of its checks tells."""
+"""The content of the checks pane of an exercise."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from sim.units import SECOND
 
 @dataclass(frozen=True)
 class ExerciseKeys:
-    """The keys that sentences name, as people write them."""
+    """The keys that the texts name, in display form."""
 
     editor: str
     watch: str
@@ -26,7 +26,7 @@ class ExerciseKeys:
 
 
 class ExerciseTexts:
-    """Words on one lesson's exercise; ``name`` is the learner's file's, ``following`` the next lesson."""
+    """Texts on one lesson's exercise; ``name`` is the learner's file, ``following`` the next lesson."""
 
     def __init__(
         self, lesson: Lesson, checks: Sequence[Check], name: str, following: Lesson | None, keys: ExerciseKeys
@@ -40,12 +40,12 @@ class ExerciseTexts:
         self._keys = keys
 
     def running(self, at: Nanoseconds) -> ChecksSheet:
-        """Tell of a run that has come to a moment, and is not judged yet."""
+        """Return the sheet of a run that has come to a moment and is not judged yet."""
         news = f"{self._name} runs: {at / SECOND:.1f} s of {self._seconds:g} s"
         return ChecksSheet(news, CheckStatus.OPEN, self._open, asks=self._asks)
 
     def judged(self, checked: CheckedFile) -> ChecksSheet:
-        """Show the results of a run."""
+        """Return the sheet with the results of a run."""
         if checked.run.trouble is not None:
             news = f"{checked.run.trouble.rstrip('.')}. {self._way_on}"
             return ChecksSheet(news, CheckStatus.FAILED, self._open, asks=self._asks)
@@ -58,7 +58,7 @@ class ExerciseTexts:
         return ChecksSheet(news, CheckStatus.FAILED, rows, tuple(faults(checked.run.timeline)), self._asks)
 
     def page(self, file: Path) -> str:
-        """Return what is asked, and how to go about it, as Markdown."""
+        """Return the task and how to work on it, as Markdown."""
         keys = self._keys
         return (
             f"# Exercise\n\n{self._asks}\n\n"
@@ -69,7 +69,7 @@ class ExerciseTexts:
 
     @property
     def gone(self) -> str:
-        """Say that the file is not there."""
+        """The sentence on a missing file."""
         return f"{self._name} is gone; it is run and checked again when it is back."
 
     @property

@@ -1,4 +1,4 @@
-"""What the checks of an exercise come to, and that as lines of words with a kind each."""
+"""The results of an exercise's checks, and their lines of styled text."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -16,7 +16,7 @@ _LEAST_WIDTH = 20
 
 
 class ChecksStyle(StrEnum):
-    """What a piece of text is; the value is its component class."""
+    """The style of a piece of text; the value is its component class."""
 
     PASSED = "checks--passed"
     FAILED = "checks--failed"
@@ -28,7 +28,7 @@ class ChecksStyle(StrEnum):
 
 
 class CheckStatus(Enum):
-    """How a check, or all of an exercise, stands: a sign and how that looks."""
+    """The status of a check or exercise: a sign and its style."""
 
     PASSED = (PASSED, ChecksStyle.PASSED)
     FAILED = (FAILED, ChecksStyle.FAILED)
@@ -37,18 +37,18 @@ class CheckStatus(Enum):
 
     @property
     def sign(self) -> str:
-        """The sign, which tells it without colours."""
+        """The sign, which is distinct without colours."""
         return self.value[0]
 
     @property
     def kind(self) -> ChecksStyle:
-        """How it looks."""
+        """The style."""
         return self.value[1]
 
 
 @dataclass(frozen=True)
 class CheckRow:
-    """A check: what it asks, how it stands, what was expected and seen, and the moment to look at."""
+    """A check: its question, status, expectation and observation, and the moment to look at."""
 
     asks: str
     standing: CheckStatus = CheckStatus.OPEN
@@ -58,10 +58,10 @@ class CheckRow:
 
 @dataclass(frozen=True)
 class ChecksSheet:
-    """Everything that the pane tells.
+    """The content of the pane.
 
-    ``news`` says how the exercise stands, ``faults`` what else is wrong with the run, ``asks`` what is to be
-    done. Each is a sentence or more.
+    ``news`` is the state of the exercise, ``faults`` are other faults of the run, ``asks`` is the task, all
+    in sentences.
     """
 
     news: str
@@ -72,14 +72,14 @@ class ChecksSheet:
 
     @property
     def note(self) -> str:
-        """How many checks passed, as short as it can be said; "" where none was judged."""
+        """The number of passed checks in brief; "" if none was judged."""
         passed = sum(row.standing is CheckStatus.PASSED for row in self.rows)
         judged = any(row.standing is not CheckStatus.OPEN for row in self.rows)
         return f"{self.standing.sign} {passed} of {len(self.rows)} pass" if judged else ""
 
 
 class ChecksLine(NamedTuple):
-    """Pieces of text with their kinds, and the place of the check that the line is about, if it is."""
+    """Styled pieces of text, and the index of the check that the line is about, if any."""
 
     pieces: tuple[tuple[str, ChecksStyle], ...]
     row: int | None = None

@@ -1,4 +1,4 @@
-"""The checks on screen: one of them is picked, and leads to the moment that it speaks of."""
+"""The checks pane: a picked check leads to its moment."""
 
 from typing import ClassVar
 
@@ -20,16 +20,16 @@ _PICKED = "checks--picked"
 
 
 class ChecksView(InkedView):
-    """Shows a sheet. The first check that fails is picked by itself when there are new ones."""
+    """Shows a sheet. When the results change, the first failed check is picked."""
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {*(kind.value for kind in ChecksStyle), _PICKED}
     BINDINGS: ClassVar[list[BindingType]] = [*bindings_of(Scope.CHECKS)]
     can_focus = True
 
     note: var[str] = var("")
-    """What the pane says of itself in a few words."""
+    """A note for the pane's title."""
     picked: var[int | None] = var(None)
-    """The place of the picked check."""
+    """The index of the picked check."""
 
     def __init__(self, sheet: ChecksSheet, *, id: str | None = None) -> None:  # noqa: A002 Textual's name for it
         super().__init__(id=id)
@@ -66,20 +66,20 @@ class ChecksView(InkedView):
     # the keys
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer to go where there is something to go to."""
+        """Offer ``look_there`` if the check has a moment."""
         if action == "look_there":
             return self._moment is not None
         return super().check_action(action, parameters)
 
     def action_check_above(self) -> None:
-        """Pick the check above; above the first, show what stands there."""
+        """Pick the check above; above the first, scroll."""
         if not self.picked:
             self.scroll_to(y=max(0, self.scroll_offset.y - 1), animate=False, force=True)
         else:
             self._pick(self.picked - 1)
 
     def action_check_below(self) -> None:
-        """Pick the check below; below the last, show what stands there."""
+        """Pick the check below; below the last, scroll."""
         below = 0 if self.picked is None else self.picked + 1
         if below < len(self._sheet.rows):
             self._pick(below)
@@ -110,7 +110,7 @@ class ChecksView(InkedView):
         self.refresh()
 
     def _bring_into_view(self, row: int) -> None:
-        """Scroll as little as shows all lines of a check; the news above the first one with it."""
+        """Scroll as little as possible to show all lines of a check; the first with the news above it."""
         places = [y for y, line in enumerate(self._lines) if line.row == row]
         first, last = 0 if row == 0 else places[0], places[-1]
         height = self.scrollable_content_region.height

@@ -1,4 +1,4 @@
-"""Python source as lines of words of a kind, so that a theme can colour them."""
+"""Python source as lines of tokens, which a theme can colour."""
 
 from collections.abc import Iterator
 from enum import StrEnum
@@ -9,7 +9,7 @@ from pygments.token import Token, _TokenType
 
 
 class TokenKind(StrEnum):
-    """What a word of source is; the value is the component class that styles it."""
+    """The kind of a token; the value is its component class."""
 
     PLAIN = "code--plain"
     KEYWORD = "code--keyword"
@@ -21,7 +21,7 @@ class TokenKind(StrEnum):
 
 
 class SourceToken(NamedTuple):
-    """A piece of a line."""
+    """A token of a line."""
 
     text: str
     kind: TokenKind

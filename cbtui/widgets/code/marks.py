@@ -1,4 +1,4 @@
-"""What each callback in the source files is doing at a moment: it runs, waits and why, or ran just now."""
+"""The activity of each callback in the source files at a moment: running, waiting and why, or just run."""
 
 from collections import defaultdict
 from collections.abc import Iterator, Sequence
@@ -16,13 +16,13 @@ from sim.trace.roster import roster_of
 from sim.trace.timeline import Timeline
 
 JUST_NOW: Nanoseconds = 250_000_000
-"""How long a callback that has returned stays marked, so that a short one is seen at all."""
+"""How long a callback stays marked after it has returned, so that short ones are visible."""
 
 _LONG: Nanoseconds = 300_000_000
 
 
 class CallbackActivity(Enum):
-    """What a callback is doing; the more telling, the later."""
+    """The activity of a callback, in ascending relevance."""
 
     IDLE = auto()
     RAN = auto()
@@ -32,9 +32,9 @@ class CallbackActivity(Enum):
 
 @dataclass(frozen=True, slots=True)
 class CallbackMark:
-    """A callback's lines in the source and what it is doing.
+    """A callback's lines in the source and its activity.
 
-    ``texts`` says so, in fewer and fewer words; ``number`` and ``letter`` are those of its group.
+    ``texts`` describe it, from the longest to the shortest; ``number`` and ``letter`` are those of its group.
     """
 
     entity: EntityId
@@ -50,7 +50,7 @@ class CallbackMark:
 def marks_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[SourceFile, list[CallbackMark]]:
     """Return the callbacks of each file at a moment, in the order of their lines.
 
-    A callback that several entities share is marked once, with what the most telling of them is doing.
+    A callback that several entities share is marked once, with the most relevant activity.
     """
     moment = timeline.moment(at)
     found: defaultdict[SourceFile, dict[int, CallbackMark]] = defaultdict(dict)
@@ -90,7 +90,7 @@ def _doing(
         threads = _threads(running, timeline)
         lasted = duration(moment.at - running[0].start)
         texts = (f"▶ {threads} {lasted}", f"▶ {threads}", f"▶ {lasted}")
-        return CallbackActivity.RUNS, (*_standing_still(running, moment, lasted), *texts), running[0].start
+        return CallbackActivity.RUNS, (*_blocked_text(running, moment, lasted), *texts), running[0].start
     wait = moment.waiting.get(entity.id)
     if wait is not None:
         waited = f"{GLYPHS[Charset.BRAILLE].hatch[wait.reason]} waits {duration(moment.at - wait.since)}"
@@ -105,8 +105,8 @@ def _running(entity: EntityId, moment: Moment) -> Iterator[Span]:
     return (span for span in moment.running.values() if span.entity == entity)
 
 
-def _standing_still(running: Sequence[Span], moment: Moment, lasted: str) -> Iterator[str]:
-    """Yield what a callback says that runs and stands still in ``Client.call``."""
+def _blocked_text(running: Sequence[Span], moment: Moment, lasted: str) -> Iterator[str]:
+    """Yield the text of a callback that is blocked in ``Client.call``."""
     for span in running:
         blocked = moment.blocked.get(span.thread)
         if blocked is not None and blocked.entity == span.entity:

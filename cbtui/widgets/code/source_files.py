@@ -1,4 +1,4 @@
-"""The source files of the programs that run, as they were when they were started or recorded."""
+"""The source files of a run's programs, as they were when the run was started or recorded."""
 
 import sysconfig
 from collections.abc import Mapping
@@ -18,7 +18,7 @@ _LIBRARY_FOLDERS = tuple(
         for place in (*sim.__path__, *map(sysconfig.get_path, ("stdlib", "purelib", "platlib")))
     }
 )
-"""Folders whose files nobody writes who learns: ours, Python's, and those of installed libraries."""
+"""Folders of library code: ours, Python's, and installed packages."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +36,7 @@ class SourceFile:
         return max((sum(cell_len(word.text) for word in line) for line in self.lines), default=0)
 
     def has_changed(self) -> bool:
-        """Whether the file holds another text now; one that was recorded, or cannot be read, does not."""
+        """Whether the file on disk has another text; False if it was recorded or cannot be read."""
         text = None if self.recorded else _read(self.path)
         return text is not None and text != self.text
 
@@ -59,9 +59,9 @@ class SourceFiles:
         self._by_path = {self._real_main: self.main}
 
     def of(self, file: str) -> SourceFile | None:
-        """Return a callback's file; None for one that the learner has not written, or that cannot be read.
+        """Return a callback's file; None if it is library code or unreadable.
 
-        A name without a folder is taken for the program's own file.
+        A name without a folder means the program's own file.
         """
         if file in self._recorded and self._found.get(file) is None:
             self._found.pop(file, None)
@@ -70,7 +70,7 @@ class SourceFiles:
         return self._found[file]
 
     def read_anew(self) -> None:
-        """Take the files as they are now; one that cannot be read stays as it was."""
+        """Read the files again; an unreadable one stays as it was."""
         self._found.clear()
         for path, known in self._by_path.items():
             text = _read(known.path) if known.has_changed() else None
@@ -87,7 +87,7 @@ class SourceFiles:
         real = path.resolve()
         if real in self._by_path:
             return self._by_path[real]
-        if self._is_a_librarys(real):
+        if self._is_library_code(real):
             return None
         recorded = self._recorded.get(file)
         text = _read(path) if recorded is None else recorded
@@ -96,8 +96,8 @@ class SourceFiles:
         self._by_path[real] = _source_file(path, text, recorded=recorded is not None or self.main.recorded)
         return self._by_path[real]
 
-    def _is_a_librarys(self, path: Path) -> bool:
-        """Tell whether a file lies where no learner writes; a lesson may be installed there itself."""
+    def _is_library_code(self, path: Path) -> bool:
+        """Tell whether a file is library code; a lesson may itself be installed in such a folder."""
         folders = (folder for folder in _LIBRARY_FOLDERS if not self._real_main.is_relative_to(folder))
         return any(path.is_relative_to(folder) for folder in folders)
 

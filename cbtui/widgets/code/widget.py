@@ -1,4 +1,4 @@
-"""The source on screen: scrolls, follows what runs, and draws only the lines in view."""
+"""The source pane: it scrolls, follows running callbacks, and draws only visible lines."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
@@ -51,12 +51,11 @@ class SourceLocation(NamedTuple):
 
 
 class CodeView(InkedView):
-    """The learner's source; beside each callback stands which thread runs it, or that it waits and why.
+    """The learner's source; each callback is annotated with its thread, or with the reason of its wait.
 
-    Of several files it shows the one whose callback was asked for, or has begun to run for a while. ``note``
-    names it, and says when it is another on disk by now; ``over`` is whether the run is, which could then be
-    run again. A line may be picked with the arrow keys or the pointer: enter, or a click, tells which
-    callback it belongs to.
+    Of several files it shows that of the requested callback, or of one that has run for a while. ``note``
+    names the file, and says if it has changed on disk; ``over`` tells whether the run has ended. A line can
+    be picked with the arrow keys or the mouse; enter or a click reports its callback.
     """
 
     COMPONENT_CLASSES: ClassVar[set[str]] = {*(kind.value for kind in TokenKind), _CURSOR}
@@ -68,10 +67,10 @@ class CodeView(InkedView):
     """The picked line, counted from 1."""
 
     class EditorWanted(Message):
-        """The person wants to open the file in an editor."""
+        """The user wants to open the file in an editor."""
 
     class CallbackPicked(Message):
-        """The person picked a line of ``entity``'s callback, and goes on at its lane if ``leaves`` is set."""
+        """The user picked a line of ``entity``'s callback; with ``leaves`` the focus moves to its lane."""
 
         def __init__(self, entity: EntityId, leaves: bool) -> None:
             super().__init__()
@@ -97,7 +96,7 @@ class CodeView(InkedView):
         self._open(self._file)
 
     def show(self, timeline: Timeline, now: Nanoseconds) -> None:
-        """Mark what the callbacks do at a moment; go to one that has begun to run for a while."""
+        """Mark the callbacks' activities at a moment, and scroll to one that has run for a while."""
         marks = marks_at(timeline, now, self._files)
         if marks == self._marks:
             return
@@ -107,11 +106,11 @@ class CodeView(InkedView):
         self._follow()
 
     def show_callback(self, entity: Entity) -> None:
-        """Pick a callback's first line and bring it into view, if its source can be had."""
+        """Pick a callback's first line and scroll to it, if its source is available."""
         self.show_line(entity.file, entity.first_line)
 
     def show_line(self, path: str, line: int) -> None:
-        """Pick a line, counted from 1, and bring it into view, if the file can be had."""
+        """Pick a line, counted from 1, and scroll to it, if the file is available."""
         file = self._files.of(path)
         if file is not None:
             self._open(file)
@@ -128,18 +127,18 @@ class CodeView(InkedView):
     # files
 
     def read_anew(self) -> None:
-        """Show the files as they are now: what is to run next is what lies on disk."""
+        """Read the files again, as the next run uses those on disk."""
         self._files.read_anew()
         self._marks, self._long = {}, set()
         self._open(self._files.of(str(self._file.path.absolute())) or self._files.main)
 
     def look_at_disk(self) -> None:
-        """Note whether the file is another on disk by now."""
+        """Check whether the file has changed on disk."""
         self._changed = self._file.has_changed()
         self._name_it()
 
     def watch_over(self) -> None:
-        """Say something else of a file that has changed."""
+        """Update the note on a changed file."""
         self._name_it()
 
     def _open(self, file: SourceFile) -> None:
@@ -166,7 +165,7 @@ class CodeView(InkedView):
     # the picked line
 
     def check_action(self, action: str, parameters: tuple[object, ...]) -> bool | None:
-        """Offer what has a meaning at the picked line."""
+        """Offer the actions that are available at the picked line."""
         match action:
             case "pick_callback" | "copy":
                 return self.picked is not None and self._marked_at(self.picked) is not None
@@ -183,7 +182,7 @@ class CodeView(InkedView):
         self._pick_beside(1)
 
     def action_pick_callback(self) -> None:
-        """Tell which callback the line belongs to, to go on at its lane."""
+        """Report the line's callback, to move to its lane."""
         self._tell_callback(leaves=True)
 
     def action_open_here(self) -> None:
@@ -197,12 +196,12 @@ class CodeView(InkedView):
             self.copy(self._file.text.splitlines()[marked.first_line - 1 : marked.last_line])
 
     def action_let_go(self) -> None:
-        """Have no line picked, and go again to what runs."""
+        """Unpick the line, and follow running callbacks again."""
         self.picked = None
         self.refresh()
 
     def on_click(self, event: Click) -> None:
-        """Pick the line under the pointer, and tell which callback it belongs to."""
+        """Pick the line under the mouse, and report its callback."""
         offset = event.get_content_offset(self)
         line = 0 if offset is None else self.scroll_offset.y + offset.y + 1
         if 0 < line <= len(self._file.lines):
@@ -248,7 +247,7 @@ class CodeView(InkedView):
         return line if self.picked != number + 1 else self._set_off(line)
 
     def _set_off(self, line: Strip) -> Strip:
-        """Give a line another background; what has one of its own keeps it."""
+        """Give a line another background, except where it has its own."""
         usual, ground = self.in_class("").bgcolor, Style(bgcolor=self.in_class(_CURSOR).bgcolor, bold=True)
         parts = [
             Segment(text, style + ground) if style and style.bgcolor == usual else Segment(text, style)
@@ -257,10 +256,9 @@ class CodeView(InkedView):
         return Strip(parts, line.cell_length)
 
     def _follow(self) -> None:
-        """Go to a callback that runs for a while now and did not before; at first, to any.
+        """Scroll to a callback that has newly run for a while; at first, to any.
 
-        A person who has picked a line is left there. Another file is opened if nothing in this one runs as
-        long.
+        A picked line stays in view. Another file is opened only if nothing in this one runs as long.
         """
         long = {
             (file.path, marked.first_line): file
@@ -305,7 +303,7 @@ class CodeView(InkedView):
         return [number, Segment(f"{glyph} ", self.in_ink(Ink(role, marked.number)))]
 
     def _with_mark(self, line: Strip, marked: CallbackMark, width: int) -> Strip:
-        """Put what a callback does at the right, in as many words as the code leaves room for."""
+        """Add the text on a callback's activity at the right, as long as it fits beside the code."""
         room = width - line.cell_length - 1
         texts = [f" {text} " for text in marked.texts]
         text = next((text for text in texts if len(text) <= room), texts[-1])
@@ -314,7 +312,7 @@ class CodeView(InkedView):
         return Strip([*line.adjust_cell_length(width - len(text), self.in_class("")), mark], width)
 
     def _code(self, number: int) -> Strip:
-        """A line of the file, counted from 0, as it is wherever the view stands."""
+        """The drawn line of the file, counted from 0, without scrolling."""
         if number not in self._drawn:
             self._drawn[number] = Strip([self._segment(word) for word in self._file.lines[number]])
         return self._drawn[number]
@@ -325,7 +323,7 @@ class CodeView(InkedView):
 
 
 def changed_lines(before: Sequence[CallbackMark], after: Sequence[CallbackMark]) -> Iterator[tuple[int, int]]:
-    """Yield the first line and the number of lines of each stretch of source that looks different."""
+    """Yield the first line and the length of each range of lines that must be redrawn."""
     known = {marked.first_line: marked for marked in before}
     for marked in after:
         old = known.pop(marked.first_line, None)

@@ -7,7 +7,7 @@ from textual.reactive import reactive
 
 from cbtui.looks.theme import Charset, TextRun
 from cbtui.widgets.factory.painter import GLANCE, FactoryPainter
-from cbtui.widgets.painted_widget import PaintedWidget
+from cbtui.widgets.painted_widget import PaintedWidget, painted
 from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 
@@ -21,10 +21,10 @@ class FactoryView(PaintedWidget):
 
     BORDER_TITLE = "3 Factory"
 
-    timeline: reactive[Timeline] = reactive(Timeline, always_update=True, repaint=False)
-    now: reactive[Nanoseconds] = reactive(0, repaint=False)
-    glance: reactive[Nanoseconds] = reactive(GLANCE, repaint=False)
-    charset: reactive[Charset] = reactive(Charset.BRAILLE, repaint=False)
+    timeline: reactive[Timeline] = painted(Timeline, always_update=True)
+    now: reactive[Nanoseconds] = painted(0)
+    glance: reactive[Nanoseconds] = painted(GLANCE)
+    charset: reactive[Charset] = painted(Charset.BRAILLE)
 
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
         """Paint the factory."""
@@ -35,19 +35,3 @@ class FactoryView(PaintedWidget):
         """Show a moment of a run that goes ``speed`` times as fast as the person's time."""
         self.now, self.timeline = now, timeline
         self.glance = round(GLANCE * speed)
-
-    def watch_timeline(self) -> None:
-        """Paint what is known now."""
-        self.changed()
-
-    def watch_now(self) -> None:
-        """Paint another moment."""
-        self.changed()
-
-    def watch_glance(self) -> None:
-        """Let workers walk faster or more slowly."""
-        self.changed()
-
-    def watch_charset(self) -> None:
-        """Paint in other glyphs."""
-        self.changed()

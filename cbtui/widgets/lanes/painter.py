@@ -4,6 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from math import inf
+from typing import Any
 
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun, texture_of
 from cbtui.text.cells import CellRow, fit
@@ -29,7 +30,7 @@ from cbtui.widgets.lanes.selection import Selection
 from cbtui.widgets.lanes.service_calls import LatestCalls, draw_calls
 from cbtui.widgets.lanes.status import LaneStatus
 from sim.durations import duration
-from sim.trace.events import EntityId, EntityKind, ThreadId
+from sim.trace.events import EntityId, EntityKind
 from sim.trace.model import AxisMark, Blocked, Entity, Group, Moment, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
@@ -77,9 +78,7 @@ class LanePainter:
         self.service = service
         self.looks = looks
         self._timeline: Timeline | None = None
-        self._spans: dict[tuple[str, int], LaneColumns[Span]] = {}
-        self._waits: dict[EntityId, LaneColumns[Wait]] = {}
-        self._blocks: dict[ThreadId, LaneColumns[Blocked]] = {}
+        self._columns: dict[tuple[str, int], LaneColumns[Any]] = {}
         self._losses: dict[EntityId, InstantColumns] = {}
         self.painted: dict[Lane, tuple[_LaneSummary, list[TextRun]]] = {}
 
@@ -99,9 +98,7 @@ class LanePainter:
         """Paint the lanes of a window, with the cursor at ``now``, in ``width`` x ``height`` cells."""
         if timeline is not self._timeline:
             self._timeline = timeline
-            self._spans.clear()
-            self._waits.clear()
-            self._blocks.clear()
+            self._columns.clear()
             self._losses.clear()
             self.painted.clear()
         layout = layout_for(max(width, LEAST_WIDTH))
@@ -124,31 +121,20 @@ class LanePainter:
         """Return the summed-up calls of a lane."""
         match lane:
             case ThreadLane(thread):
-                return self._kept(timeline.spans_on, thread.id)
+                return self.columns(timeline.spans_on, thread.id)
             case GroupLane(group):
-                return self._kept(timeline.spans_in, group.id)
+                return self.columns(timeline.spans_in, group.id)
             case MemberLane(entity) | SoleLane(entity):
-                return self._kept(timeline.spans_of, entity.id)
+                return self.columns(timeline.spans_of, entity.id)
             case ServiceLane():
                 return LaneColumns(lambda _: ())
 
-    def _kept(self, query: Callable[[int, Window], Sequence[Span]], subject: int) -> LaneColumns[Span]:
+    def columns(self, query: Callable[[int, Window], Sequence[I]], subject: int) -> LaneColumns[I]:
+        """Return the columns of what a query of the timeline finds for an id; they are made once."""
         key = (query.__name__, subject)
-        if key not in self._spans:
-            self._spans[key] = LaneColumns(partial(query, subject))
-        return self._spans[key]
-
-    def waits(self, entity: Entity, timeline: Timeline) -> LaneColumns[Wait]:
-        """Return the summed-up waits of a callback."""
-        if entity.id not in self._waits:
-            self._waits[entity.id] = LaneColumns(partial(timeline.waits_of, entity.id))
-        return self._waits[entity.id]
-
-    def blocks(self, thread: ThreadId, timeline: Timeline) -> LaneColumns[Blocked]:
-        """Return the summed-up stretches in which a thread stood still."""
-        if thread not in self._blocks:
-            self._blocks[thread] = LaneColumns(partial(timeline.blocks_on, thread))
-        return self._blocks[thread]
+        if key not in self._columns:
+            self._columns[key] = LaneColumns(partial(query, subject))
+        return self._columns[key]
 
     def losses(self, entity: Entity, timeline: Timeline) -> InstantColumns:
         """Return when the queue of a callback lost messages."""
@@ -264,9 +250,9 @@ class _LaneFrame:
         losses: list[int] = []
         match lane:
             case ThreadLane(thread):
-                blocks = self._summed(painter.blocks(thread.id, timeline), unseen)
+                blocks = self._summed(painter.columns(timeline.blocks_on, thread.id), unseen)
             case MemberLane(entity) | SoleLane(entity):
-                waits = self._summed(painter.waits(entity, timeline), unseen)
+                waits = self._summed(painter.columns(timeline.waits_of, entity.id), unseen)
                 losses = painter.losses(entity, timeline).over(self._scale, self._edge)
         self.unseen = self.unseen or bool(unseen)
         lasting = dict.fromkeys(

@@ -16,7 +16,7 @@ from cbtui.widgets.lanes.painter import LOOKS_PER_FRAME, LanePainter, wanted_row
 from cbtui.widgets.lanes.picture import LanePicture
 from cbtui.widgets.lanes.rows import Lane, all_lanes
 from cbtui.widgets.lanes.selection import Selection, bar_at, bar_up_to, neighbouring_bar, start_of
-from cbtui.widgets.painted_widget import PaintedWidget
+from cbtui.widgets.painted_widget import PaintedWidget, painted
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
@@ -39,14 +39,14 @@ class Lanes(PaintedWidget, can_focus=True):
 
     DEFAULT_CSS = "Lanes { height: auto; }"
 
-    timeline: reactive[Timeline] = reactive(Timeline, always_update=True, repaint=False)
-    window: reactive[Window] = reactive(Window(0, 10_000_000_000), repaint=False)
-    now: reactive[Nanoseconds] = reactive(0, repaint=False)
+    timeline: reactive[Timeline] = painted(Timeline, always_update=True)
+    window: reactive[Window] = painted(Window(0, 10_000_000_000))
+    now: reactive[Nanoseconds] = painted(0)
     service: reactive[str] = reactive("", layout=True)
     charset: reactive[Charset] = reactive(Charset.BRAILLE, repaint=False)
-    selection: reactive[Selection | None] = reactive(None, repaint=False)
+    selection: reactive[Selection | None] = painted(None)
     hint: reactive[str] = reactive("", repaint=False)
-    changes: reactive[str] = reactive("", repaint=False)
+    changes: reactive[str] = painted("")
     keys: reactive[LaneKeys] = reactive(USUAL_KEYS, repaint=False)
 
     _painter = LanePainter(looks=LOOKS_PER_FRAME)
@@ -198,29 +198,15 @@ class Lanes(PaintedWidget, can_focus=True):
         # Lanes that are out of sight are not laid out: it is asked for again until it was done.
         if wanted_rows(self.timeline, self.service) != self._laid_out_for:
             self.refresh(layout=True)
-        self.changed()
-
-    def watch_window(self) -> None:
-        """Paint another stretch of time."""
-        self.changed()
-
-    def watch_now(self) -> None:
-        """Paint with the cursor elsewhere."""
-        self.changed()
 
     def watch_selection(self, before: Selection | None, after: Selection | None) -> None:
         """Let another bar stand out, and make room to tell of it."""
         if (before is None) != (after is None):
             self.refresh(layout=True)
-        self.changed()
 
     def watch_hint(self) -> None:
         """Say something else of keys; their signs are no markup."""
         self.border_subtitle = Text(self.hint)
-
-    def watch_changes(self) -> None:
-        """Say what else is changed."""
-        self.changed()
 
     def watch_service(self) -> None:
         """Give the service a lane."""

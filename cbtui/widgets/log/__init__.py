@@ -1,4 +1,4 @@
-"""The log pane: what the program wrote, the lines that a filter lets through, and where it is typed."""
+"""The log pane: the program's log and output, and a filter."""
 
 from cbtui.widgets.log.filter import Filter, FilterError, filter_of
 from cbtui.widgets.log.line import line_of

@@ -1,4 +1,4 @@
-"""What a person wants to see of a log: words that a line has, how grave it is, and who wrote it."""
+"""Filters of the log: by words, severity and writer."""
 
 import re
 from collections.abc import Callable, Iterator
@@ -19,17 +19,17 @@ _KNOWN = ("level", "callback", "thread", "group")
 
 
 class FilterError(ValueError):
-    """A filter that means nothing; the text is one sentence that says why."""
+    """An invalid filter; the text is a sentence that says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class Filter:
-    """Lets a line through that has all ``words``, is grave enough, and whose writer is among those named.
+    """Passes lines that contain all ``words``, are severe enough, and were written by a named writer.
 
-    Upper and lower case are alike. ``callbacks``, ``threads`` and ``groups`` let everyone through if empty,
-    else those that one of them names: a part of the callback's or its topic's name, a part of the thread's,
-    the group's letter. A line that was printed instead of logged has no known writer; it is INFO, or ERROR
-    on standard error.
+    Case is ignored. ``callbacks``, ``threads`` and ``groups`` pass all writers if empty, else those that
+    match one of them: a part of the callback's or topic's name, a part of the thread's name, the group's
+    letter. A line that was printed instead of logged has no known writer; it is INFO, or ERROR on standard
+    error.
     """
 
     words: tuple[str, ...] = ()
@@ -40,11 +40,11 @@ class Filter:
 
     @property
     def lets_all_through(self) -> bool:
-        """Whether no line is kept back."""
+        """Whether it passes every line."""
         return self == _EVERYTHING
 
     def passes(self, event: LogEvent, timeline: Timeline) -> bool:
-        """Tell whether a line of the timeline is let through."""
+        """Tell whether it passes a line of the timeline."""
         return (
             _LEVELS.index(_severity(event)) >= _LEVELS.index(self.level)
             and self._has_words(event)
@@ -73,7 +73,7 @@ _EVERYTHING = Filter()
 
 
 def filter_of(text: str) -> Filter:
-    """Return the filter that a person typed: ``words``, ``"words with blanks"`` and ``name:value``.
+    """Parse a filter: ``words``, ``"words with blanks"`` and ``name:value``.
 
     Raises:
         FilterError: a name is not one of level, callback, thread and group, or has no value that fits.
@@ -104,7 +104,7 @@ def _unquoted(part: str) -> str:
 
 
 def _is_asked_for(name: str, value: str) -> bool:
-    """Tell whether a part with a colon names something; ``done:`` and ``http://`` are words."""
+    """Tell whether a part with a colon is a named filter; ``done:`` and ``http://`` are words."""
     if name in _KNOWN:
         return True
     if value and not value.startswith("/"):
@@ -144,7 +144,7 @@ def _has_part(name: str, part: str) -> bool:
 
 
 def _names(entity: EntityId, timeline: Timeline) -> str:
-    """Callback, and topic or service, on lines of their own: no word is found across both."""
+    """Callback, and topic or service, on separate lines, so that no word matches across both."""
     known = timeline.entities.get(entity)
     return "" if known is None else f"{known.callback}\n{known.name}".lower()
 

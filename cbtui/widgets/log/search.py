@@ -1,4 +1,4 @@
-"""Which lines of a log a filter lets through, found once for each line however the log grows."""
+"""An incremental search of a growing log for the lines that a filter passes."""
 
 from array import array
 from bisect import bisect_left
@@ -9,14 +9,13 @@ from cbtui.widgets.log.filter import Filter, LogEvent
 from sim.trace.timeline import Timeline
 
 _RECHECKED = 64
-"""Lines at the end of what was looked at that are known again: a line may come late, by few."""
+"""Searched lines at the end that are checked again, as late lines may be inserted among them."""
 
 
 class LogSearch:
-    """The places in ``timeline.logs`` of the lines that a filter lets through.
+    """The indices in ``timeline.logs`` of the lines that a filter passes.
 
-    Lines are looked at as ``go_on`` says, in order and once; one that comes late, behind a line that was
-    looked at already, has those from it on looked at again.
+    ``go_on`` searches the lines in order, once each; from a late line on, lines are searched again.
     """
 
     def __init__(self, timeline: Timeline, wanted: Filter) -> None:
@@ -28,15 +27,15 @@ class LogSearch:
 
     @property
     def places(self) -> Sequence[int]:
-        """The places of the lines, in order."""
+        """The indices of the lines, in order."""
         return range(len(self.timeline.logs)) if self.wanted.lets_all_through else self._found
 
     def until(self, count: int) -> int:
-        """How many of the lines are among the first ``count`` of the log."""
+        """The number of found lines among the first ``count`` of the log."""
         return bisect_left(self.places, count)
 
     def go_on(self, most: int) -> bool:
-        """Look at so many further lines at most; tell whether there are more."""
+        """Search at most so many further lines; returns whether there are more."""
         if self.wanted.lets_all_through:
             return False
         logs = self.timeline.logs
@@ -51,7 +50,7 @@ class LogSearch:
         return self._looked_at < len(logs)
 
     def _go_back_to_late_ones(self) -> None:
-        """Forget what was found from the first line on that is not where it was."""
+        """Discard results from the first line on that has moved."""
         first = self._looked_at - len(self._last)
         now = self.timeline.logs[first : self._looked_at]
         pairs = zip(self._last, now, strict=True)

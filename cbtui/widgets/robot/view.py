@@ -12,7 +12,7 @@ from textual.reactive import reactive
 from textual.strip import Strip
 
 from cbtui.looks.theme import Charset, TextRun
-from cbtui.widgets.painted_widget import PaintedWidget
+from cbtui.widgets.painted_widget import PaintedWidget, painted
 from cbtui.widgets.robot.camera_picture import half_blocks, ramp
 from cbtui.widgets.robot.painter import RobotPainter, RobotPainting
 from cbtui.widgets.robot.pane_regions import RobotViewMode
@@ -44,10 +44,10 @@ class RobotView(PaintedWidget):
     is first shown, and asked for ``PICTURES_A_SECOND`` at most.
     """
 
-    timeline: reactive[Timeline] = reactive(Timeline, always_update=True, repaint=False)
-    now: reactive[Nanoseconds] = reactive(0, repaint=False)
-    charset: reactive[Charset] = reactive(Charset.BRAILLE, repaint=False)
-    look: reactive[RobotViewMode] = reactive(RobotViewMode.MAP, repaint=False)
+    timeline: reactive[Timeline] = painted(Timeline, always_update=True)
+    now: reactive[Nanoseconds] = painted(0)
+    charset: reactive[Charset] = painted(Charset.BRAILLE)
+    look: reactive[RobotViewMode] = painted(RobotViewMode.MAP)
 
     class PictureTaken(Message):
         """The camera took a picture."""
@@ -108,22 +108,9 @@ class RobotView(PaintedWidget):
         super().notify_style_update()
         self._develop()
 
-    def watch_timeline(self) -> None:
-        """Paint what is known now."""
-        self.changed()
-
-    def watch_now(self) -> None:
-        """Paint another moment."""
-        self.changed()
-
     def watch_charset(self) -> None:
         """Paint in other glyphs."""
         self._develop()
-        self.changed()
-
-    def watch_look(self) -> None:
-        """Paint other things."""
-        self.changed()
 
     def on_resize(self) -> None:
         """Ask for a picture that fits."""
