@@ -2,6 +2,7 @@
 
 from collections import defaultdict
 from collections.abc import Callable, Iterable
+from functools import partial
 from operator import attrgetter
 from typing import Any, TypeAlias
 
@@ -93,8 +94,8 @@ class RunStores:
 
     def _make_handlers(self) -> dict[type, Callable[[Any], object]]:
         return {
-            ev.RunStarted: self._run_started,
-            ev.RunEnded: self._run_ended,
+            ev.RunStarted: partial(setattr, self, "started"),
+            ev.RunEnded: partial(setattr, self, "ended"),
             ev.ProcessAppeared: self.participants.add_process,
             ev.ProcessEnded: self.participants.end_process,
             ev.ThreadAppeared: self.participants.add_thread,
@@ -122,7 +123,7 @@ class RunStores:
             ev.CallUnblocked: self.blocking.finish,
             ev.Logged: self.logs.add,
             ev.Printed: self._printed,
-            ev.ArenaShown: self._arena_shown,
+            ev.ArenaShown: partial(setattr, self, "arena"),
             ev.RobotMoved: self.robot.add,
             ev.Scanned: self._scanned,
             ev.VelocityCommanded: self.velocities.add,
@@ -132,20 +133,11 @@ class RunStores:
             ev.LineGiven: self._line_given,
             ev.LineSaid: self.shell.add,
             ev.LineEnded: self.shell.add,
-            ev.LineCompleted: self._line_completed,
+            ev.LineCompleted: partial(setattr, self, "completed"),
             ev.Notice: self._noticed,
             ev.EventsLost: self._events_lost,
             ev.ContentsLost: self._contents_lost,
         }
-
-    def _run_started(self, event: ev.RunStarted) -> None:
-        self.started = event
-
-    def _run_ended(self, event: ev.RunEnded) -> None:
-        self.ended = event
-
-    def _arena_shown(self, event: ev.ArenaShown) -> None:
-        self.arena = event
 
     def _entity_appeared(self, event: ev.EntityAppeared) -> None:
         self.participants.add_entity(event)
@@ -229,9 +221,6 @@ class RunStores:
     def _line_given(self, event: ev.LineGiven) -> None:
         self.shell.add(event)
         self.marks.add(AxisMark(event.t, "command", event.text))
-
-    def _line_completed(self, event: ev.LineCompleted) -> None:
-        self.completed = event
 
     def _noticed(self, event: ev.Notice) -> None:
         self.notices.add(event)
