@@ -22,12 +22,31 @@ _LAUNCH = frozenset(("ament_index_python", "launch", "launch_ros"))
 
 def use_workspace(packages: Callable[[], Packages], clock: Clock) -> None:
     """Make the modules of ``packages`` importable, and ``launch``; have asyncio's loops live on ``clock``."""
-    sys.meta_path.insert(0, _AsyncioFinder(clock))
+    sys.meta_path[:0] = (_AsyncioFinder(clock), _LaunchFinder(packages))
     sys.meta_path.append(_WorkspaceFinder(packages))
 
 
+class _LaunchFinder:
+    """Finds the launch system, in place of a real one that is installed."""
+
+    def __init__(self, packages: Callable[[], Packages]) -> None:
+        self._packages = packages
+
+    def find_spec(
+        self, fullname: str, _path: Sequence[str] | None = None, _target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """Return the spec of a top-level module of the launch system, ``None`` for any other."""
+        return ModuleSpec(fullname, _loader(self._install)) if fullname in _LAUNCH else None
+
+    def _install(self, _module: ModuleType) -> None:
+        from sim.launch.importing import install
+
+        self._packages()
+        install()
+
+
 class _WorkspaceFinder:
-    """Finds what no other finder knows: the Python packages of the workspace, and the launch system."""
+    """Finds what no other finder knows: the Python packages of the workspace."""
 
     def __init__(self, packages: Callable[[], Packages]) -> None:
         self._packages = packages
@@ -38,19 +57,11 @@ class _WorkspaceFinder:
         """Return the spec of a top-level module, ``None`` for one that is not in the workspace."""
         if path is not None:
             return None
-        if fullname in _LAUNCH:
-            return ModuleSpec(fullname, _loader(self._install_launch))
         for package in self._packages():
             folder = package.module_folder
             if (folder / fullname / "__init__.py").is_file():
                 return PathFinder.find_spec(fullname, [str(folder)])
         return None
-
-    def _install_launch(self, _module: ModuleType) -> None:
-        from sim.launch.importing import install
-
-        self._packages()
-        install()
 
 
 class _AsyncioFinder:
