@@ -8,16 +8,7 @@ from typing import IO
 
 import msgspec
 
-from sim.export.trace_sink import (
-    NO_ATTRIBUTES,
-    NO_LINKS,
-    Attributes,
-    FlowId,
-    Links,
-    Track,
-    TrackId,
-    TrackKind,
-)
+from sim.export.trace_sink import NO_ARGS, NO_LINKS, Args, FlowId, Links, Track, TrackId, TrackKind
 from sim.trace.model import Nanoseconds
 
 _LINES_AT_ONCE = 4096
@@ -54,33 +45,21 @@ class ChromeFile:
             self._name("thread_name", "thread_sort_index", root, track.id, track)
 
     def begin(
-        self,
-        track: TrackId,
-        t: Nanoseconds,
-        name: str,
-        category: str,
-        attributes: Attributes,
-        links: Links = NO_LINKS,
+        self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Links = NO_LINKS
     ) -> None:
         """Begin a slice."""
-        self._put(track, t, {"ph": "B", "name": name, "cat": category, "args": attributes})
+        self._put(track, t, {"ph": "B", "name": name, "cat": category, "args": args})
         self._link(track, t, links)
 
-    def end(self, track: TrackId, t: Nanoseconds, attributes: Attributes = NO_ATTRIBUTES) -> None:
+    def end(self, track: TrackId, t: Nanoseconds, args: Args = NO_ARGS) -> None:
         """End the innermost slice."""
-        self._put(track, t, {"ph": "E", "args": attributes} if attributes else {"ph": "E"})
+        self._put(track, t, {"ph": "E", "args": args} if args else {"ph": "E"})
 
     def instant(
-        self,
-        track: TrackId,
-        t: Nanoseconds,
-        name: str,
-        category: str,
-        attributes: Attributes,
-        links: Links = NO_LINKS,
+        self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Links = NO_LINKS
     ) -> None:
         """Add an instant; one with flows as a slice of no length, since flows bind to slices."""
-        about: dict[str, object] = {"name": name, "cat": category, "args": attributes}
+        about: dict[str, object] = {"name": name, "cat": category, "args": args}
         if any(links):
             self._put(track, t, {"ph": "X", "dur": 0, **about})
             self._link(track, t, links)

@@ -8,7 +8,7 @@ from typing import IO
 
 import perfetto.protos.perfetto.trace.perfetto_trace_pb2 as pb
 
-from sim.export.trace_sink import NO_ATTRIBUTES, NO_LINKS, Attributes, Links, Track, TrackId, TrackKind
+from sim.export.trace_sink import NO_ARGS, NO_LINKS, Args, Links, Track, TrackId, TrackKind
 from sim.trace.model import Nanoseconds
 
 _SEQUENCE = 1
@@ -60,32 +60,20 @@ class PerfettoFile:
             about.child_ordering = pb.TrackDescriptor.EXPLICIT
 
     def begin(
-        self,
-        track: TrackId,
-        t: Nanoseconds,
-        name: str,
-        category: str,
-        attributes: Attributes,
-        links: Links = NO_LINKS,
+        self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Links = NO_LINKS
     ) -> None:
         """Begin a slice."""
-        _fill(self._event(track, t, _BEGIN, name, category), attributes, links)
+        _fill(self._event(track, t, _BEGIN, name, category), args, links)
 
-    def end(self, track: TrackId, t: Nanoseconds, attributes: Attributes = NO_ATTRIBUTES) -> None:
+    def end(self, track: TrackId, t: Nanoseconds, args: Args = NO_ARGS) -> None:
         """End the innermost slice."""
-        _fill(self._event(track, t, _END), attributes, NO_LINKS)
+        _fill(self._event(track, t, _END), args, NO_LINKS)
 
     def instant(
-        self,
-        track: TrackId,
-        t: Nanoseconds,
-        name: str,
-        category: str,
-        attributes: Attributes,
-        links: Links = NO_LINKS,
+        self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Links = NO_LINKS
     ) -> None:
         """Add an instant."""
-        _fill(self._event(track, t, _INSTANT, name, category), attributes, links)
+        _fill(self._event(track, t, _INSTANT, name, category), args, links)
 
     def count(self, track: TrackId, t: Nanoseconds, value: float) -> None:
         """Add a value of a counter."""
@@ -118,10 +106,10 @@ class PerfettoFile:
         return packet
 
 
-def _fill(event: pb.TrackEvent, attributes: Attributes, links: Links) -> None:
-    if attributes:
+def _fill(event: pb.TrackEvent, args: Args, links: Links) -> None:
+    if args:
         add = event.debug_annotations.add
-        for name, value in attributes.items():
+        for name, value in args.items():
             if isinstance(value, str):
                 add(name=name, string_value=value)
             elif isinstance(value, float):

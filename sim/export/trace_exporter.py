@@ -7,14 +7,14 @@ from sim.export.flows import Flows
 from sim.export.open_calls import CallSegment, OpenCalls
 from sim.export.reorder_buffer import PayloadKind, ReorderBuffer
 from sim.export.texts import printable
-from sim.export.trace_sink import NO_ATTRIBUTES, NO_LINKS, Attributes, Links, TraceSink, TrackId
+from sim.export.trace_sink import NO_ARGS, NO_LINKS, Args, Links, TraceSink, TrackId
 from sim.export.track_layout import TrackLayout
 from sim.trace import events as ev
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import AnyEvent, EntityId, EntityKind, ThreadId
 from sim.trace.model import Nanoseconds, Wait
 
-_UNFINISHED: Attributes = {"unfinished": "yes"}
+_UNFINISHED: Args = {"unfinished": "yes"}
 
 
 class TraceExporter:
@@ -119,10 +119,10 @@ class TraceExporter:
 
     def _events_lost(self, event: ev.EventsLost) -> None:
         self._open_calls.mark_uncertain()
-        self._add_text("notices", event.t, f"{event.count} events lost so far", NO_ATTRIBUTES)
+        self._add_text("notices", event.t, f"{event.count} events lost so far", NO_ARGS)
 
     def _contents_lost(self, event: ev.ContentsLost) -> None:
-        self._add_text("notices", event.t, f"contents of {event.count} messages lost so far", NO_ATTRIBUTES)
+        self._add_text("notices", event.t, f"contents of {event.count} messages lost so far", NO_ARGS)
 
     # queues and waits
 
@@ -139,7 +139,7 @@ class TraceExporter:
 
     def _lose(self, entity: EntityId, t: Nanoseconds, what: str, flows: tuple[int, ...]) -> None:
         track = self._layout.waits(self._layout.entity(entity))
-        self._sink.instant(track, t, what, "queue", NO_ATTRIBUTES, Links(end=flows))
+        self._sink.instant(track, t, what, "queue", NO_ARGS, Links(end=flows))
 
     def _show_depth(self, entity: EntityId, t: Nanoseconds, depth: int) -> None:
         shown = self._layout.entity(entity)
@@ -159,15 +159,15 @@ class TraceExporter:
         self._waiting[event.entity] = event.since
         entity = self._layout.entity(event.entity)
         wait = Wait(event.t, None, event.since, event.entity, event.reason, event.holder, event.workers_busy)
-        attributes: dict[str, str | int | float] = {
+        args: dict[str, str | int | float] = {
             "reason": event.reason.value,
             "ready_since_s": event.since / 1e9,
             "workers_busy": "yes" if event.workers_busy else "no",
         }
         if event.holder:
-            attributes["culprit"] = self._layout.entity(event.holder).name
+            args["culprit"] = self._layout.entity(event.holder).name
         name = printable(why_waiting(wait, self._layout.participants))
-        self._sink.begin(self._layout.waits(entity), event.t, name, "wait", attributes)
+        self._sink.begin(self._layout.waits(entity), event.t, name, "wait", args)
 
     def _wait_ended(self, event: ev.WaitEnded) -> None:
         since = self._waiting.get(event.entity)
@@ -188,8 +188,8 @@ class TraceExporter:
         self._unblock(event.thread, event.t)
         segment = self._open_calls.start(event, self._waited.pop(event.entity, 0))
         entity = self._layout.entity(event.entity)
-        attributes = {
-            **entity.attributes,
+        args = {
+            **entity.args,
             "late_ms" if entity.kind is EntityKind.TIMER else "message_age_ms": event.age / 1e6,
             "waited_ms": segment.wait / 1e6,
             "queue_depth": event.depth,
@@ -197,9 +197,7 @@ class TraceExporter:
         through = self._flows.served(event.message) if entity.kind is EntityKind.SERVICE else ()
         taken = self._flows.take(event.message, event.entity)
         links = Links((), through, taken) if through or taken else NO_LINKS
-        self._sink.begin(
-            self._layout.thread(event.thread), event.t, entity.name, "callback", attributes, links
-        )
+        self._sink.begin(self._layout.thread(event.thread), event.t, entity.name, "callback", args, links)
         segment.lane = self._layout.enter(entity.group)
         on = {"thread": self._layout.thread_name(event.thread)}
         self._sink.begin(self._layout.lane(entity.group, segment.lane), event.t, entity.name, "group", on)
@@ -222,7 +220,7 @@ class TraceExporter:
         for lost in left[:-1]:
             self._end_call(lost, event.t)
         if left:
-            self._sink.begin(self._lane_of(left[-1]), event.t, "suspended", "group", NO_ATTRIBUTES)
+            self._sink.begin(self._lane_of(left[-1]), event.t, "suspended", "group", NO_ARGS)
 
     def _callback_resumed(self, event: ev.CallbackResumed) -> None:
         self._unblock(event.thread, event.t)
@@ -230,22 +228,22 @@ class TraceExporter:
         entity = self._layout.entity(event.entity)
         if before is None:
             segment.lane = self._layout.enter(entity.group)
-            self._sink.begin(self._lane_of(segment), event.t, entity.name, "group", NO_ATTRIBUTES)
+            self._sink.begin(self._lane_of(segment), event.t, entity.name, "group", NO_ARGS)
         else:
             self._sink.end(self._lane_of(segment), event.t)
-        attributes = {**entity.attributes, "resumed": "yes"}
-        self._sink.begin(self._layout.thread(event.thread), event.t, entity.name, "callback", attributes)
+        args = {**entity.args, "resumed": "yes"}
+        self._sink.begin(self._layout.thread(event.thread), event.t, entity.name, "callback", args)
 
-    def _end_span(self, segment: CallSegment, t: Nanoseconds, attributes: Attributes = NO_ATTRIBUTES) -> None:
+    def _end_span(self, segment: CallSegment, t: Nanoseconds, args: Args = NO_ARGS) -> None:
         """End the slice of a segment on its thread."""
         self._unblock(segment.thread, t)
         if segment.error:
-            attributes = {**attributes, "error": printable(segment.error)}
-        self._sink.end(self._layout.thread(segment.thread), t, attributes)
+            args = {**args, "error": printable(segment.error)}
+        self._sink.end(self._layout.thread(segment.thread), t, args)
 
-    def _end_call(self, segment: CallSegment, t: Nanoseconds, attributes: Attributes = NO_ATTRIBUTES) -> None:
+    def _end_call(self, segment: CallSegment, t: Nanoseconds, args: Args = NO_ARGS) -> None:
         """End the slice of a call in its group."""
-        self._sink.end(self._lane_of(segment), t, attributes)
+        self._sink.end(self._lane_of(segment), t, args)
         self._layout.leave(self._layout.entity(segment.entity).group, segment.lane)
 
     def _lane_of(self, segment: CallSegment) -> TrackId:
@@ -266,9 +264,9 @@ class TraceExporter:
         self._sink.instant(track, event.t, name, "publish", {"message": event.message}, Links(begin=flows))
 
     def _qos_mismatched(self, event: ev.QosMismatched) -> None:
-        attributes: Attributes = {"topic": printable(event.topic), "policy": event.policy}
+        args: Args = {"topic": printable(event.topic), "policy": event.policy}
         self._add_text(
-            "notices", event.t, f"{printable(event.topic)}: quality of service does not match", attributes
+            "notices", event.t, f"{printable(event.topic)}: quality of service does not match", args
         )
 
     def _request_lost(self, event: ev.RequestLost) -> None:
@@ -282,17 +280,17 @@ class TraceExporter:
         track = self._thread_track(event.entity)
         if track is None:
             track = self._layout.service(event.service)
-        attributes: Attributes = {"call": event.call, "request": printable(event.request)}
+        args: Args = {"call": event.call, "request": printable(event.request)}
         self._sink.instant(
-            track, event.t, f"call {printable(event.service)}", "call", attributes, Links(begin=flows)
+            track, event.t, f"call {printable(event.service)}", "call", args, Links(begin=flows)
         )
 
     def _service_replied(self, event: ev.ServiceReplied) -> None:
         to_client = self._flows.send(event.call, self._reordered.receivers(PayloadKind.REPLY, event.call))
         track = self._serving(event.service)
-        attributes: Attributes = {"call": event.call, "response": printable(event.response)}
+        args: Args = {"call": event.call, "response": printable(event.response)}
         links = Links(begin=to_client, end=self._flows.reply(event.call))
-        self._sink.instant(track, event.t, f"reply {printable(event.service)}", "call", attributes, links)
+        self._sink.instant(track, event.t, f"reply {printable(event.service)}", "call", args, links)
 
     def _serving(self, service: str) -> TrackId:
         """The track of a reply: the thread that runs the service's callback, if one does."""
@@ -324,24 +322,24 @@ class TraceExporter:
     # texts and the robot
 
     def _logged(self, event: ev.Logged) -> None:
-        attributes: dict[str, str | int | float] = {
+        args: dict[str, str | int | float] = {
             "severity": event.severity.value,
             "logger": printable(event.logger),
         }
         if event.thread:
-            attributes["thread"] = self._layout.thread_name(event.thread)
+            args["thread"] = self._layout.thread_name(event.thread)
         if event.entity:
-            attributes["callback"] = self._layout.entity(event.entity).name
-        self._add_text("log", event.t, event.text, attributes)
+            args["callback"] = self._layout.entity(event.entity).name
+        self._add_text("log", event.t, event.text, args)
 
     def _printed(self, event: ev.Printed) -> None:
         self._add_text("log", event.t, event.text, {"severity": "stderr" if event.error else "stdout"})
 
     def _command_given(self, event: ev.CommandGiven | ev.LineGiven | ev.TimeHalted) -> None:
-        self._add_text("commands", event.t, event.text, NO_ATTRIBUTES)
+        self._add_text("commands", event.t, event.text, NO_ARGS)
 
     def _typed(self, event: ev.Typed) -> None:
-        self._add_text("commands", event.t, f"typed {event.text!r}", NO_ATTRIBUTES)
+        self._add_text("commands", event.t, f"typed {event.text!r}", NO_ARGS)
 
     def _line_said(self, event: ev.LineSaid) -> None:
         self._add_text("commands", event.t, event.text, {"line": event.line})
@@ -349,10 +347,8 @@ class TraceExporter:
     def _noticed(self, event: ev.Notice) -> None:
         self._add_text("notices", event.t, event.text, {"severity": event.severity.value})
 
-    def _add_text(self, track: str, t: Nanoseconds, text: str, attributes: Attributes) -> None:
-        self._sink.instant(
-            self._layout.text_lane(track), t, printable(text) or "(empty line)", track, attributes
-        )
+    def _add_text(self, track: str, t: Nanoseconds, text: str, args: Args) -> None:
+        self._sink.instant(self._layout.text_lane(track), t, printable(text) or "(empty line)", track, args)
 
     def _robot_moved(self, event: ev.RobotMoved) -> None:
         measure = self._layout.set_robot_counter
@@ -386,6 +382,4 @@ class TraceExporter:
         unanswered = self._flows.unanswered()
         if unanswered:
             track = self._layout.text_lane("notices")
-            self._sink.instant(
-                track, t, "calls without a reply", "call", NO_ATTRIBUTES, Links(end=unanswered)
-            )
+            self._sink.instant(track, t, "calls without a reply", "call", NO_ARGS, Links(end=unanswered))

@@ -9,10 +9,10 @@ from sim.trace.model import Nanoseconds
 
 TrackId: TypeAlias = int
 FlowId: TypeAlias = int
-Attributes: TypeAlias = Mapping[str, str | int | float]
+Args: TypeAlias = Mapping[str, str | int | float]
 """Named values of a slice or instant; times carry their unit in the name (``age_ms``)."""
 
-NO_ATTRIBUTES: Attributes = {}
+NO_ARGS: Args = {}
 
 
 class TrackKind(Enum):
@@ -61,27 +61,15 @@ class TraceSink(Protocol):
         """Add a track."""
 
     def begin(
-        self,
-        track: TrackId,
-        t: Nanoseconds,
-        name: str,
-        category: str,
-        attributes: Attributes,
-        links: Links = NO_LINKS,
+        self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Links = NO_LINKS
     ) -> None:
         """Begin a slice."""
 
-    def end(self, track: TrackId, t: Nanoseconds, attributes: Attributes = NO_ATTRIBUTES) -> None:
-        """End the innermost slice; ``attributes`` are those that became known since its start."""
+    def end(self, track: TrackId, t: Nanoseconds, args: Args = NO_ARGS) -> None:
+        """End the innermost slice; ``args`` are those that became known since its start."""
 
     def instant(
-        self,
-        track: TrackId,
-        t: Nanoseconds,
-        name: str,
-        category: str,
-        attributes: Attributes,
-        links: Links = NO_LINKS,
+        self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Links = NO_LINKS
     ) -> None:
         """Add an event without a duration."""
 

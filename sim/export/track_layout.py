@@ -16,13 +16,13 @@ NODES = "nodes outside callbacks"
 
 @dataclass(slots=True)
 class EntityTracks:
-    """An entity's name, attributes and tracks in the trace file; a track has id 0 until it is needed."""
+    """An entity's name, args and tracks in the trace file; a track has id 0 until it is needed."""
 
     name: str
     group: GroupId
     kind: EntityKind | None
     depth: int
-    attributes: dict[str, str | int | float]
+    args: dict[str, str | int | float]
     waits: TrackId = 0
     queue: TrackId = 0
     shown_depth: int = -1
@@ -104,7 +104,7 @@ class TrackLayout:
     def waits(self, entity: EntityTracks) -> TrackId:
         """The track of an entity's waits."""
         if not entity.waits:
-            topic = entity.attributes.get("topic")
+            topic = entity.args.get("topic")
             name = f"{entity.name} ({topic})" if topic and topic != entity.name else entity.name
             entity.waits = self._add(TrackKind.LANE, name, self._group_track(entity.group))
         return entity.waits
@@ -143,14 +143,14 @@ class TrackLayout:
     def _make_entity(self, entity: EntityId, known: Entity | None) -> EntityTracks:
         if known is None:
             return EntityTracks(f"callback {entity}", 0, None, 0, {"entity": f"entity {entity}"})
-        attributes: dict[str, str | int | float] = {"entity": known.kind.value}
+        args: dict[str, str | int | float] = {"entity": known.kind.value}
         if known.name:
-            attributes["topic"] = printable(known.name)
+            args["topic"] = printable(known.name)
         group = self.participants.groups.get(known.group)
         if group is not None:
-            attributes["group"] = group.letter
-        attributes["node"] = printable(self.participants.nodes.get(known.node, f"node {known.node}"))
-        return EntityTracks(printable(known.spoken_name), known.group, known.kind, known.depth, attributes)
+            args["group"] = group.letter
+        args["node"] = printable(self.participants.nodes.get(known.node, f"node {known.node}"))
+        return EntityTracks(printable(known.spoken_name), known.group, known.kind, known.depth, args)
 
     def _process(self, process: ProcessId) -> TrackId:
         if process not in self._processes:
