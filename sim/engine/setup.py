@@ -71,6 +71,11 @@ class ProgramSetup(msgspec.Struct, frozen=True):
     path: str
     arguments: tuple[str, ...] = ()
 
+    @property
+    def is_launch_file(self) -> bool:
+        """Whether it is a file for ``ros2 launch``, by its name."""
+        return self.path.endswith(("launch.py", ".xml", ".yaml", ".yml"))
+
 
 class GroupChange(msgspec.Struct, frozen=True):
     """Another callback group for one callback of a node ("": of any), by their names on the trace.

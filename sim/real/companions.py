@@ -29,6 +29,7 @@ class Companion:
         self._take = take
         self._process: subprocess.Popen[bytes] | None = None
         self.has_spoken = False
+        self.is_over = False
 
     def start(self) -> None:
         """Start it, unless it runs."""
@@ -43,7 +44,7 @@ class Companion:
                 bufsize=0,
             )
             assert self._process.stdout is not None
-            LineReader(self._selector, self._process.stdout, self._told, lambda: None)
+            LineReader(self._selector, self._process.stdout, self._told, self._ended)
 
     def say(self, line: object) -> None:
         """Have it read a line, as JSON."""
@@ -58,6 +59,9 @@ class Companion:
         if self._process is not None:
             self._process.kill()
             self._process.wait()
+
+    def _ended(self) -> None:
+        self.is_over = True
 
     def _told(self, data: bytes) -> None:
         self.has_spoken = True

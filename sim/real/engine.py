@@ -156,10 +156,18 @@ class RealEngine:
             os._exit(0)
 
     def _run(self) -> None:
+        launch_file = next((each.path for each in self._setup.programs if each.is_launch_file), None)
+        if launch_file is not None:
+            text = f"{Path(launch_file).name} is a launch file: start it with cbtui probe -- ros2 launch …"
+            self._outbox.close(RunEnded(0, f"{text}, and watch it with cbtui attach", True))
+            return
         if not self._is_watching:
             self._start_companions()
             while self._robot_is_awaited():
                 self._turn()
+            if self._robot.is_over:
+                text = f"there is no robot: cbtui's own Python has no rclpy ({sys.executable})"
+                self._tell(Severity.WARN, f"{text}; install cbtui[ros] there, or give --no-robot")
         if self._cause is None:
             self._programs.start()
         self._began_to_wait = time.monotonic_ns()
@@ -177,12 +185,8 @@ class RealEngine:
     def _robot_is_awaited(self) -> bool:
         """Whether there is to be a robot, and it does not drive yet."""
         is_late = time.monotonic_ns() > self._began_to_wait + _TO_BEGIN
-        return not (
-            self._setup.robot is RobotUse.NEVER
-            or self._robot.has_spoken
-            or is_late
-            or self._cause is not None
-        )
+        is_settled = self._setup.robot is RobotUse.NEVER or self._robot.has_spoken or self._robot.is_over
+        return not (is_settled or is_late or self._cause is not None)
 
     def _schedule(self) -> None:
         name = None if self._setup.service is None else self._setup.service.name

@@ -180,7 +180,7 @@ def test_a_console_that_is_killed_takes_its_engine_and_what_it_started_along(
 def test_a_machine_that_slept_finishes_its_run(folder: Path) -> None:
     path = node_with(folder, "for each in (os.getppid(), os.getpid()): os.kill(each, signal.SIGSTOP)")
     with nothing_left():
-        console = _console(path, "--for", "1", "--record", "run.mcap")
+        console = _console(path, "--for", "5", "--record", "run.mcap")
         assert comes_true(lambda: sum(map(is_stopped, [console.pid, *engines_of(console.pid)])) == 2)
         both = [console.pid, *engines_of(console.pid)]
         time.sleep(2)  # it is how long the machine sleeps, and nothing is waited for
@@ -212,7 +212,7 @@ def test_a_wall_clock_that_is_set_again_and_again_changes_no_time_of_a_run(
     ]
     assert len(began) > 5
     assert max(began) - min(began) < AN_HOUR // 60
-    assert 1_000_000_000 <= max(event.t for event in events) < AN_HOUR // 60
+    assert 5_000_000_000 <= max(event.t for event in events) < AN_HOUR // 60
 
 
 def _console(path: Path, *words: str) -> "subprocess.Popen[bytes]":

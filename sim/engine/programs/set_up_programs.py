@@ -6,7 +6,7 @@ from pathlib import Path
 from sim.engine.programs.program import STOPPED, ProgramOutcome, script
 from sim.engine.programs.programs import Programs
 from sim.engine.programs.ros2_lines import Lines
-from sim.engine.programs.starting import Starter, StartError, is_launch_file
+from sim.engine.programs.starting import Starter, StartError
 from sim.engine.setup import ProgramSetup
 
 
@@ -14,12 +14,12 @@ def run_programs(
     setup: tuple[ProgramSetup, ...], programs: Programs, starter: Starter, lines: Lines
 ) -> ProgramOutcome:
     """Run all to their ends, and a run without programs to that of its lines; return how that went."""
-    if len(setup) == 1 and not is_launch_file(setup[0].path):
+    if len(setup) == 1 and not setup[0].is_launch_file:
         return programs.run_only(script(setup[0].path, setup[0].arguments))
     interrupts: list[Callable[[], None]] = []
     try:
         for place, program in enumerate(setup, start=1):
-            if is_launch_file(program.path):
+            if program.is_launch_file:
                 launch = starter.launch(None, program.path, program.arguments, _ignore_end)
                 interrupts.append(launch.interrupt)
             else:

@@ -123,8 +123,3 @@ def _told() -> Iterator[None]:
         yield
     except (LaunchError, PackageError) as error:
         raise StartError(str(error)) from error
-
-
-def is_launch_file(path: str) -> bool:
-    """Whether a file is one for ``ros2 launch``, by its name."""
-    return path.endswith(("launch.py", ".xml", ".yaml", ".yml"))

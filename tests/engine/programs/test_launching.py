@@ -4,7 +4,6 @@ from pathlib import Path
 
 import pytest
 
-from sim.engine.programs.starting import is_launch_file
 from sim.engine.setup import ProgramSetup, RobotUse, RunSetup, TimedLine
 from sim.trace.events import LineEnded, LineSaid, Logged, NodeAppeared, Notice, Printed, ProcessEnded
 from tests.support.daily import first_row_daily
@@ -207,4 +206,4 @@ def test_the_same_launch_gives_the_same_trace(package: Path) -> None:
     ("name", "is_one"), [("a.launch.py", True), ("robot.xml", True), ("b.yaml", True), ("node.py", False)]
 )
 def test_what_is_no_python_is_taken_for_a_launch_file_and_not_run_as_python(name: str, is_one: bool) -> None:
-    assert is_launch_file(name) is is_one
+    assert ProgramSetup(name).is_launch_file is is_one
