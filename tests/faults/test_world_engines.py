@@ -180,7 +180,7 @@ def test_a_console_that_is_killed_takes_its_engine_and_what_it_started_along(
 def test_a_machine_that_slept_finishes_its_run(folder: Path) -> None:
     path = node_with(folder, "for each in (os.getppid(), os.getpid()): os.kill(each, signal.SIGSTOP)")
     with nothing_left():
-        console = _console(path, "--for", "5", "--record", "run.mcap")
+        console = _console(path, "--for", "1", "--record", "run.mcap")
         assert comes_true(lambda: sum(map(is_stopped, [console.pid, *engines_of(console.pid)])) == 2)
         both = [console.pid, *engines_of(console.pid)]
         time.sleep(2)  # it is how long the machine sleeps, and nothing is waited for
@@ -203,7 +203,7 @@ def test_a_wall_clock_that_is_set_again_and_again_changes_no_time_of_a_run(
     monkeypatch.setenv("PYTHONPATH", str(folder), prepend=os.pathsep)
     path = node_with(folder, "self.get_logger().info(str(self.get_clock().now().nanoseconds))", again=True)
     with nothing_left():
-        console = _console(path, "--for", "1", "--record", "run.mcap")
+        console = _console(path, "--for", "5", "--record", "run.mcap")
         console.communicate(timeout=PATIENCE)
     assert console.returncode == 0
     events = [event for batch in read(folder / "run.mcap").batches() for event in batch]
