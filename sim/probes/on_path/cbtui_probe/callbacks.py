@@ -63,7 +63,7 @@ class Calls:
         takes = next((number for number in (1, 2) if _takes(callback, number)), None)
         if takes is None:
             return callback
-        traced = self._wrapped(callback, lambda _, info: self.begin_with(info["source_timestamp"]), takes)
+        traced = self._wrapped(callback, self._begin_message, takes)
         traced.__signature__ = _WITH_INFO
         return traced
 
@@ -114,6 +114,10 @@ class Calls:
         timer = self._entity.made()
         late = 0 if timer is None else max(0, timer.timer_period_ns - timer.time_until_next_call())
         recorder.put("callback_start", start, self._entity.number, recorder.thread(), 0, late, 0)
+
+    def _begin_message(self, _message: Any, info: Any = None) -> None:
+        """Tell that the callback starts with a message; an executor made of C++ hands over no information."""
+        self.begin() if info is None else self.begin_with(info["source_timestamp"])
 
     def begin_with(self, sent: int) -> None:
         """Tell that the callback starts with a message sent at ``sent`` (nanoseconds since 1970)."""
