@@ -104,11 +104,6 @@ class ExerciseScreen(RunScreen[LiveRun]):
         runs.begin(speed=None)
 
     @property
-    def live_run(self) -> LiveRun:
-        """The run on screen."""
-        return self.runs.run
-
-    @property
     def recording(self) -> LiveRecording | None:
         """What records the run."""
         return self.runs.run.recording

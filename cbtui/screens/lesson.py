@@ -74,11 +74,6 @@ class LessonScreen(RunScreen[LiveRun]):
             )
 
     @property
-    def live_run(self) -> LiveRun:
-        """The run on screen."""
-        return self.runs.run
-
-    @property
     def changes(self) -> Changes:
         """The user's changes to the program's set-up."""
         return self.restarts.changes

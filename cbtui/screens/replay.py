@@ -70,11 +70,6 @@ class ReplayScreen(RunScreen[RecordedRun]):
         runs.begin(speed=None)
 
     @property
-    def replay_run(self) -> RecordedRun:
-        """The run on screen."""
-        return self.runs.run
-
-    @property
     def changes(self) -> Changes:
         """The changes that were made to the recorded program's set-up."""
         return self._changes

@@ -196,7 +196,7 @@ class Console:
     async def until(self, condition: Callable[[LiveRun], bool]) -> None:
         """Wait until something is so of the run on screen."""
         deadline = time.monotonic() + PATIENCE
-        while not condition(self.screen.live_run):
+        while not condition(self.screen.runs.run):
             assert time.monotonic() < deadline, "it never came to it"
             await asyncio.sleep(0.01)
 

@@ -79,7 +79,7 @@ async def test_the_console_answers_while_a_node_rages_and_runs_it_again(folder: 
         await console.until(lambda _: notice in console.said)
         console.app.simulate_key("R")
         assert await console.answers() < ANSWERED
-        first = console.screen.live_run
+        first = console.screen.runs.run
         console.app.simulate_key("ctrl+r")
         await console.until(lambda live: live is not first and begun(live))
     (path,) = folder.glob("*.mcap")
@@ -96,7 +96,7 @@ def test_a_hundred_megabytes_are_all_in_the_log(folder: Path) -> None:
 async def test_a_loop_without_end_on_the_real_clock_is_told_on_screen_with_its_place(folder: Path) -> None:
     async with console_on(node_with(folder, "while True: pass")) as console:
         await console.until(lambda live: bool(live.timeline.notices))
-        (notice,) = console.screen.live_run.timeline.notices
+        (notice,) = console.screen.runs.run.timeline.notices
         assert notice.text.startswith(f"tick has not come back for 3 s (node.py:{FIRST}, in fault)")
 
 
@@ -108,7 +108,7 @@ async def test_time_goes_on_on_screen_and_in_the_recording_while_a_callback_does
         await console.until(lambda live: bool(live.timeline.notices))
         console.app.simulate_key("R")
         await console.until(lambda live: live.recording.count is not None)
-        last = console.screen.live_run.timeline.notices[-1].t
+        last = console.screen.runs.run.timeline.notices[-1].t
         await console.until(lambda live: live.timeline.end > last + SECOND)
         assert any(float(runs) > 3.5 for runs in re.findall(r"runs (\d+\.\d) s", text_of(console.app)))
         console.app.simulate_key("R")
@@ -124,9 +124,9 @@ async def test_a_node_that_took_too_much_memory_can_be_run_again_with_the_key(
     path = node_with(folder, "self.kept = b'x' * 3_000_000_000")
     async with console_on(path) as console:
         await console.until(lambda live: live.state is RunState.LOST)
-        assert "the node used more than 0.4 GB of memory" in str(console.screen.live_run.loss)
-        first = console.screen.live_run
+        assert "the node used more than 0.4 GB of memory" in str(console.screen.runs.run.loss)
+        first = console.screen.runs.run
         node_with(folder, "pass")
         await console.pilot.press("r")
         await console.until(lambda live: live is not first and begun(live))
-        assert console.screen.live_run.alive
+        assert console.screen.runs.run.alive

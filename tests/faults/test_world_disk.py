@@ -73,9 +73,9 @@ async def test_a_disk_that_fills_up_ends_the_recording_and_the_run_goes_on(folde
         with files_of_at_most(ROOM):
             await console.pilot.press("R")
             await console.until(lambda _: any("not whole" in text for text in said()))
-            assert console.screen.live_run.recording.count is None
+            assert console.screen.runs.run.recording.count is None
             assert await console.answers() < ANSWERED
-        assert console.screen.live_run.state is RunState.LIVE
+        assert console.screen.runs.run.state is RunState.LIVE
         (path,) = folder.glob("*.mcap")
         assert f"The recording {path.name} is not whole: File too large" in said()
     assert events_in(path) > 0

@@ -47,11 +47,11 @@ async def test_moving_one_of_two_that_share_a_key_leaves_the_other_its_key() -> 
     async with app.run_test(size=WIDE) as pilot:
         await settle(pilot)
         await pilot.press("space")
-        assert app.lesson_screen.live_run.paused
+        assert app.lesson_screen.runs.run.paused
         await pilot.press("space")
-        assert app.lesson_screen.live_run.paused
+        assert app.lesson_screen.runs.run.paused
         await pilot.press("f5")
-        assert not app.lesson_screen.live_run.paused
+        assert not app.lesson_screen.runs.run.paused
 
 
 async def test_keys_that_were_swapped_are_swapped() -> None:

@@ -298,7 +298,7 @@ async def test_a_lesson_offers_a_comparison_once_there_is_a_run_before() -> None
     async with app.run_test(size=WIDE) as pilot:
         await settle(pilot)
         assert app.lesson_screen.check_action("compare", ()) is False
-        before = app.lesson_screen.live_run.timeline
+        before = app.lesson_screen.runs.run.timeline
         await pilot.press("t", "4")
         await settle(pilot)
         assert app.lesson_screen.check_action("compare", ()) is True
@@ -310,12 +310,12 @@ async def test_a_lesson_offers_a_comparison_once_there_is_a_run_before() -> None
         first, second = comparison._sides
         assert (first.name, second.name) == ("shared-group, as written", "shared-group, 4 threads")
         assert first.timeline is before
-        assert second.timeline is lesson.live_run.timeline
+        assert second.timeline is lesson.runs.run.timeline
         assert (first.alive(), second.alive()) == (False, True)
         app.engines.latest.play(ns(15))
-        await until(pilot, lambda: lesson.live_run.timeline.end > ns(14))
+        await until(pilot, lambda: lesson.runs.run.timeline.end > ns(14))
         comparison.draw()
-        assert comparison.query(Lanes).last(Lanes).now == lesson.live_run.timeline.end > ns(14)
+        assert comparison.query(Lanes).last(Lanes).now == lesson.runs.run.timeline.end > ns(14)
         await pilot.press("q")
         assert isinstance(app.screen, LessonScreen)
 

@@ -188,7 +188,7 @@ async def test_a_recording_has_its_diagnoses_too(tmp_path: Path) -> None:
         await settle(pilot)
         screen = app.screen
         assert isinstance(screen, ReplayScreen)
-        while not screen.replay_run.is_read:
+        while not screen.runs.run.is_read:
             await pilot.pause(0.01)
         await settle(pilot)
         assert "6 problems · d" in lines_of(app)[-2]

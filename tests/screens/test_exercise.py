@@ -307,7 +307,7 @@ async def test_a_run_that_takes_too_much_is_ended_and_told_of() -> None:
         await until(pilot, lambda: app.exercise.is_judged and engines.latest.stopped)
         await settle(pilot)
         assert "was given -1 s of real time" in text_of(app)
-        assert not app.exercise.live_run.alive
+        assert not app.exercise.runs.run.alive
 
 
 @pytest.mark.slow
@@ -316,11 +316,11 @@ async def test_a_paused_run_may_stand_as_long_as_it_likes() -> None:
     app = ExerciseConsole(engines)
     async with app.run_test(size=NARROW) as pilot:
         await settle(pilot)
-        app.exercise.live_run.pause()
+        app.exercise.runs.run.pause()
         app.exercise.allow(RunBudget(limit=0))
         app.exercise.look_at_budget()
         await settle(pilot)
-        assert app.exercise.live_run.alive
+        assert app.exercise.runs.run.alive
 
 
 async def test_an_engine_that_is_lost_is_told_of_in_a_sentence() -> None:

@@ -61,9 +61,9 @@ async def test_a_file_that_goes_on_for_ever_is_ended(here: Path) -> None:
     (here / FILE).write_text(ENDLESS_CALLBACK)
     app = ExerciseConsole()
     async with app.run_test(size=NARROW) as pilot:
-        await until(pilot, lambda: app.exercise.live_run.timeline.started is not None)
+        await until(pilot, lambda: app.exercise.runs.run.timeline.started is not None)
         app.exercise.allow(RunBudget(limit=0.3))
         await until(pilot, lambda: app.exercise.is_judged)
         await settle(pilot)
         assert f"{FILE} was given 0.3 s of real time" in text_of(app)
-        assert not app.exercise.live_run.alive
+        assert not app.exercise.runs.run.alive

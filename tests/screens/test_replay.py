@@ -42,7 +42,7 @@ async def replayed(shown: Recording) -> AsyncIterator[tuple[ReplayScreen, Pilot[
         await settle(pilot)
         screen = app.screen
         assert isinstance(screen, ReplayScreen)
-        while not screen.replay_run.is_read:
+        while not screen.runs.run.is_read:
             await asyncio.sleep(0.01)
         screen.draw()
         await settle(pilot)
@@ -63,9 +63,9 @@ async def press(pilot: Pilot[None], *keys: str) -> None:
 async def test_a_recording_opens_at_its_end_with_every_pane_alive(tmp_path: Path) -> None:
     events = shared_group_run().events
     async with replayed(recording(tmp_path)) as (screen, pilot):
-        assert screen.replay_run.timeline.end == timeline_of([events]).end
+        assert screen.runs.run.timeline.end == timeline_of([events]).end
         assert "‖ REPLAY" in status(pilot)
-        assert f"t {screen.replay_run.timeline.end / 1e9:.3f} s" in status(pilot)
+        assert f"t {screen.runs.run.timeline.end / 1e9:.3f} s" in status(pilot)
         picture = text_of(pilot.app)
         assert "Recording of shared-group" in picture
         assert "␣ go on" in picture
@@ -85,7 +85,7 @@ async def test_at_its_end_it_tells_how_the_run_ended(tmp_path: Path) -> None:
 
 async def test_it_can_be_scrubbed_both_ways(tmp_path: Path) -> None:
     async with replayed(recording(tmp_path)) as (screen, pilot):
-        timeline = screen.replay_run.timeline
+        timeline = screen.runs.run.timeline
         before = timeline.neighbour(timeline.end, None, -1)
         assert before is not None
         await press(pilot, "comma")
@@ -103,7 +103,7 @@ async def test_it_plays_at_the_chosen_speed_from_its_beginning_and_stands_at_its
     wall = [0]
     monkeypatch.setattr("cbtui.screens.replay.monotonic_ns", lambda: wall[0])
     async with replayed(recording(tmp_path)) as (screen, pilot):
-        run = screen.replay_run
+        run = screen.runs.run
         await press(pilot, "plus", "space")
         assert "▶ REPLAY  virtual ×2.0   t 0.000 s" in status(pilot)
         wall[0] += ns(1.5)
@@ -141,9 +141,9 @@ async def test_what_cannot_be_read_is_said_in_one_sentence_and_the_rest_is_shown
     cut = tmp_path / "cut.mcap"
     cut.write_bytes(whole.read_bytes()[: whole.stat().st_size // 2])
     async with replayed(read(cut)) as (screen, pilot):
-        assert 0 < screen.replay_run.timeline.end < timeline_of([events]).end
-        assert screen.replay_run.damage is not None
-        assert "breaks off at byte" in screen.replay_run.damage
+        assert 0 < screen.runs.run.timeline.end < timeline_of([events]).end
+        assert screen.runs.run.damage is not None
+        assert "breaks off at byte" in screen.runs.run.damage
         assert "breaks off at byte" in text_of(pilot.app)
         assert "‖ REPLAY" in status(pilot)
 

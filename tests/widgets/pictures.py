@@ -1,7 +1,9 @@
 """Timelines and pictures that the tests of the widgets share."""
 
+from collections.abc import Iterable
 from textwrap import dedent
 
+from cbtui.looks.theme import TextRun
 from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, ns
@@ -22,3 +24,8 @@ def last(seconds: float, now: float) -> tuple[Window, Nanoseconds]:
 def drawn(text: str) -> str:
     """Return a picture written in a test: each line stands between bars so that blanks at its end count."""
     return "\n".join(line[1:-1] for line in dedent(text).strip("\n").splitlines())
+
+
+def plain(rows: Iterable[Iterable[TextRun]]) -> str:
+    """Return painted rows as text without inks."""
+    return "\n".join("".join(run.text for run in row) for row in rows)

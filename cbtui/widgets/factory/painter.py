@@ -24,13 +24,6 @@ class FactoryPainter:
     def __init__(self, charset: Charset = Charset.BRAILLE) -> None:
         self.charset = charset
 
-    def text(
-        self, timeline: Timeline, now: Nanoseconds, width: int, height: int, glance: Nanoseconds = GLANCE
-    ) -> str:
-        """Return the picture of ``paint`` as plain text."""
-        rows = self.paint(timeline, now, width, height, glance)
-        return "\n".join("".join(run.text for run in row) for row in rows)
-
     def paint(
         self, timeline: Timeline, now: Nanoseconds, width: int, height: int, glance: Nanoseconds = GLANCE
     ) -> Sequence[Sequence[TextRun]]:

@@ -82,10 +82,6 @@ class LanePainter:
         self._losses: dict[EntityId, InstantColumns] = {}
         self.painted: dict[Lane, tuple[_LaneSummary, list[TextRun]]] = {}
 
-    def text(self, timeline: Timeline, window: Window, now: Nanoseconds, width: int, height: int) -> str:
-        """Return the picture of ``paint`` as plain text."""
-        return self.paint(timeline, window, now, width, height).text
-
     def paint(
         self,
         timeline: Timeline,

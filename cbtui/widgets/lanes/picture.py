@@ -42,11 +42,6 @@ class LanePicture:
     complete: bool = True
 
     @property
-    def text(self) -> str:
-        """The picture without its inks."""
-        return "\n".join("".join(run.text for run in row) for row in self.rows)
-
-    @property
     def time_per_column(self) -> str:
         """The scale in words, such as ``200 ms/col``."""
         return f"{duration(self.scale.per_column)}/col"

@@ -45,19 +45,6 @@ class RobotPainter:
     def __init__(self, charset: Charset = Charset.BRAILLE) -> None:
         self.charset = charset
 
-    def text(
-        self,
-        timeline: Timeline,
-        now: Nanoseconds,
-        width: int,
-        height: int,
-        look: RobotViewMode = RobotViewMode.MAP,
-        note: str = "",
-    ) -> str:
-        """Return the rows of ``paint`` as plain text."""
-        rows = self.paint(timeline, now, width, height, look, note).rows
-        return "\n".join("".join(run.text for run in row) for row in rows)
-
     def paint(
         self,
         timeline: Timeline,

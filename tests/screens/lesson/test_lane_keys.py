@@ -82,7 +82,7 @@ async def test_the_arrows_belong_to_the_panes_until_the_lanes_are_gone_to() -> N
 
 async def test_braces_go_from_bar_to_bar_with_the_cursor() -> None:
     async with console() as (app, pilot):
-        timeline = app.lesson_screen.live_run.timeline
+        timeline = app.lesson_screen.runs.run.timeline
         await press(pilot, "enter", "down", "down", "left_curly_bracket")
         lanes = lanes_of(app)
         assert lanes.selection is not None
@@ -104,7 +104,7 @@ async def test_enter_on_a_selected_bar_goes_to_its_code() -> None:
         code = app.screen.query_one(CodeView)
         assert code.display
         assert code.has_focus
-        line = app.lesson_screen.live_run.timeline.entities[3].first_line
+        line = app.lesson_screen.runs.run.timeline.entities[3].first_line
         assert code.scroll_offset.y <= line - 1 < code.scroll_offset.y + code.size.height
 
 

@@ -149,8 +149,8 @@ async def test_what_an_engine_sends_after_its_run_was_replaced_does_not_count() 
         old.play(ns(100))
         old.end("the engine was killed by signal 9")
         await settle(pilot)
-        assert app.lesson_screen.live_run.state is RunState.LIVE
-        assert app.lesson_screen.live_run.timeline.end == ns(13.15)
+        assert app.lesson_screen.runs.run.state is RunState.LIVE
+        assert app.lesson_screen.runs.run.timeline.end == ns(13.15)
         assert not new.stopped
 
 

@@ -298,7 +298,7 @@ async def test_a_recording_is_exported_whole(folder: Path) -> None:
     async with app.run_test(size=WIDE, notifications=True) as pilot:
         await settle(pilot)
         assert isinstance(app.screen, ReplayScreen)
-        while not app.screen.replay_run.is_read:
+        while not app.screen.runs.run.is_read:
             await pilot.pause()
         path = await exported(app, pilot, "t")
         with path.open(newline="") as file:

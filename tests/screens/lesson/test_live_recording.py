@@ -73,7 +73,7 @@ async def test_a_stretch_is_recorded_with_all_that_was_there_when_it_began(folde
         assert "Recording to shared-group-" in text_of(app)
         app.engines.latest.play(ns(12.0))
         await settle(pilot)
-        live = app.lesson_screen.live_run.timeline
+        live = app.lesson_screen.runs.run.timeline
         now = live.moment(live.end)
         threads = [thread.name for thread in live.threads.values()]
         await press(pilot, "R")

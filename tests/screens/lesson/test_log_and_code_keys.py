@@ -178,7 +178,7 @@ async def test_the_editor_is_opened_at_the_line_and_the_run_goes_on(
         while not told.exists():
             await asyncio.sleep(0.01)
         app.lesson_screen.post_message(RunController.Delivered(1, LATER))
-        while app.lesson_screen.live_run.timeline.end < ns(13.9):
+        while app.lesson_screen.runs.run.timeline.end < ns(13.9):
             await asyncio.sleep(0.01)
         go.touch()
         while any(worker.group == "editor" for worker in app.workers):

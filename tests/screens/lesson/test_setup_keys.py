@@ -50,7 +50,7 @@ async def press(pilot: Pilot[None], *keys: str) -> None:
 
 def sessions(app: RecordedConsole) -> list[FakeSession]:
     """Those of the lesson on screen; the menu may have one of its own."""
-    title = app.lesson_screen.live_run.setup.title
+    title = app.lesson_screen.runs.run.setup.title
     return [session for session in app.engines.sessions if session.setup.title == title]
 
 
@@ -63,13 +63,13 @@ def notes(app: CbtuiApp) -> list[str]:
 
 async def test_g_gives_the_selected_callback_another_group_and_keeps_the_run_before() -> None:
     async with console() as (app, pilot):
-        before = app.lesson_screen.live_run
+        before = app.lesson_screen.runs.run
         await press(pilot, *TO_ODOM, "g")
         assert isinstance(app.screen, GroupScreen)
         assert "Which callback group does odom_callback get?" in text_of(app)
         assert "In this run: group A exclusive, with scan, timer." in text_of(app)
         await press(pilot, "o")
-        assert app.lesson_screen.live_run.setup.groups == (ODOM_OWN,)
+        assert app.lesson_screen.runs.run.setup.groups == (ODOM_OWN,)
         assert [session.stopped for session in sessions(app)] == [True, False]
         kept = app.lesson_screen.restarts.before
         assert kept is not None
@@ -96,7 +96,7 @@ async def test_each_group_shows_its_code_and_has_its_key(key: str, code: str) ->
         await press(pilot, *TO_ODOM, "g", "home", *["down"] * list(wishes).index(key))
         assert code in text_of(app)
         await press(pilot, key)
-        (change,) = app.lesson_screen.live_run.setup.groups
+        (change,) = app.lesson_screen.runs.run.setup.groups
         assert change.wish == wishes[key]
 
 
@@ -107,7 +107,7 @@ async def test_the_group_in_force_is_highlighted_and_p_gives_the_program_s_again
         await press(pilot, *TO_ODOM, "g")
         assert "self.shared_group" in text_of(app)
         await press(pilot, "p")
-        assert app.lesson_screen.live_run.setup.groups == ()
+        assert app.lesson_screen.runs.run.setup.groups == ()
         assert notes(app)[-1] == "everything as it is written"
 
 
@@ -119,7 +119,7 @@ async def test_g_without_a_selected_callback_lets_one_be_chosen_first() -> None:
         await press(pilot, "down", "enter")
         assert "Which callback group does scan_callback get?" in text_of(app)
         await press(pilot, "r", "r")
-        assert app.lesson_screen.live_run.setup.groups == (
+        assert app.lesson_screen.runs.run.setup.groups == (
             GroupChange("/sub_node", "scan_callback", "reentrant"),
         )
 
@@ -133,7 +133,7 @@ async def test_p_begins_with_the_period_of_a_timer() -> None:
         assert isinstance(app.screen, NumberScreen)
         assert "self.create_timer(0.5, self.timer_callback, …)" in text_of(app)
         await press(pilot, *"0.2", "enter", "r")
-        assert app.lesson_screen.live_run.setup.periods == (
+        assert app.lesson_screen.runs.run.setup.periods == (
             PeriodChange("/sub_node", "timer_callback", 200_000_000),
         )
 
@@ -154,7 +154,7 @@ async def test_nothing_typed_is_the_program_s_own_number() -> None:
         await press(pilot, "p", "enter", *"0.7", "enter")
         assert "0.7 s" in text_of(app)
         await press(pilot, "enter", "backspace", "enter", "r")
-        assert app.lesson_screen.live_run.setup.periods == ()
+        assert app.lesson_screen.runs.run.setup.periods == ()
 
 
 @pytest.mark.slow
@@ -163,7 +163,7 @@ async def test_a_lesson_s_own_number_and_the_sensors_rate_can_be_changed() -> No
         await press(pilot, "p", "down", "enter", *"2.5", "enter")
         assert "node.py … -service_wait_time 2.5" in text_of(app)
         await press(pilot, "down", "enter", "5", "enter", "r")
-        setup = app.lesson_screen.live_run.setup
+        setup = app.lesson_screen.runs.run.setup
         assert "-service_wait_time 2.5" in " ".join(setup.programs[0].arguments)
         assert setup.sensor_rate == 5
         assert "changed: -service_wait_time 2.5, sensors 5 Hz" in text_of(app)
@@ -176,7 +176,7 @@ async def test_a_lesson_s_own_number_and_the_sensors_rate_can_be_changed() -> No
 async def test_several_changes_make_one_run_that_is_compared_with_the_one_before_all() -> None:
     async with console() as (app, pilot):
         await press(pilot, "g", "enter", "o", "up", "enter", "4", "r")
-        setup = app.lesson_screen.live_run.setup
+        setup = app.lesson_screen.runs.run.setup
         assert (setup.groups, setup.threads) == ((ODOM_OWN,), 4)
         assert len(sessions(app)) == 2
         assert app.lesson_screen.restarts.before is not None
@@ -194,7 +194,7 @@ async def test_undoing_all_has_everything_as_the_program_says() -> None:
         assert "# nothing is changed" in text_of(app)
         assert "u undo all" not in text_of(app)
         await press(pilot, "r")
-        assert app.lesson_screen.live_run.setup.threads is None
+        assert app.lesson_screen.runs.run.setup.threads is None
 
 
 @pytest.mark.slow
@@ -216,10 +216,10 @@ async def test_running_again_keeps_the_changes_and_another_lesson_drops_them() -
         sessions(app)[-1].end("gone")
         await settle(pilot)
         await press(pilot, "r")
-        assert app.lesson_screen.live_run.setup.groups == (ODOM_OWN,)
+        assert app.lesson_screen.runs.run.setup.groups == (ODOM_OWN,)
         predict(app, "split-groups")
         await press(pilot, "n")
-        assert not app.lesson_screen.live_run.setup.groups
+        assert not app.lesson_screen.runs.run.setup.groups
 
 
 @pytest.mark.parametrize(("size", "row"), first_row_daily((NARROW, 8), (WIDE, 1)))
@@ -237,7 +237,7 @@ async def test_a_run_before_any_callback_offers_what_can_be_changed_all_the_same
         assert "executor" in text_of(app)
         assert "robot's sensors" in text_of(app)
         await press(pilot, "enter", "2", "r")
-        assert app.lesson_screen.live_run.setup.threads == 2
+        assert app.lesson_screen.runs.run.setup.threads == 2
 
 
 async def test_the_console_can_be_opened_with_changes(tmp_path: Path) -> None:
@@ -250,7 +250,7 @@ async def test_the_console_can_be_opened_with_changes(tmp_path: Path) -> None:
         await settle(pilot)
         screen = app.screen
         assert isinstance(screen, LessonScreen)
-        assert screen.live_run.setup.groups == (GroupChange("", "odom_callback", "own"),)
+        assert screen.runs.run.setup.groups == (GroupChange("", "odom_callback", "own"),)
         assert "changed: odom own group" in text_of(app)
 
 
@@ -267,7 +267,7 @@ async def test_a_real_run_has_the_group_that_was_chosen() -> None:
                     await settle(pilot)
                     screen = app.screen
                     assert isinstance(screen, LessonScreen)
-                    entities = screen.live_run.timeline.entities.values()
+                    entities = screen.runs.run.timeline.entities.values()
                     found = {each.callback: each.group for each in entities}
                     if "timer_callback" in found:
                         return found

@@ -90,9 +90,9 @@ async def test_looking_back_shows_what_had_been_written_by_then() -> None:
     async with console() as (app, pilot):
         await press(pilot, "6")
         output = app.screen.query_one(ShellOutput)
-        output.show(app.lesson_screen.live_run.timeline, 0)
+        output.show(app.lesson_screen.runs.run.timeline, 0)
         await deliver(app, pilot, SAID)
-        output.show(app.lesson_screen.live_run.timeline, ns(1.5))
+        output.show(app.lesson_screen.runs.run.timeline, ns(1.5))
         await pilot.pause()
         assert "Unknown topic" not in text_of(app)
         assert "/odom" in text_of(app)

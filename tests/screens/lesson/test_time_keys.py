@@ -51,7 +51,7 @@ async def test_a_step_is_offered_in_a_pause_and_reaches_the_engine() -> None:
 
 async def test_a_comma_looks_back_by_one_event_and_a_full_stop_forward_until_live_again() -> None:
     async with console() as (app, pilot):
-        timeline = app.lesson_screen.live_run.timeline
+        timeline = app.lesson_screen.runs.run.timeline
         before = timeline.neighbour(timeline.end, None, -1)
         assert before is not None
         await press(pilot, "comma")
@@ -78,7 +78,7 @@ async def test_going_to_a_moment_to_come_lets_the_run_go_on_until_then() -> None
         await press(pilot, "space", "left_square_bracket", "G", *"14.5", "enter")
         assert app.engines.latest.commands == [Pause(), RunUntil(ns(14.5))]
         assert "LIVE" in status(app)
-        app.lesson_screen.live_run.take([TimeHalted(ns(14.5), "run until 14.5 s")])
+        app.lesson_screen.runs.run.take([TimeHalted(ns(14.5), "run until 14.5 s")])
         app.lesson_screen.draw()
         await settle(pilot)
         assert "PAUSED" in status(app)
@@ -93,7 +93,7 @@ async def test_what_is_no_moment_is_asked_for_again_and_escape_stays() -> None:
         assert "Give the seconds as a number" in str(app.screen.query_one("#wrong", Static).render())
         await press(pilot, "escape")
         assert "LIVE" in status(app)
-        assert app.lesson_screen.live_run.alive
+        assert app.lesson_screen.runs.run.alive
 
 
 @pytest.mark.slow

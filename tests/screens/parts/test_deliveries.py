@@ -55,13 +55,13 @@ async def test_after_each_part_a_session_rests_for_as_long_as_the_machine_let_it
             post(message)
 
         monkeypatch.setattr(screen.runs, "_post", hand_over)
-        logs = len(screen.live_run.timeline.logs)
+        logs = len(screen.runs.run.timeline.logs)
         batch: list[AnyEvent] = [Printed(ns(5) + number, "x", error=False) for number in range(3 * 256)]
         began = monotonic()
         await asyncio.to_thread(screen.runs.deliver, screen.runs.number, batch)
         assert monotonic() - began >= 3 * 0.05
         assert waits == [True] * 3
-        assert len(screen.live_run.timeline.logs) == logs + len(batch)
+        assert len(screen.runs.run.timeline.logs) == logs + len(batch)
 
 
 @pytest.mark.slow

@@ -10,7 +10,7 @@ from tests.widgets.factory.scenes import (
     one_worker_three_areas,
     stuck_in_a_call,
 )
-from tests.widgets.pictures import drawn, told
+from tests.widgets.pictures import drawn, plain, told
 
 SHARED = told(shared_group_run())
 SPLIT = told(split_groups_run())
@@ -20,7 +20,7 @@ REENTRANT = told(dummy_server_run())
 def factory(
     timeline: Timeline, now: float, width: int, height: int, charset: Charset = Charset.BRAILLE
 ) -> str:
-    return FactoryPainter(charset).text(timeline, ns(now), width, height)
+    return plain(FactoryPainter(charset).paint(timeline, ns(now), width, height))
 
 
 def test_one_seat_starves_the_sensors() -> None:

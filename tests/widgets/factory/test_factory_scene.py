@@ -18,7 +18,7 @@ from tests.widgets.factory.scenes import (
     one_worker_three_areas,
     stuck_in_a_call,
 )
-from tests.widgets.pictures import told
+from tests.widgets.pictures import plain, told
 
 GLANCE = ns(0.15)
 RUNS = [
@@ -90,7 +90,7 @@ def test_at_any_speed_a_worker_has_walked_as_far_after_the_same_moment_on_screen
 
 def test_a_coming_worker_nears_the_area_and_a_leaving_one_the_yard() -> None:
     def column(at: float, sign: str) -> int:
-        text = FactoryPainter(Charset.ASCII).text(one_call(), ns(at), 78, 9)
+        text = plain(FactoryPainter(Charset.ASCII).paint(one_call(), ns(at), 78, 9))
         (line,) = (line for line in text.splitlines() if sign in line)
         return line.index(sign)
 
@@ -137,13 +137,13 @@ def test_a_suspended_coroutine_keeps_its_seat_and_frees_its_worker() -> None:
     scene = scene_at(timeline, 3.0)
     assert [worker.stay for worker in scene.workers] == [WorkerState.IDLE]
     assert [entity.callback for entity in scene.areas[0].kept] == ["ask_callback"]
-    assert "kept by ask_callback" in FactoryPainter().text(timeline, ns(3.0), 78, 9)
+    assert "kept by ask_callback" in plain(FactoryPainter().paint(timeline, ns(3.0), 78, 9))
 
 
 def test_a_timer_that_waits_for_its_own_last_call_is_not_counted_among_those_who_wait() -> None:
     timeline = told(split_groups_run())
     assert not list(scene_at(timeline, 9.4).waits())
-    text = FactoryPainter().text(timeline, ns(9.4), 104, 20)
+    text = plain(FactoryPainter().paint(timeline, ns(9.4), 104, 20))
     assert "late 4.9 s: its last call still runs" in text
 
 
@@ -166,7 +166,7 @@ def test_a_tick_nears_the_door_until_it_is_due() -> None:
     def place(at: float) -> int:
         (line,) = (
             line
-            for line in FactoryPainter(Charset.ASCII).text(timeline, ns(at), 78, 9).splitlines()
+            for line in plain(FactoryPainter(Charset.ASCII).paint(timeline, ns(at), 78, 9)).splitlines()
             if "*" in line
         )
         return line.index("*")
@@ -188,21 +188,21 @@ def test_whoever_waits_stands_at_the_door_with_the_reason(reason: Reason, words:
     run.message(entity, 1.0)
     run.wait(entity, 1.0, None, reason)
     run.stop(9.0)
-    assert words in FactoryPainter().text(told(run), ns(3.0), 78, 9)
+    assert words in plain(FactoryPainter().paint(told(run), ns(3.0), 78, 9))
 
 
 def test_a_full_belt_says_so_and_what_it_lost() -> None:
-    text = FactoryPainter().text(four_workers_one_seat(), ns(9.0), 78, 9)
+    text = plain(FactoryPainter().paint(four_workers_one_seat(), ns(9.0), 78, 9))
     assert "3/3 ! lost 2" in text
 
 
 def test_boxes_carry_their_ages_the_oldest_at_the_door() -> None:
-    text = FactoryPainter(Charset.ASCII).text(four_workers_one_seat(), ns(9.0), 78, 9)
+    text = plain(FactoryPainter(Charset.ASCII).paint(four_workers_one_seat(), ns(9.0), 78, 9))
     assert "[4.5s][4.6s][4.7s]X" in text
 
 
 def test_a_stuck_worker_names_the_service_where_there_is_room() -> None:
-    text = FactoryPainter().text(stuck_in_a_call(), ns(3.0), 138, 30)
+    text = plain(FactoryPainter().paint(stuck_in_a_call(), ns(3.0), 138, 30))
     assert "stuck in /motor_power 1.8 s" in text
 
 
@@ -213,7 +213,7 @@ def test_more_belts_than_rows_say_how_many_are_left_out() -> None:
     entities = [run.subscription(group, f"/t{number}", f"t{number}_callback") for number in range(20)]
     run.wait(entities[17], 1.0, None, Reason.NOBODY_SPINS)
     run.stop(9.0)
-    text = FactoryPainter().text(told(run), ns(2.0), 64, 8)
+    text = plain(FactoryPainter().paint(told(run), ns(2.0), 64, 8))
     assert "t17" in text
     assert "+15 more belts" in text
 
@@ -229,7 +229,7 @@ def test_more_belts_than_rows_say_how_many_are_left_out() -> None:
 def test_a_picture_has_the_size_that_was_asked_for(
     timeline: Timeline, now: float, width: int, height: int, charset: Charset
 ) -> None:
-    text = FactoryPainter(charset).text(timeline, ns(now), width, height)
+    text = plain(FactoryPainter(charset).paint(timeline, ns(now), width, height))
     lines = text.split("\n") if width and height else []
     assert len(lines) == (height if width else 0)
     assert all(cell_len(line) == width for line in lines)
@@ -250,7 +250,7 @@ def test_a_moment_looks_the_same_whatever_was_looked_at_before(
 @pytest.mark.parametrize(("width", "height"), [(38, 10), (64, 12), (78, 9), (138, 38)])
 def test_walls_stand_still_whatever_happens(width: int, height: int) -> None:
     def walls(timeline: Timeline, at: float) -> list[tuple[int, int]]:
-        rows = FactoryPainter().text(timeline, ns(at), width, height).splitlines()
+        rows = plain(FactoryPainter().paint(timeline, ns(at), width, height)).splitlines()
         signs = "┏┓┗┛┣┫┃"
         return [(y, x) for y, row in enumerate(rows) for x, sign in enumerate(row) if sign in signs]
 

@@ -5,7 +5,7 @@ from textual.app import App, ComposeResult
 from cbtui.looks.theme import Charset
 from cbtui.widgets.factory import FactoryPainter, FactoryView
 from tests.support.runs import ns, shared_group_run, split_groups_run
-from tests.widgets.pictures import told
+from tests.widgets.pictures import plain, told
 
 
 class OneWidget(App[None]):
@@ -24,7 +24,7 @@ async def test_the_factory_draws_on_screen_what_its_painter_paints() -> None:
         view = app.query_one(FactoryView)
         view.timeline, view.now = timeline, ns(12.9)
         await pilot.pause()
-        assert "\n".join(lines_of(view)) == FactoryPainter().text(timeline, ns(12.9), 78, 9)
+        assert "\n".join(lines_of(view)) == plain(FactoryPainter().paint(timeline, ns(12.9), 78, 9))
         assert view.border_title == "3 Factory"
 
 

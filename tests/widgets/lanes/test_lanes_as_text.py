@@ -15,7 +15,7 @@ from sim.trace.timeline import Timeline
 from tests.support.builder import Run, ns
 from tests.support.goldens import LANES, hold
 from tests.support.runs import shared_group_run
-from tests.widgets.pictures import told
+from tests.widgets.pictures import plain, told
 
 
 def everything() -> Timeline:
@@ -75,7 +75,7 @@ def picture(
     start: float = 0.0,
     end: float = 10.0,
 ) -> str:
-    text = LanePainter(charset).text(timeline, Window(ns(start), ns(end)), ns(end), width, 14)
+    text = plain(LanePainter(charset).paint(timeline, Window(ns(start), ns(end)), ns(end), width, 14).rows)
     return "".join(f"{line.rstrip()}\n" for line in text.splitlines())
 
 

@@ -14,7 +14,7 @@ from tests.support.runs import (
     shared_group_run,
 )
 from tests.widgets.lanes.test_lanes_painter import small_run
-from tests.widgets.pictures import drawn, last, told
+from tests.widgets.pictures import drawn, last, plain, told
 
 
 def blocked_run() -> Run:
@@ -28,16 +28,16 @@ def blocked_run() -> Run:
 
 
 def test_a_thread_that_stands_still_in_a_call_is_hatched_and_says_in_which() -> None:
-    assert LanePainter().text(told(blocked_run()), *last(10, 10.0), 80, 8).splitlines()[0] == drawn(
-        "|MainThread  │ A a_callback ░░ blocked in call /x ░░░░██████    │  90% busy      |"
-    )
+    assert plain(LanePainter().paint(told(blocked_run()), *last(10, 10.0), 80, 8).rows).splitlines()[
+        0
+    ] == drawn("|MainThread  │ A a_callback ░░ blocked in call /x ░░░░██████    │  90% busy      |")
 
 
 def test_a_bars_name_is_kept_where_its_thread_stands_still_at_once() -> None:
     run, thread, a, _ = small_run()
     run.callback(a, thread, 0.2)
     run.blocked(run.call("/x", 0.2, entity=a), "/x", thread, a, 0.2)
-    text = LanePainter(Charset.ASCII).text(told(run, 10.0), Window(0, ns(10)), ns(10), 80, 8)
+    text = plain(LanePainter(Charset.ASCII).paint(told(run, 10.0), Window(0, ns(10)), ns(10), 80, 8).rows)
     assert "A a" in text.splitlines()[0]
     assert "%% blocked in call /x %%" in text.splitlines()[0]
 
@@ -47,7 +47,7 @@ def test_lost_messages_are_crosses_on_the_lane_of_their_queue() -> None:
     for at in (1.0, 1.5, 5.0, 5.1):
         run.add(MessageDropped(ns(at), a, 10, 1))
     run.stop(10.0)
-    assert LanePainter().text(told(run), *last(10, 10.0), 80, 8).splitlines()[2] == drawn(
+    assert plain(LanePainter().paint(told(run), *last(10, 10.0), 80, 8).rows).splitlines()[2] == drawn(
         "|  a         │     × ×                 ×                        │ 10/10! lost 4  |"
     )
 
@@ -71,11 +71,16 @@ def neighbours() -> Timeline:
     ],
 )
 def test_what_a_bars_label_leaves_has_the_texture_of_its_group(charset: Charset, bars: str) -> None:
-    assert bars in LanePainter(charset).text(neighbours(), *last(10, 10.0), 80, 8).splitlines()[0]
+    assert (
+        bars in plain(LanePainter(charset).paint(neighbours(), *last(10, 10.0), 80, 8).rows).splitlines()[0]
+    )
 
 
 def test_wide_lanes_show_each_groups_texture_beside_its_letter() -> None:
-    names = [line[:23] for line in LanePainter().text(neighbours(), *last(10, 10.0), 140, 8).splitlines()]
+    names = [
+        line[:23]
+        for line in plain(LanePainter().paint(neighbours(), *last(10, 10.0), 140, 8).rows).splitlines()
+    ]
     assert names[1:3] == ["A ██ exclusive one     ", "B ·· exclusive other   "]
 
 
@@ -84,7 +89,7 @@ def test_keys_of_the_person_are_marked_on_the_axis_in_words_where_there_is_room(
     run.command("reset the world", 3.0)
     run.command("speed x2", 3.2)
     run.stop(10.0)
-    axis = LanePainter().text(told(run), *last(10, 10.0), 80, 8).splitlines()[-1]
+    axis = plain(LanePainter().paint(told(run), *last(10, 10.0), 80, 8).rows).splitlines()[-1]
     assert "▲▲speed x2" in axis
 
 
@@ -92,7 +97,7 @@ def test_keys_of_the_person_are_marked_on_the_axis_in_words_where_there_is_room(
 def test_an_axis_tells_on_which_side_the_cursor_is(start: float, sign: str) -> None:
     timeline = told(shared_group_run())
     window = Window(ns(start), ns(start + 2))
-    axis = LanePainter().text(timeline, window, ns(4.5), 80, 7).splitlines()[-1]
+    axis = plain(LanePainter().paint(timeline, window, ns(4.5), 80, 7).rows).splitlines()[-1]
     assert sign in axis
 
 
@@ -101,7 +106,7 @@ def test_the_selected_lane_is_pointed_at_and_its_bar_stands_out() -> None:
     lane = ThreadLane(timeline.threads[1])
     bar = timeline.spans_on(1, Window(ns(5), ns(6)))[0]
     picture = LanePainter().paint(timeline, *last(10, 12.9), 80, 8, Selection(lane, bar))
-    assert picture.text.splitlines()[0].startswith("MainThread  ▸▎▎▎▎▎A timer_callback")
+    assert plain(picture.rows).splitlines()[0].startswith("MainThread  ▸▎▎▎▎▎A timer_callback")
     selected = "".join(run.text for run in picture.rows[0] if run.ink.selected)
     assert selected.startswith("A timer_callback ███")
     assert not any(run.ink.selected for row in picture.rows[1:] for run in row)

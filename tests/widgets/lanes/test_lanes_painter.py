@@ -20,7 +20,7 @@ from tests.support.runs import (
     shared_group_run,
     split_groups_run,
 )
-from tests.widgets.pictures import drawn, last, told
+from tests.widgets.pictures import drawn, last, plain, told
 
 RUNS = [told(shared_group_run()), told(split_groups_run()), told(dummy_server_run()), Timeline()]
 
@@ -35,7 +35,7 @@ def small_run() -> tuple[Run, int, int, int]:
 
 def test_one_shared_group_shows_everybody_waiting_for_the_timer() -> None:
     timeline = told(shared_group_run(), until=12.9)
-    assert LanePainter().text(timeline, *last(10, 12.9), 80, 8) == drawn(
+    assert plain(LanePainter().paint(timeline, *last(10, 12.9), 80, 8).rows) == drawn(
         """
         |MainThread  │▎▎▎▎▎A timer_callback ███████████████████████████▌│  90% busy      |
         |A exclusive │·····── held by timer_callback on MainThread ─────│ held, 3 wait   |
@@ -53,14 +53,14 @@ def test_what_has_no_callback_of_its_own_goes_by_its_name() -> None:
     action = run.client(group, "/turn/_action")
     run.subscription(group, "/a", "a_callback")
     run.callback(action, thread, 1.0, 9.0)
-    text = LanePainter().text(told(run, until=10.0), *last(10, 10.0), 100, 8)
+    text = plain(LanePainter().paint(told(run, until=10.0), *last(10, 10.0), 100, 8).rows)
     assert "A reply of /turn/_action" in text
     assert "held by reply of /turn/_action on MainThread" in text
 
 
 def test_the_same_in_ascii_has_no_other_glyph() -> None:
     timeline = told(shared_group_run(), until=12.9)
-    assert LanePainter(Charset.ASCII).text(timeline, *last(10, 12.9), 80, 8) == drawn(
+    assert plain(LanePainter(Charset.ASCII).paint(timeline, *last(10, 12.9), 80, 8).rows) == drawn(
         """
         |MainThread  ||||||A timer_callback ###########################||  90% busy      |
         |A exclusive |.....-- held by timer_callback on MainThread -----| held, 3 wait   |
@@ -74,7 +74,7 @@ def test_the_same_in_ascii_has_no_other_glyph() -> None:
 
 def test_split_groups_fit_nine_rows_of_a_small_terminal() -> None:
     timeline = told(split_groups_run(), until=9.412)
-    assert LanePainter(service="/motor_power").text(timeline, *last(10, 9.412), 80, 9) == drawn(
+    assert plain(LanePainter(service="/motor_power").paint(timeline, *last(10, 9.412), 80, 9).rows) == drawn(
         """
         |Pool-0_0    │    ▎  ▎ ▎  ▎ ▎  ▎ ▎  A timer_callback ██████████▎│  55% busy      |
         |Pool-0_1    │  ▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎▎│   1% busy      |
@@ -91,7 +91,7 @@ def test_split_groups_fit_nine_rows_of_a_small_terminal() -> None:
 
 def test_a_reentrant_group_shows_how_many_run_at_once() -> None:
     timeline = told(dummy_server_run(), until=8.2)
-    assert LanePainter().text(timeline, *last(10, 8.2), 80, 8) == drawn(
+    assert plain(LanePainter().paint(timeline, *last(10, 8.2), 80, 8).rows) == drawn(
         """
         |Pool-0_0    │              ▎    ▎ ▕A service_callback █████▊  ▎│  50% busy      |
         |Pool-0_1    │                        ▎    ▎    ▎    ▎    ▎     │   0% busy      |
@@ -105,13 +105,13 @@ def test_a_reentrant_group_shows_how_many_run_at_once() -> None:
 
 def test_a_timer_that_found_no_worker_is_marked_late() -> None:
     timeline = told(dummy_server_one_thread_run(), until=8.2)
-    assert LanePainter().text(timeline, *last(10, 8.2), 80, 8).splitlines()[3] == drawn(
+    assert plain(LanePainter().paint(timeline, *last(10, 8.2), 80, 8).rows).splitlines()[3] == drawn(
         "|  timer     │              ▎    ▎    ╲╲ no free worker ╲╲╲╲▎! ▎│ on time        |"
     )
 
 
 def test_a_wide_picture_names_threads_as_rclpy_does_and_tells_more() -> None:
-    picture = LanePainter().text(told(split_groups_run(), until=9.412), *last(10, 9.412), 138, 9)
+    picture = plain(LanePainter().paint(told(split_groups_run(), until=9.412), *last(10, 9.412), 138, 9).rows)
     assert "ThreadPoolExecutor-0_0 │" in picture
     assert "  0%  never needed" in picture
     assert "A timer 5.4 s" in picture
@@ -134,7 +134,7 @@ def test_every_picture_has_the_size_that_was_asked_for(
     picture = LanePainter(charset).paint(timeline, Window(start, start + length), now, width, height)
     assert len(picture.rows) <= height
     assert all(cell_len("".join(run.text for run in row)) == width for row in picture.rows)
-    assert charset is not Charset.ASCII or picture.text.isascii()
+    assert charset is not Charset.ASCII or plain(picture.rows).isascii()
 
 
 @settings(max_examples=examples(20), deadline=None)
@@ -154,7 +154,7 @@ def test_lanes_that_fill_frame_by_frame_end_as_if_painted_at_once() -> None:
     painter = LanePainter(looks=300)
     pictures = [painter.paint(timeline, window, now, 100, 14) for _ in range(60)]
     assert not pictures[0].complete
-    assert "·" in pictures[0].text or pictures[0].text != at_once.text
+    assert "·" in plain(pictures[0].rows) or plain(pictures[0].rows) != plain(at_once.rows)
     assert pictures[-1] == at_once
 
 
@@ -166,8 +166,8 @@ def test_lanes_that_grow_look_as_if_painted_at_once() -> None:
         upto = next((place for place, event in enumerate(events) if event.t > ns(now)), len(events))
         growing.extend(events[done:upto])
         done = upto
-        assert painter.text(growing, *last(10, now), 100, 8) == LanePainter().text(
-            growing, *last(10, now), 100, 8
+        assert plain(painter.paint(growing, *last(10, now), 100, 8).rows) == plain(
+            LanePainter().paint(growing, *last(10, now), 100, 8).rows
         )
 
 
@@ -177,7 +177,7 @@ def test_a_callbacks_name_never_reaches_the_terminal_as_a_control() -> None:
     timer = run.timer(run.exclusive(run.node("/n")), "evil\x1b]0;title\x07" * 9, 1.0)
     run.callback(timer, thread, 1.0, 8.0)
     run.stop(10.0)
-    picture = LanePainter().text(told(run), *last(10, 10.0), 80, 6)
+    picture = plain(LanePainter().paint(told(run), *last(10, 10.0), 80, 6).rows)
     assert "\x1b" not in picture
     assert "\x07" not in picture
     assert "Main␛[31mTh…" in picture
@@ -189,7 +189,7 @@ def test_a_failed_call_is_crossed() -> None:
     run.fail(a, thread, 3.0, "IndexError: 720")
     run.end(a, thread, 3.0)
     run.stop(10.0)
-    assert "✗" in LanePainter().text(told(run), *last(10, 10.0), 80, 6).splitlines()[0]
+    assert "✗" in plain(LanePainter().paint(told(run), *last(10, 10.0), 80, 6).rows).splitlines()[0]
 
 
 @pytest.mark.parametrize(
@@ -204,13 +204,13 @@ def test_each_reason_has_its_texture_and_its_words(reason: Reason, words: str) -
     run, _, a, tick = small_run()
     run.wait(a, 1.0, 20.0, reason, tick if reason is Reason.GROUP_HELD else 0)
     run.stop(20.0)
-    assert words in LanePainter().text(told(run), Window(0, ns(6)), ns(6), 140, 6)
+    assert words in plain(LanePainter().paint(told(run), Window(0, ns(6)), ns(6), 140, 6).rows)
 
 
 def test_a_wait_is_told_as_of_the_cursor() -> None:
     timeline = told(shared_group_run())
-    before = LanePainter().text(timeline, Window(0, ns(30)), ns(10), 140, 7)
-    after = LanePainter().text(timeline, Window(0, ns(30)), ns(26), 140, 7)
+    before = plain(LanePainter().paint(timeline, Window(0, ns(30)), ns(10), 140, 7).rows)
+    after = plain(LanePainter().paint(timeline, Window(0, ns(30)), ns(26), 140, 7).rows)
     assert "waits 6.0 s: group A held by timer_callback" in before
     assert "waited 20.0 s: group A held by timer_callback" in after
 
@@ -230,12 +230,14 @@ def test_a_call_after_the_cursor_that_has_not_ended_lasts_to_the_end_of_what_is_
     run.timer(group, "other", 1.0)
     run.start(timer, run.thread("MainThread"), 4.0)
     run.printed("still at it", 9.0)
-    picture = LanePainter().text(told(run), Window(0, ns(10)), ns(2), 140, 7)
+    picture = plain(LanePainter().paint(told(run), Window(0, ns(10)), ns(2), 140, 7).rows)
     assert "runs 5.0 s on MainThread" in picture
 
 
 def test_a_short_window_still_shows_the_last_call_that_reaches_into_it() -> None:
-    picture = LanePainter().text(told(shared_group_run()), Window(ns(9), ns(9.001)), ns(9.001), 80, 7)
+    picture = plain(
+        LanePainter().paint(told(shared_group_run()), Window(ns(9), ns(9.001)), ns(9.001), 80, 7).rows
+    )
     assert "A timer_callback ███" in picture
     assert "waits 5.0 s" in picture
 
@@ -247,13 +249,13 @@ def test_a_group_of_one_shares_its_lane_with_its_callback() -> None:
 
 def test_a_call_without_a_reply_says_since_when() -> None:
     timeline = told(dummy_server_run(), until=5.05)
-    assert "no reply 2.5 s" in LanePainter().text(timeline, *last(10, 5.05), 80, 8)
+    assert "no reply 2.5 s" in plain(LanePainter().paint(timeline, *last(10, 5.05), 80, 8).rows)
 
 
 def test_the_services_that_every_node_brings_along_have_no_lanes() -> None:
     run, _, _, _ = small_run()
     run.service(run.exclusive(run.node("/m")), "/m/get_parameters", "")
-    assert "get_parameters" not in LanePainter().text(told(run), *last(10, 10), 80, 20)
+    assert "get_parameters" not in plain(LanePainter().paint(told(run), *last(10, 10), 80, 20).rows)
 
 
 POOL = ("ThreadPoolExecutor-0_0", "ThreadPoolExecutor-0_1")
@@ -264,7 +266,7 @@ def test_a_main_thread_that_only_hands_out_work_has_no_lane() -> None:
     run.thread("MainThread")
     worker = run.thread("ThreadPoolExecutor-0_0")
     run.callback(run.timer(run.exclusive(run.node("/n")), "tick_callback", 1.0), worker, 1.0, 1.0)
-    assert "MainThread" not in LanePainter().text(told(run), *last(10, 10), 80, 20)
+    assert "MainThread" not in plain(LanePainter().paint(told(run), *last(10, 10), 80, 20).rows)
 
 
 def test_a_thread_of_the_programs_own_is_not_said_to_be_unneeded() -> None:
@@ -273,7 +275,7 @@ def test_a_thread_of_the_programs_own_is_not_said_to_be_unneeded() -> None:
     timer = run.timer(run.exclusive(run.node("/n")), "tick_callback", 1.0)
     run.callback(timer, worker, 1.0, 1.0)
     run.log("beep", 2.0, own)
-    shown = LanePainter().text(told(run), *last(10, 10), 120, 20).splitlines()
+    shown = plain(LanePainter().paint(told(run), *last(10, 10), 120, 20).rows).splitlines()
     (beeper,) = (line for line in shown if "beeper" in line)
     (unused,) = (line for line in shown if POOL[1] in line)
     assert "never needed" in unused
@@ -286,7 +288,7 @@ def test_where_room_is_short_those_who_wait_and_run_stay() -> None:
     timeline = told(shared_group_run(), until=12.9)
     picture = LanePainter().paint(timeline, *last(10, 12.9), 80, 4)
     assert [type(lane) for lane in picture.lanes] == [ThreadLane, GroupLane, MemberLane]
-    assert picture.text.splitlines()[-1].startswith("+2 lanes")
+    assert plain(picture.rows).splitlines()[-1].startswith("+2 lanes")
 
 
 def test_the_rows_wanted_are_the_rows_painted() -> None:
@@ -297,7 +299,7 @@ def test_the_rows_wanted_are_the_rows_painted() -> None:
 
 def test_a_millisecond_and_ten_minutes_fill_a_screen() -> None:
     timeline = told(shared_group_run())
-    near = LanePainter().text(timeline, Window(ns(4.0025), ns(4.0035)), ns(4.0035), 80, 7)
+    near = plain(LanePainter().paint(timeline, Window(ns(4.0025), ns(4.0035)), ns(4.0035), 80, 7).rows)
     assert near == drawn(
         """
         |MainThread  │A timer_callback █████████████████████████████████│ 100% busy      |
@@ -308,5 +310,5 @@ def test_a_millisecond_and_ten_minutes_fill_a_screen() -> None:
         |seconds     │     4.0026    4.0028    4.0030    4.0032     now▲│ 20 µs/col      |
         """
     )
-    far = LanePainter().text(timeline, Window(0, ns(600)), ns(30), 80, 7)
+    far = plain(LanePainter().paint(timeline, Window(0, ns(600)), ns(30), 80, 7).rows)
     assert "12.0 s/col" in far

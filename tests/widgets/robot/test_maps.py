@@ -17,7 +17,7 @@ from sim.trace.events import ArenaShown, RobotMoved, Scanned
 from sim.trace.timeline import Timeline
 from tests.support.properties import examples
 from tests.support.runs import Run, ns, scan_from, shared_group_run, split_groups_run
-from tests.widgets.pictures import told
+from tests.widgets.pictures import plain, told
 
 PLAN = ArenaShown(
     0,
@@ -41,7 +41,7 @@ def standing(yaw: float, scan: bytes = b"") -> Timeline:
 
 def map_of(timeline: Timeline, now: float, charset: Charset = Charset.ASCII) -> str:
     """Return the map alone, 30 columns wide, so that only the surroundings are shown."""
-    return "\n".join(RobotPainter(charset).text(timeline, ns(now), 30, 20).splitlines()[1:-6])
+    return "\n".join(plain(RobotPainter(charset).paint(timeline, ns(now), 30, 20).rows).splitlines()[1:-6])
 
 
 def test_the_sphere_lies_ahead_and_right_on_the_map() -> None:
@@ -55,7 +55,7 @@ def test_the_sphere_lies_ahead_and_right_on_the_map() -> None:
     [(0, "▶"), (45, "◥"), (90, "▲"), (135, "◤"), (180, "◀"), (-135, "◣"), (-90, "▼"), (-45, "◢")],
 )
 def test_the_arrow_points_where_the_robot_heads(degrees: int, arrow: str) -> None:
-    picture = RobotPainter().text(standing(math.radians(degrees)), 0, 80, 12)
+    picture = plain(RobotPainter().paint(standing(math.radians(degrees)), 0, 80, 12).rows)
     assert arrow in picture
 
 
@@ -81,7 +81,7 @@ def test_true_and_believed_scan_differ_without_colours_too() -> None:
 
 def room_of(timeline: Timeline) -> list[str]:
     """Return the map of the whole room in ASCII, which stands right of the surroundings."""
-    lines = RobotPainter(Charset.ASCII).text(timeline, 0, 80, 24).splitlines()[1:-2]
+    lines = plain(RobotPainter(Charset.ASCII).paint(timeline, 0, 80, 24).rows).splitlines()[1:-2]
     return [line.split("|", 1)[1] for line in lines]
 
 
@@ -98,7 +98,7 @@ def test_a_true_scan_taken_anywhere_falls_on_walls_and_sphere() -> None:
 
 
 def test_the_figures_tell_pose_command_velocity_range_and_motors() -> None:
-    text = RobotPainter().text(SHARED, ns(9.25), 80, 14)
+    text = plain(RobotPainter().paint(SHARED, ns(9.25), 80, 14).rows)
     for words in (
         "pose  0.28  0.00 m  -60°",
         "told  0.00 m/s -0.20 rad/s",
@@ -111,7 +111,7 @@ def test_the_figures_tell_pose_command_velocity_range_and_motors() -> None:
 def test_motors_off_and_touching_are_said_in_words() -> None:
     timeline = Timeline()
     timeline.extend([PLAN, RobotMoved(0, 0.0, 0.0, 0.0, math.inf, 0.0, 0.0, False, True, 0.0, 0.0)])
-    text = RobotPainter().text(timeline, 0, 80, 14)
+    text = plain(RobotPainter().paint(timeline, 0, 80, 14).rows)
     assert "motors OFF" in text
     assert "touching YES" in text
     assert "front    free" in text
@@ -119,11 +119,11 @@ def test_motors_off_and_touching_are_said_in_words() -> None:
 
 @pytest.mark.parametrize("width", [34, 40, 44, 80])
 def test_the_age_of_the_nodes_scan_is_told_at_every_width(width: int) -> None:
-    assert "node saw 10.2 s ago" in RobotPainter().text(SHARED, ns(14.2), width, 16)
+    assert "node saw 10.2 s ago" in plain(RobotPainter().paint(SHARED, ns(14.2), width, 16).rows)
 
 
 def test_a_run_without_a_robot_says_so() -> None:
-    assert "no robot in this run" in RobotPainter().text(told(Run()), 0, 44, 10)
+    assert "no robot in this run" in plain(RobotPainter().paint(told(Run()), 0, 44, 10).rows)
 
 
 @settings(max_examples=examples(40), deadline=None)

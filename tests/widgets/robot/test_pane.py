@@ -14,7 +14,7 @@ from cbtui.widgets.robot.scene import since_hit
 from sim.trace.events import AnyEvent, RobotMoved
 from sim.trace.timeline import Timeline
 from tests.support.runs import ns, shared_group_run
-from tests.widgets.pictures import drawn, told
+from tests.widgets.pictures import drawn, plain, told
 
 SHARED = told(shared_group_run())
 
@@ -87,7 +87,9 @@ HIT_BOTH = r"""
 def text(
     timeline: Timeline, now: float, width: int, height: int, look: RobotViewMode = RobotViewMode.MAP
 ) -> str:
-    return RobotPainter(Charset.ASCII).text(timeline, ns(now), width, height, look, "The camera starts.")
+    return plain(
+        RobotPainter(Charset.ASCII).paint(timeline, ns(now), width, height, look, "The camera starts.").rows
+    )
 
 
 def test_surroundings_and_room_stand_side_by_side() -> None:

@@ -15,7 +15,7 @@ from cbtui.widgets.robot.view import PICTURES_A_SECOND
 from sim.camera import Picture, Shot
 from sim.trace.timeline import Timeline
 from tests.support.runs import ns, shared_group_run
-from tests.widgets.pictures import told
+from tests.widgets.pictures import plain, told
 
 SHARED = told(shared_group_run())
 YELLOW = b"\xff\xdb\x00"
@@ -79,7 +79,7 @@ async def test_the_pane_draws_on_screen_what_its_painter_paints() -> None:
     async with app.run_test(size=(80, 14)) as pilot:
         app.show(9.25)
         await pilot.pause()
-        assert app.text() == RobotPainter().text(SHARED, ns(9.25), 80, 14)
+        assert app.text() == plain(RobotPainter().paint(SHARED, ns(9.25), 80, 14).rows)
         await pilot.resize_terminal(3, 2)
         await pilot.pause()
 
