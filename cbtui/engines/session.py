@@ -156,10 +156,8 @@ class ProcessSession:
 
     def _stop(self) -> None:
         self.send(Stop())
-        runs = self._begun and not self._finished
-        self._tree.wait_for_end(
-            PROGRAM_EXIT_TIMEOUT if runs and not self._tree.is_stopped() else _EXIT_TIMEOUT
-        )
+        may_end_itself = self._begun and not self._tree.is_stopped()
+        self._tree.wait_for_end(PROGRAM_EXIT_TIMEOUT if may_end_itself else _EXIT_TIMEOUT)
         self._guard.stop()
         self._process.kill()
         self._process.join()
