@@ -144,7 +144,7 @@ def test_ctrl_c_ends_a_console_that_starts_and_gives_the_terminal_back(moment: i
 
 
 @pytest.mark.parametrize(
-    "function", first_daily(*LOOPS_START, "EndingApp.run", "EndingApp.run_async", "ending_heard")
+    "function", first_daily(*LOOPS_START, "EndingApp.run", "EndingApp.run_async", "ending_signals_on_loop")
 )
 def test_ctrl_c_before_the_console_hears_it_ends_it_before_it_draws(function: str, tmp_path: Path) -> None:
     with opened(80, 24, tmp_path, program=[SCRIPT, function]) as console:
