@@ -13,7 +13,7 @@ from typing import NamedTuple
 from sim.trace.events import AnyEvent, EntityAppeared, EntityKind, EntityReady, MessageDropped
 
 _REMEMBERED = 2_000
-"""Messages that are remembered of one queue."""
+"""Messages that are remembered of one queue, and calls of one service that nobody has answered."""
 
 
 class Sending(NamedTuple):
@@ -70,7 +70,10 @@ class Arrivals:
 
     def called(self, service: str, call: int) -> None:
         """A call was made."""
-        self._pending[service][call] = None
+        pending = self._pending[service]
+        pending[call] = None
+        if len(pending) > _REMEMBERED:
+            del pending[next(iter(pending))]
 
     def replied(self, service: str, call: int) -> None:
         """The reply of a call was taken."""

@@ -31,6 +31,9 @@ from sim.trace.events import (
 HOLD = 30_000_000
 """Nanoseconds for which events are held back: those of several threads and processes then come in order."""
 
+_CALLS = 10_000
+"""Calls whose numbers are remembered until their replies have come."""
+
 
 class Translation:
     """Takes what the probes of a run send, and hands on events in the order in which they happened.
@@ -49,7 +52,7 @@ class Translation:
         self._arrivals = Arrivals()
         self._messages = count(1)
         self._calls: dict[int, int] = {}
-        """The number of each call, by the one that its probe gave it."""
+        """The numbers of the latest calls, by those that their probes gave them."""
         self._lost: dict[int, int] = {}
 
     def begin_at(self, moment: int) -> None:
@@ -93,6 +96,8 @@ class Translation:
                 yield from arrivals.sent(t, line.topic, Sending(message, line.node, line.before, line.after))
             case Called():
                 call = self._calls[line.call] = next(self._messages)
+                if len(self._calls) > _CALLS:
+                    del self._calls[next(iter(self._calls))]
                 yield ServiceCalled(t, call, line.service, line.entity, line.request)
                 arrivals.called(line.service, call)
                 yield from arrivals.sent(t, line.service, Sending(call, 0, line.before, line.after))

@@ -181,3 +181,13 @@ def test_what_no_probe_sends_is_told_apart(data: bytes) -> None:
 def test_log_lines_are_events_as_they_are() -> None:
     [line] = decode_lines(b'["log",7,"WARN","n","text",75,72]\n')
     assert line == Logged(7, Severity.WARN, "n", "text", 75, 72)
+
+
+def test_calls_that_nobody_answers_are_forgotten_in_the_end() -> None:
+    told = Told()
+    for number in range(3_000):
+        told.tell(Called(START + 10 + number, 10_000 + number, "/switch", 0, "request", number, number))
+    told.tell(EntityReady(START + 5_000, CLIENT, 1, 0))
+    ready = told.all(EntityReady)[-1]
+    assert isinstance(ready, EntityReady)
+    assert ready.message == 1_001

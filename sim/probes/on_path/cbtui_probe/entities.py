@@ -109,7 +109,8 @@ class Entities:
                 return make(node, *args, **kwargs)  # which says so
             entity = Entity("guard" if kind == "guard_condition" else kind)
             callback = bound.arguments.get("callback")
-            self._tuning.change(node, kind, _called(node, kind, bound.arguments), bound.arguments)
+            if self._tuning.has_changes:
+                self._tuning.change(node, kind, _called(node, kind, bound.arguments), bound.arguments)
             if callable(callback):
                 bound.arguments["callback"] = self._traced(entity, callback)
             made = make(*bound.args, **bound.kwargs)

@@ -29,6 +29,11 @@ class Tuning:
         self._periods = {(node, callback): period for node, callback, period in changes.get("periods", ())}
         self._shared: dict[tuple[Any, str], Any] = {}
 
+    @property
+    def has_changes(self) -> bool:
+        """Whether anything that a node makes is to be changed."""
+        return bool(self._groups or self._periods)
+
     def change(self, node: Any, kind: str, name: str, arguments: dict[str, Any]) -> None:
         """Change the arguments with which a node makes something whose callback has that name."""
         full = node.get_fully_qualified_name()
