@@ -31,6 +31,8 @@ class _Queue:
     kind: EntityKind
     depth: int
     untaken: deque[Sending] = field(default_factory=lambda: deque(maxlen=_REMEMBERED))
+    handled: dict[int, int] = field(default_factory=dict)
+    """A service's requests that were taken and not answered yet: their numbers, by when they were sent."""
     told: list[int] = field(default_factory=list)
     """What was told to lie in it."""
     waits: bool = False
@@ -75,7 +77,15 @@ class Arrivals:
         if len(pending) > _REMEMBERED:
             del pending[next(iter(pending))]
 
-    def replied(self, service: str, call: int) -> None:
+    def replied(self, entity: int, sent: int) -> tuple[str, int]:
+        """A service answered the request that was sent at ``sent``; returns its name, and the call's number.
+
+        The number is 0 if nobody who is watched made the call.
+        """
+        queue = self._queues.get(entity)
+        return self._names.get(entity, ""), 0 if queue is None else queue.handled.pop(sent, 0)
+
+    def reply_arrived(self, service: str, call: int) -> None:
         """The reply of a call was taken."""
         self._pending[service].pop(call, None)
 
@@ -115,6 +125,10 @@ class Arrivals:
                 lost: list[AnyEvent] = []
                 if queue.kind is EntityKind.SUBSCRIPTION:
                     lost = [event for each in passed for event in self._lost(t, queue, each)]
+                else:
+                    queue.handled[sent] = sending.number
+                    if len(queue.handled) > _REMEMBERED:
+                        del queue.handled[next(iter(queue.handled))]
                 queue.untaken.remove(sending)
                 self._leaves(queue, sending.number)
                 return sending.number, len(queue.told), lost

@@ -111,7 +111,7 @@ def _outcome(program: Program) -> Outcome:
     uncaught, status = program.link.uncaught, program.status
     if uncaught is not None:
         return Outcome(f"{_place(uncaught)}: the program raised {uncaught.error}", True, uncaught.error)
-    if status == -signal.SIGINT:
+    if status == -signal.SIGINT or program.was_ended:
         return Outcome(STOPPED, failed=False)
     if status < 0:
         return Outcome(f"the program crashed by {signal.Signals(-status).name}", failed=True)

@@ -83,6 +83,7 @@ class Program:
         self.link = ProbeLink(selector, partial(take, process=number))
         self._show = show
         self._open = 2
+        self._signal: signal.Signals | None = None
         self._process = subprocess.Popen(
             command,
             env=environment,
@@ -110,6 +111,11 @@ class Program:
         """Its exit code once it has ended; negative for the signal that killed it."""
         return self._process.returncode
 
+    @property
+    def was_ended(self) -> bool:
+        """Whether it ended by the signal that it was sent."""
+        return self._signal is not None and self.status == -self._signal
+
     def type(self, text: str, *, ends: bool) -> None:
         """Have it read a text from its standard input; with ``ends``, no more will come."""
         stdin = self._process.stdin
@@ -121,6 +127,7 @@ class Program:
 
     def signal(self, number: signal.Signals) -> None:
         """Send it, and what it started, a signal."""
+        self._signal = number
         with suppress(ProcessLookupError):
             os.killpg(self._process.pid, number)
 

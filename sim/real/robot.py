@@ -68,7 +68,7 @@ class RealPort:
 
 
 def _tell(line: AnyEvent | Sent) -> None:
-    sys.stdout.buffer.write(msgspec.json.encode(line) + b"\n")
+    sys.stdout.buffer.write(msgspec.json.encode([line]) + b"\n")
     sys.stdout.buffer.flush()
 
 

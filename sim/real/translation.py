@@ -7,7 +7,7 @@ from itertools import count
 import msgspec
 
 from sim.real.arrivals import Arrivals, Sending
-from sim.real.wire import Called, Hello, ProbeLine, Sent, Taken, Uncaught, infinite
+from sim.real.wire import Called, Hello, ProbeLine, Replied, Sent, Taken, Uncaught, infinite
 from sim.trace.events import (
     AnyEvent,
     CallbackStarted,
@@ -53,6 +53,8 @@ class Translation:
         self._messages = count(1)
         self._calls: dict[int, int] = {}
         """The numbers of the latest calls, by those that their probes gave them."""
+        self._answered: dict[int, None] = {}
+        """The latest calls whose replies were told of."""
         self._lost: dict[int, int] = {}
 
     def begin_at(self, moment: int) -> None:
@@ -105,6 +107,10 @@ class Translation:
                 number, left, lost = arrivals.taken(t, line.entity, line.sent)
                 yield from lost
                 yield CallbackStarted(t, line.entity, line.thread, number, line.age, left)
+            case Replied(response=response):
+                service, call = arrivals.replied(line.entity, line.sent)
+                if call:
+                    yield from self._replied(t, call, service, response)
             case EntityReady():
                 yield from arrivals.ready(t, line.entity)
             case WaitStarted(since=since):
@@ -113,13 +119,25 @@ class Translation:
             case _:
                 yield from self._with_number(line, t)
 
+    def _replied(self, t: int, call: int, service: str, response: str) -> Iterator[AnyEvent]:
+        """A reply, of which the service's process tells, and the caller's if it is watched, too."""
+        if call not in self._answered:
+            self._answered[call] = None
+            if len(self._answered) > _CALLS:
+                del self._answered[next(iter(self._answered))]
+            yield ServiceReplied(t, call, service, response)
+
     def _with_number(self, line: ProbeLine, t: int) -> Iterator[AnyEvent]:
         """An event of the trace, with the number of the call that it is about."""
         arrivals = self._arrivals
         match line:
-            case ServiceReplied() | RequestLost():
+            case ServiceReplied(service=service, response=response):
                 call = self._calls.get(line.call, 0)
-                arrivals.replied(line.service, call)
+                arrivals.reply_arrived(service, call)
+                yield from self._replied(t, call, service, response)
+            case RequestLost():
+                call = self._calls.get(line.call, 0)
+                arrivals.reply_arrived(line.service, call)
                 yield msgspec.structs.replace(line, t=t, call=call)
             case CallBlocked() | CallUnblocked():
                 yield msgspec.structs.replace(line, t=t, call=self._calls.get(line.call, 0))

@@ -1,4 +1,4 @@
-"""What a probe sends: lines of JSON, most of them events of the trace, some that are yet to be made such.
+"""What a probe sends: lines of JSON, each an array of events; some are yet to be made events of the trace.
 
 Times are nanoseconds of the machine's monotonic clock; ids differ between all processes of the machine.
 """
@@ -71,6 +71,16 @@ class Taken(msgspec.Struct, frozen=True, array_like=True, tag="taken"):
     """Nanoseconds since then."""
 
 
+class Replied(msgspec.Struct, frozen=True, array_like=True, tag="replied"):
+    """A service sent the reply to a request."""
+
+    t: int
+    entity: int
+    sent: int
+    """Nanoseconds since 1970 at which the middleware sent the request."""
+    response: str
+
+
 class Uncaught(msgspec.Struct, frozen=True, array_like=True, tag="uncaught"):
     """An exception ended the program."""
 
@@ -82,13 +92,13 @@ class Uncaught(msgspec.Struct, frozen=True, array_like=True, tag="uncaught"):
     line: int
 
 
-ProbeLine: TypeAlias = Hello | Sent | Called | Taken | Uncaught | AnyEvent
+ProbeLine: TypeAlias = Hello | Sent | Called | Taken | Replied | Uncaught | AnyEvent
 
 
 @cache
-def _decoder() -> msgspec.json.Decoder[ProbeLine]:
-    line: Any = reduce(or_, kinds(), Hello | Sent | Called | Taken | Uncaught)
-    return msgspec.json.Decoder(line)
+def _decoder() -> msgspec.json.Decoder[list[ProbeLine]]:
+    line: Any = reduce(or_, kinds(), Hello | Sent | Called | Taken | Replied | Uncaught)
+    return msgspec.json.Decoder(list[line])
 
 
 def decode_lines(data: bytes) -> list[ProbeLine]:
@@ -98,7 +108,7 @@ def decode_lines(data: bytes) -> list[ProbeLine]:
         msgspec.DecodeError: they are not what a probe sends.
     """
     try:
-        return _decoder().decode_lines(data)
+        return [told for line in _decoder().decode_lines(data) for told in line]
     except (UnicodeDecodeError, RecursionError) as error:
         raise msgspec.DecodeError(str(error)) from None
 

@@ -20,6 +20,7 @@ from tests.benchmarks import (
     keys,
     looking,
     memory,
+    probing,
     recording,
     scenes,
     seeking,
@@ -193,6 +194,17 @@ FIGURES = (
     DearFigure("console that draws a lesson", "% of a core", 15, "", lambda n: drawing.live(n) * 1e2, 20),
     DearFigure(
         "and the camera's pictures", "% of a core", 25, "", lambda n: drawing.with_camera(n) * 1e2, 20
+    ),
+    DearFigure(
+        "a callback on real ROS 2 slowed by the probe",
+        "µs",
+        15,
+        "",
+        lambda n: probing.callback_cost(n) * 1e6,
+        3,
+    ),
+    DearFigure(
+        "callbacks of 1 kHz lost to the probe", "%", 5, "", lambda n: probing.lost_callbacks(n) * 1e2, 3
     ),
     DearFigure("memory of a console in half an hour", "MB", 10, "", growing.added, 1800),
 )

@@ -6,6 +6,7 @@ import shutil
 import socket
 import subprocess
 import sys
+from collections import deque
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
@@ -94,10 +95,12 @@ class Console:
         self._socket.settimeout(10)
         self._socket.connect(str(path))
         self._lines = self._socket.makefile("rb")
+        self._told: deque[object] = deque()
 
     def next(self) -> object:
-        [line] = decode_lines(self._lines.readline())
-        return line
+        if not self._told:
+            self._told.extend(decode_lines(self._lines.readline()))
+        return self._told.popleft()
 
     def follow(self) -> "Console":
         assert isinstance(self.next(), Hello)

@@ -166,20 +166,20 @@ def test_losses_of_all_processes_are_added_up() -> None:
 def test_a_robot_with_nothing_in_sight_comes_through_json() -> None:
     told = Told()
     moved = RobotMoved(START, 0.0, 0.0, 0.0, math.inf, 0.0, 0.0, True, False, 0.0, 0.0)
-    told.tell(*decode_lines(msgspec.json.encode(finite(moved)) + b"\n"))
+    told.tell(*decode_lines(msgspec.json.encode([finite(moved)]) + b"\n"))
     [shown] = told.all(RobotMoved)
     assert isinstance(shown, RobotMoved)
     assert shown.front == math.inf
 
 
-@pytest.mark.parametrize("data", [b"no json\n", b'["no such event",1]\n', b'["taken","x"]\n', b"\xff\n"])
+@pytest.mark.parametrize("data", [b"no json\n", b'[["no such event",1]]\n', b'[["taken","x"]]\n', b"\xff\n"])
 def test_what_no_probe_sends_is_told_apart(data: bytes) -> None:
     with pytest.raises(msgspec.DecodeError):
         decode_lines(data)
 
 
 def test_log_lines_are_events_as_they_are() -> None:
-    [line] = decode_lines(b'["log",7,"WARN","n","text",75,72]\n')
+    [line] = decode_lines(b'[["log",7,"WARN","n","text",75,72]]\n')
     assert line == Logged(7, Severity.WARN, "n", "text", 75, 72)
 
 

@@ -137,7 +137,8 @@ class Calls:
         return outer
 
     def _enter(self) -> int:
-        self._entity.waits_no_more(self._recorder)
+        if self._entity.wait is not None:
+            self._entity.waits_no_more(self._recorder)
         return self._come_on()
 
     def _leave(self, outer: int) -> None:
@@ -146,21 +147,22 @@ class Calls:
 
     def _come_on(self) -> int:
         """Be what runs on the calling thread; returns what ran there until now."""
-        here, thread = self._recorder.here, self._recorder.thread()
+        here = self._recorder.here
         outer, here.entity = here.entity, self._entity.number
         if outer == 0 and here.spinner is not None:
-            here.spinner.busy.add(thread)
+            here.spinner.busy[here.thread or self._recorder.thread()] = self._entity.number
         return outer
 
     def _come_off(self, outer: int) -> None:
         here = self._recorder.here
         here.entity = outer
         if outer == 0 and here.spinner is not None:
-            here.spinner.busy.discard(here.thread)
+            here.spinner.busy.pop(here.thread, None)
 
     def _fail(self, error: BaseException) -> None:
         recorder = self._recorder
-        recorder.put("callback_error", now(), self._entity.number, recorder.thread(), *raised_at(error))
+        place, exception = raised_at(error), type(error).__name__
+        recorder.put("callback_error", now(), self._entity.number, recorder.thread(), *place, exception)
 
 
 def raised_at(error: BaseException) -> tuple[str, str, int]:

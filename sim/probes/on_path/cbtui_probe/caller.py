@@ -68,7 +68,7 @@ class _Caller:
 
 
 def _tell(*event: Any) -> None:
-    sys.stdout.write(json.dumps(event) + "\n")
+    sys.stdout.write(json.dumps([event]) + "\n")
     sys.stdout.flush()
 
 

@@ -1,4 +1,4 @@
-"""Service calls, as the process that makes them sees them: sent, answered, and blocked for."""
+"""Service calls: sent, answered, and blocked for."""
 
 from __future__ import annotations
 
@@ -58,8 +58,11 @@ def watch_clients(recorder: Recorder, client_class: Any) -> None:
     client_class.call = call
 
 
-def watch_requests(recorder: Recorder, rclpy_implementation: Any) -> None:
-    """Have it known, on the thread that takes a request, when that was sent."""
+def watch_services(recorder: Recorder, service_class: Any, rclpy_implementation: Any) -> None:
+    """Tell of the replies of all services of this class that the program has made.
+
+    On the thread that takes a request it is known when that was sent.
+    """
     take = rclpy_implementation.Service.service_take_request
 
     def take_known(service: Any, request_class: Any) -> Any:
@@ -68,4 +71,15 @@ def watch_requests(recorder: Recorder, rclpy_implementation: Any) -> None:
         recorder.here.sent = 0 if header is None else header.source_timestamp
         return taken
 
+    reply = service_class.send_response
+
+    @wraps(reply)
+    def send_response(service: Any, response: Any, header: Any) -> None:
+        began = now()
+        reply(service, response, header)
+        entity, sent = state_of(service), getattr(header, "source_timestamp", 0)
+        if entity is not None and sent:
+            recorder.put("replied", began, entity.number, sent, repr(response))
+
     rclpy_implementation.Service.service_take_request = take_known
+    service_class.send_response = send_response

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import sys
 import weakref
 from functools import wraps
 from typing import TYPE_CHECKING, Any
 
+from .callbacks import is_own
+from .entities import state_of
 from .recorder import now
 
 if TYPE_CHECKING:
@@ -26,8 +29,8 @@ class Spinner:
         self.threads = threads
         self.waits = False
         """Whether a thread waits in it for something to become ready."""
-        self.busy: set[int] = set()
-        """The threads that run its callbacks, by their ids on the trace."""
+        self.busy: dict[int, int] = {}
+        """The threads that run its callbacks, and the entities of these, by their ids on the trace."""
         self._spun_at = -_IDLE
 
     def is_spun(self) -> bool:
@@ -37,10 +40,6 @@ class Spinner:
     def spun(self) -> None:
         """It is being spun now."""
         self._spun_at = now()
-
-    def is_full(self) -> bool:
-        """Whether every thread of it runs a callback."""
-        return len(self.busy) >= self.threads
 
 
 class Executors:
@@ -59,6 +58,7 @@ class Executors:
         """Come to know the executors of the module ``rclpy.executors``, and those made of C++."""
         base, pool_class = executors.Executor, executors.MultiThreadedExecutor
         make, make_pool, wait = base.__init__, pool_class.__init__, base.wait_for_ready_callbacks
+        add = base.add_node
 
         @wraps(make)
         def init(executor: Any, *args: Any, **kwargs: Any) -> None:
@@ -87,7 +87,18 @@ class Executors:
                 if outer is not None:
                     here.spinner = outer
 
+        @wraps(add)
+        def add_node(executor: Any, node: Any) -> Any:
+            former = node.executor
+            if former is not executor and self._serves(former, node) and node not in executor.get_nodes():
+                recorder = self._recorder
+                recorder.put(
+                    "spin_clash", now(), recorder.here.entity, state_of(node) or 0, *_call_into_rclpy()
+                )
+            return add(executor, node)
+
         base.__init__ = init
+        base.add_node = add_node
         pool_class.__init__ = init_pool
         base.wait_for_ready_callbacks = wait_for_ready_callbacks
         if hasattr(rclpy_implementation, "EventsExecutor"):
@@ -117,6 +128,11 @@ class Executors:
 
         setattr(executor_class, name, spin_known)
 
+    def _serves(self, executor: Any, node: Any) -> bool:
+        """Whether an executor has a node, and is being spun at this moment."""
+        spinner = self.spinner_of(executor)
+        return spinner is not None and (spinner.waits or bool(spinner.busy)) and node in executor.get_nodes()
+
     def _know(self, executor: Any, threads: int) -> Spinner:
         spinner = Spinner(self._recorder.new_id(), threads)
         self._recorder.put_appeared("executor", spinner.number, type(executor).__name__, threads)
@@ -129,3 +145,15 @@ class Executors:
             here.spinner, here.executor = spinner, spinner.number
 
         return begin
+
+
+def _call_into_rclpy() -> tuple[str, str, int]:
+    """Which function of rclpy's the program called on this thread, and file and line of the call."""
+    function, frame = "", sys._getframe(1)
+    while not is_own(frame):
+        if frame.f_globals["__name__"].startswith("rclpy"):
+            function = frame.f_code.co_name
+        if frame.f_back is None:
+            return function, "", 0
+        frame = frame.f_back
+    return function, frame.f_code.co_filename, frame.f_lineno

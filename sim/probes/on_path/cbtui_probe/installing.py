@@ -6,7 +6,7 @@ import sys
 from typing import Any
 
 from .callbacks import raised_at
-from .clients import watch_clients, watch_requests
+from .clients import watch_clients, watch_services
 from .entities import Entities
 from .executors import Executors
 from .recorder import Recorder, now
@@ -27,6 +27,7 @@ def install(folder: str) -> None:
     import rclpy.executors
     import rclpy.node
     import rclpy.publisher
+    import rclpy.service
     from rclpy.impl.implementation_singleton import rclpy_implementation
 
     recorder = Recorder()
@@ -38,7 +39,7 @@ def install(folder: str) -> None:
     entities.watch(rclpy.node.Node)
     entities.watch_publishing(rclpy.publisher.Publisher)
     watch_clients(recorder, rclpy.client.Client)
-    watch_requests(recorder, rclpy_implementation)
+    watch_services(recorder, rclpy.service.Service, rclpy_implementation)
     _watch_log(recorder, rclpy_implementation)
     _watch_end(recorder)
 

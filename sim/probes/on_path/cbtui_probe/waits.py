@@ -106,14 +106,15 @@ class Waits:
 
 
 def _reason(made: Any, spinner: Spinner | None) -> tuple[str, int, bool] | None:
-    """Why an entity would have to wait: the reason, who holds its group, and whether all workers are busy."""
-    full = spinner is not None and spinner.is_full()
+    """Why an entity would have to wait: the reason, who holds up, and whether no worker is free."""
+    busy = [] if spinner is None else list(spinner.busy.values())
+    full = spinner is not None and len(busy) >= spinner.threads
     if not made.callback_group.can_execute(made):
         holder = state_of(getattr(made.callback_group, "_active_entity", None))
         return GROUP_HELD, 0 if holder is None else holder.number, full
     if spinner is None or not spinner.is_spun():
         return NOBODY_SPINS, 0, False
-    return (NO_FREE_WORKER, 0, True) if full else None
+    return (NO_FREE_WORKER, busy[0], True) if full else None
 
 
 def _lateness(timer: Any) -> int | None:
