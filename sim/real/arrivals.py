@@ -2,7 +2,8 @@
 
 rclpy tells what was sent, and what was taken; that something lies in a queue shows while a callback waits.
 So what an entity that waits has in its queue are the last messages of its topic that it has not taken. Those
-that do not fit, and those that it passes over, are lost: what one publisher sends comes in order.
+that do not fit, and those that it passes over, are lost: what one publisher sends comes in order. What was sent
+before the first that it takes of a publisher was sent before the two had found each other.
 """
 
 from collections import defaultdict, deque
@@ -36,6 +37,8 @@ class _Queue:
     told: list[int] = field(default_factory=list)
     """What was told to lie in it."""
     waits: bool = False
+    heard: set[int] = field(default_factory=set)
+    """The senders of which something was taken: they have found it."""
 
 
 class Arrivals:
@@ -124,7 +127,8 @@ class Arrivals:
                 passed = [each for each in list(queue.untaken)[:place] if each.sender == sending.sender]
                 lost: list[AnyEvent] = []
                 if queue.kind is EntityKind.SUBSCRIPTION:
-                    lost = [event for each in passed for event in self._lost(t, queue, each)]
+                    lost = [event for each in passed for event in self._passed(t, queue, each)]
+                    queue.heard.add(sending.sender)
                 else:
                     queue.handled[sent] = sending.number
                     if len(queue.handled) > _REMEMBERED:
@@ -141,6 +145,13 @@ class Arrivals:
             return call, 0
         self._leaves(queue, call)
         return call, len(queue.told)
+
+    def _passed(self, t: int, queue: _Queue, sending: Sending) -> Iterator[AnyEvent]:
+        """A message was passed over: it is lost, unless its sender had not found the queue yet."""
+        if sending.sender in queue.heard or sending.number in queue.told:
+            yield from self._lost(t, queue, sending)
+        else:
+            queue.untaken.remove(sending)
 
     def _lost(self, t: int, queue: _Queue, sending: Sending) -> Iterator[AnyEvent]:
         queue.untaken.remove(sending)

@@ -29,9 +29,11 @@ from sim.real.launched import STOPPED, LaunchedPrograms, Outcome
 from sim.real.programs import environment, unbootstrapped
 from sim.real.translation import HOLD, Translation
 from sim.real.watched import WatchedProcesses
-from sim.real.wire import ProbeLine
+from sim.real.wire import ProbeLine, Sent
+from sim.robot.names import NAMES
 from sim.trace.events import (
     AnyEvent,
+    ArenaShown,
     CommandGiven,
     CommandKind,
     EntityAppeared,
@@ -131,7 +133,10 @@ class RealEngine:
         )
         rate = [] if setup.sensor_rate is None else [str(setup.sensor_rate)]
         robot = [sys.executable, "-m", "sim.real.robot", *rate]
-        self._robot = Companion(self._selector, robot, graph, self._take)
+        self._robot = Companion(self._selector, robot, graph, self._take_robot)
+        self._robot_is_used = setup.robot is RobotUse.ALWAYS
+        self._of_the_robot: list[ProbeLine] = []
+        """What the robot told of itself before something used it."""
         self._is_watching = bool(setup.real.watched)
         self._services: list[str] = []
         self._cause: Outcome | None = None
@@ -249,6 +254,16 @@ class RealEngine:
             if isinstance(line, EntityAppeared) and line.kind is EntityKind.SERVICE
         ]
         self._translation.take(lines, process)
+        if not self._robot_is_used and any(_name(line) in NAMES for line in lines):
+            self._robot_is_used = True
+            self._translation.take(msgspec.structs.replace(line, t=lines[0].t) for line in self._of_the_robot)
+
+    def _take_robot(self, lines: list[ProbeLine]) -> None:
+        """Take what the robot tells; a robot that nothing uses moves nowhere and is not shown."""
+        if self._robot_is_used:
+            self._translation.take(lines)
+        else:
+            self._of_the_robot += [line for line in lines if isinstance(line, ArenaShown)]
 
     def _print(self, text: str, error: bool, process: int) -> None:
         self._record(Printed(0, text, error, process))
@@ -319,6 +334,15 @@ class RealEngine:
         said = "ros2 lines act on the model; on real ROS 2, type them in a terminal of their own"
         self._record(LineSaid(0, line, said, True))
         self._record(LineEnded(0, line, 1))
+
+
+def _name(line: ProbeLine) -> str:
+    """The topic or service that something is made for or sent to."""
+    match line:
+        case EntityAppeared(name=name) | Sent(topic=name):
+            return name
+        case _:
+            return ""
 
 
 def _nothing() -> None:

@@ -128,9 +128,16 @@ def test_what_waits_has_its_messages_in_its_queue_and_a_full_one_loses_the_oldes
 
 def test_what_a_subscription_passes_over_is_lost() -> None:
     told = Told()
-    told.tell(sent(START + 10, 500), sent(START + 20, 600), sent(START + 30, 700))
-    told.tell(Taken(START + 40, HEARD, THREAD, 702, 9))
-    assert [getattr(event, "message", None) for event in told.all(MessageDropped)] == [1, 2]
+    told.tell(sent(START + 10, 500), Taken(START + 15, HEARD, THREAD, 502, 9))
+    told.tell(sent(START + 20, 600), sent(START + 25, 700), sent(START + 30, 800))
+    told.tell(Taken(START + 40, HEARD, THREAD, 802, 9))
+    assert [getattr(event, "message", None) for event in told.all(MessageDropped)] == [2, 3]
+
+
+def test_what_was_sent_before_a_publisher_was_heard_first_is_not_lost() -> None:
+    told = Told()
+    told.tell(sent(START + 10, 500), sent(START + 20, 600), Taken(START + 40, HEARD, THREAD, 602, 9))
+    assert not told.all(MessageDropped)
 
 
 def test_a_call_keeps_its_number_from_request_to_reply() -> None:
