@@ -101,12 +101,19 @@ class RealRos(msgspec.Struct, frozen=True):
     """A real ROS 2: the one that the interpreter ``python`` has, "" for the one that runs this.
 
     With ``watched``, a folder of probes' sockets, nothing is run: what ``processes`` do is shown (numbers of
-    the operating system), or what all do whose probes listen there.
+    the operating system), or what all do whose probes listen there. The same for ``addresses``, host and port
+    each.
     """
 
     python: str = ""
     watched: str = ""
     processes: tuple[int, ...] = ()
+    addresses: tuple[tuple[str, int], ...] = ()
+
+    @property
+    def is_watched(self) -> bool:
+        """Whether others have started what is shown."""
+        return bool(self.watched or self.addresses)
 
 
 class RunSetup(msgspec.Struct, frozen=True, kw_only=True):

@@ -2,8 +2,8 @@
 
 rclpy tells what was sent, and what was taken; that something lies in a queue shows while a callback waits.
 So what an entity that waits has in its queue are the last messages of its topic that it has not taken. Those
-that do not fit, and those that it passes over, are lost: what one publisher sends comes in order. What was sent
-before the first that it takes of a publisher was sent before the two had found each other.
+that do not fit, and those that it passes over, are lost: what one publisher sends comes in order. What was
+sent before the first that it takes of a publisher was sent before the two had found each other.
 """
 
 from collections import defaultdict, deque

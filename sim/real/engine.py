@@ -4,7 +4,6 @@ It speaks with the console as the model's engine does. One thread does all; the 
 """
 
 import os
-import random
 import sys
 import tempfile
 import time
@@ -26,7 +25,7 @@ from sim.engine.stdio.descriptors import leave_terminal
 from sim.probes.on_path.cbtui_probe import FOLDER
 from sim.real.companions import Companion
 from sim.real.launched import STOPPED, LaunchedPrograms, Outcome
-from sim.real.programs import environment, unbootstrapped
+from sim.real.programs import claimed_domain, environment, unbootstrapped
 from sim.real.translation import HOLD, Translation
 from sim.real.watched import WatchedProcesses
 from sim.real.wire import ProbeLine, Sent
@@ -57,8 +56,6 @@ _GRACE = 3.0
 """Seconds that the programs have to end once they were told to."""
 _TO_BEGIN = 10_000_000_000
 """Nanoseconds after which the robot is waited for no longer, and after which a run without a node begins."""
-_DOMAINS = range(1, 102)
-"""The ROS domains whose ports are free on every system."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,13 +108,12 @@ class RealEngine:
         self._python = setup.real.python or sys.executable
         folder = Path(self._folder.name)
         self._programs: Programs
-        if setup.real.watched:
+        if setup.real.is_watched:
             graph = unbootstrapped(self._python)
-            self._programs = WatchedProcesses(
-                self._selector, Path(setup.real.watched), setup.real.processes, self._take, self._record
-            )
+            self._programs = WatchedProcesses(self._selector, setup.real, self._take, self._record)
         else:
-            probed = environment(setup, self._python, folder, random.choice(_DOMAINS))
+            domain, self._claim = claimed_domain()
+            probed = environment(setup, self._python, folder, domain)
             graph = {name: value for name, value in probed.items() if name != FOLDER}
             self._programs = LaunchedPrograms(
                 self._selector,
@@ -137,7 +133,7 @@ class RealEngine:
         self._robot_is_used = setup.robot is RobotUse.ALWAYS
         self._of_the_robot: list[ProbeLine] = []
         """What the robot told of itself before something used it."""
-        self._is_watching = bool(setup.real.watched)
+        self._is_watching = setup.real.is_watched
         self._services: list[str] = []
         self._cause: Outcome | None = None
         self._time_was_up = False

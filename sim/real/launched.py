@@ -110,7 +110,7 @@ class LaunchedPrograms:
 def _outcome(program: Program) -> Outcome:
     uncaught, status = program.link.uncaught, program.status
     if uncaught is not None:
-        return Outcome(f"{_place(uncaught)}: the program raised {uncaught.error}", True, uncaught.error)
+        return Outcome(f"{place_of(uncaught)}: the program raised {uncaught.error}", True, uncaught.error)
     if status == -signal.SIGINT or program.was_ended:
         return Outcome(STOPPED, failed=False)
     if status < 0:
@@ -119,6 +119,7 @@ def _outcome(program: Program) -> Outcome:
     return Outcome(reason, failed=status != 0)
 
 
-def _place(uncaught: Uncaught) -> str:
+def place_of(uncaught: Uncaught) -> str:
+    """File and line at which the exception was raised that ended a program."""
     name = Path(uncaught.file).name
     return f"{name}:{uncaught.line}" if uncaught.line else name

@@ -5,17 +5,21 @@ import socket
 from collections.abc import Callable
 from pathlib import Path
 from selectors import EVENT_READ, BaseSelector
-from typing import IO
+from typing import IO, TypeAlias
 
 import msgspec
 
-from sim.probes.on_path.cbtui_probe import FOLLOW
-from sim.real.wire import Hello, ProbeLine, Uncaught, decode_lines
+from sim.probes.on_path.cbtui_probe import FOLLOW, TOKEN
+from sim.real.wire import Hello, Left, ProbeLine, Uncaught, decode_lines
 
 _CHUNK = 1 << 16
 """Bytes that are read at once."""
 _TO_ANSWER = 1.0
 """Seconds that a probe has to tell which process it is in."""
+
+
+Place: TypeAlias = Path | tuple[str, int]
+"""Where a probe listens: a socket of this user's, or host and port."""
 
 
 class LineReader:
@@ -66,20 +70,19 @@ class ProbeLink:
         """Which process it is, once it has told."""
         self.uncaught: Uncaught | None = None
         """The exception that ended the program."""
+        self.has_left = False
+        """Whether the process came to its own end, and was not killed."""
         self.is_open = False
         self._selector = selector
         self._take = take
 
-    def connect(self, path: Path) -> bool:
-        """Listen to the probe at a socket, unless it is listened to; returns whether that is so now."""
+    def connect(self, place: Place) -> bool:
+        """Listen to the probe at a place, unless it is listened to; returns whether that is so now."""
         if self.is_open or self.hello is not None:
             return True
-        connection = socket.socket(socket.AF_UNIX)
         try:
-            connection.connect(str(path))
-            connection.sendall(FOLLOW)
+            connection = _connected(place, FOLLOW)
         except OSError:  # it does not listen yet, or not any more
-            connection.close()
             return False
         self.is_open = True
         LineReader(self._selector, connection, self._told, self._closed)
@@ -95,23 +98,53 @@ class ProbeLink:
                 self.hello = line
             elif isinstance(line, Uncaught):
                 self.uncaught = line
+            elif isinstance(line, Left):
+                self.has_left = True
         self._take(lines)
+
+
+def _connected(place: Place, word: bytes = b"") -> socket.socket:
+    """A connection to a probe, to which a word has been said."""
+    family, address = (socket.AF_UNIX, str(place)) if isinstance(place, Path) else (socket.AF_INET, place)
+    connection = socket.socket(family)
+    try:
+        connection.settimeout(_TO_ANSWER)
+        connection.connect(address)
+        token = b"" if family == socket.AF_UNIX else f"{os.environ.get(TOKEN, '')}\n".encode()
+        connection.sendall(token + word)
+    except OSError:
+        connection.close()
+        raise
+    return connection
+
+
+def process_at(place: Place) -> Hello | None:
+    """Ask the probe at a place which process it is in; None: it does not say, as to one without its token.
+
+    Raises:
+        OSError: nobody listens there.
+    """
+    with _connected(place) as visitor, visitor.makefile("rb") as lines:
+        try:
+            answer = decode_lines(lines.readline())
+        except (OSError, msgspec.DecodeError):
+            return None
+    return next((line for line in answer if isinstance(line, Hello)), None)
 
 
 def processes_in(folder: Path) -> list[Hello]:
     """Ask the probes that listen in a folder which processes they are in; remove dead ones' sockets."""
     found = []
-    for path in sorted(folder.glob("*.sock")):
-        with socket.socket(socket.AF_UNIX) as visitor:
-            visitor.settimeout(_TO_ANSWER)
-            try:
-                visitor.connect(str(path))
-                with visitor.makefile("rb") as lines:
-                    answer = decode_lines(lines.readline())
-            except ConnectionRefusedError:
-                path.unlink(missing_ok=True)
-                continue
-            except (OSError, msgspec.DecodeError):
-                continue
-        found += [line for line in answer if isinstance(line, Hello)]
-    return found
+    for path in sockets_in(folder):
+        try:
+            found.append(process_at(path))
+        except ConnectionRefusedError:
+            path.unlink(missing_ok=True)
+        except OSError:
+            continue
+    return [hello for hello in found if hello is not None]
+
+
+def sockets_in(folder: Path) -> list[Path]:
+    """The sockets of probes in a folder, and in those of its folders that are of one command each."""
+    return sorted(folder.rglob("*.sock"))

@@ -1,8 +1,11 @@
 """The programs of a run on real rclpy: processes of their own, each with the probe on its path."""
 
+import errno
 import json
 import os
+import random
 import signal
+import socket
 import subprocess
 import sys
 from collections.abc import Callable, Mapping, Sequence
@@ -19,6 +22,8 @@ ON_PATH = Path(__file__).parents[1] / "probes" / "on_path"
 """The folder that a probed program has on its path."""
 _BOOTSTRAPPED = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
 """The environment variable by which ROS's wheels know that they have found their libraries."""
+_DOMAINS = range(1, 102)
+"""The ROS domains whose ports are free on every system."""
 _LOG_BEGINS, _LOG_ENDS = "\x1e", "\x1f"
 """What rclpy's log lines stand between on the terminal: the probe tells of them too."""
 
@@ -40,6 +45,21 @@ def unbootstrapped(python: str) -> dict[str, str]:
 def watched_environment(python: str, folder: Path) -> dict[str, str]:
     """The environment of a process that others start, probed at a socket in ``folder``."""
     return {**unbootstrapped(python), FOLDER: str(folder)}
+
+
+def claimed_domain() -> tuple[int, socket.socket]:
+    """A ROS domain that no other run on this machine has, until the socket is closed.
+
+    Raises:
+        OSError: there are as many runs as domains.
+    """
+    claim = socket.socket(socket.AF_UNIX)
+    for domain in random.sample(_DOMAINS, len(_DOMAINS)):
+        with suppress(OSError):
+            claim.bind(f"\0cbtui-domain-{domain}")  # of no file: it is free again when its process is gone
+            return domain, claim
+    claim.close()
+    raise OSError(errno.EADDRINUSE, "every ROS domain has a run")
 
 
 def environment(setup: RunSetup, python: str, folder: Path, domain: int) -> dict[str, str]:

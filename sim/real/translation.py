@@ -7,7 +7,7 @@ from itertools import count
 import msgspec
 
 from sim.real.arrivals import Arrivals, Sending
-from sim.real.wire import Called, Hello, ProbeLine, Replied, Sent, Taken, Uncaught, infinite
+from sim.real.wire import Called, Hello, Left, ProbeLine, Replied, Sent, Taken, Uncaught, infinite
 from sim.trace.events import (
     AnyEvent,
     CallbackStarted,
@@ -67,7 +67,7 @@ class Translation:
         """Take what a program's probe sent; ``process`` is its number on the trace, 0 for an only one."""
         for line in lines:
             match line:
-                case Hello() | Uncaught():
+                case Hello() | Uncaught() | Left():
                     continue
                 case NodeAppeared(t=t):
                     self.begin_at(t)

@@ -1,17 +1,19 @@
 """The processes of others that a run watches: found by the sockets of their probes, and left as they are."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from selectors import BaseSelector
 
-from sim.real.launched import Outcome
-from sim.real.probe_link import ProbeLink
+from sim.engine.setup import RealRos
+from sim.real.launched import Outcome, place_of
+from sim.real.probe_link import Place, ProbeLink, sockets_in
 from sim.real.wire import Hello, ProbeLine
 from sim.trace.events import AnyEvent, ProcessAppeared, ProcessEnded
 
 
 class WatchedProcesses:
-    """Listens to all probes of a folder, or to those of some processes, and to those that come later.
+    """Listens to the probes that ``wanted`` names, and to those that come later.
 
     ``take`` gets what they tell, ``record`` the events of their coming and going.
     """
@@ -19,47 +21,55 @@ class WatchedProcesses:
     def __init__(
         self,
         selector: BaseSelector,
-        folder: Path,
-        processes: tuple[int, ...],
+        wanted: RealRos,
         take: Callable[..., None],
         record: Callable[[AnyEvent], None],
     ) -> None:
         self._selector = selector
-        self._folder = folder
-        self._processes = processes
+        self._wanted = wanted
         self._take = take
         self._record = record
-        self._links: dict[Path, ProbeLink] = {}
-        self._gone: set[Path] = set()
+        self._links: dict[Place, ProbeLink] = {}
+        self._outcomes: dict[Place, Outcome] = {}
         self._left = False
 
     def start(self) -> None:
-        """Begin to look for them."""
+        """Begin to listen to those whose host and port are known: no folder tells of them."""
+        for address in self._wanted.addresses:
+            self._listen_to(address)
 
     def look(self) -> None:
         """Listen to those that have come, and take note of those that are gone."""
-        for path in sorted(self._folder.glob("*.sock")):
-            if path in self._links or (self._processes and int(path.stem) not in self._processes):
-                continue
-            number = len(self._links) + 1
-            link = ProbeLink(self._selector, lambda lines, number=number: self._told(number, lines))  # type: ignore[misc]
-            if link.connect(path):
-                self._links[path] = link
-            else:
+        for path in self._new_sockets():
+            if not self._listen_to(path):
                 path.unlink(missing_ok=True)  # its process was killed
-        for number, (path, link) in enumerate(self._links.items(), start=1):
-            if not link.is_open and path not in self._gone:
-                self._gone.add(path)
-                self._record(ProcessEnded(0, number, "its process is gone", 0))
+        for number, (place, link) in enumerate(self._links.items(), start=1):
+            if not link.is_open and place not in self._outcomes:
+                outcome = self._outcomes[place] = _outcome(link)
+                self._record(ProcessEnded(0, number, outcome.reason, int(outcome.failed)))
+
+    def _new_sockets(self) -> Iterator[Path]:
+        chosen = self._wanted.processes
+        if self._wanted.watched:
+            for path in sockets_in(Path(self._wanted.watched)):
+                if path not in self._links and (not chosen or int(path.stem) in chosen):
+                    yield path
+
+    def _listen_to(self, place: Place) -> bool:
+        link = ProbeLink(self._selector, partial(self._told, len(self._links) + 1))
+        if link.connect(place):
+            self._links[place] = link
+        return link.is_open
 
     @property
     def any_run(self) -> bool:
         """Whether they are followed, and one of them is there or none has come yet."""
-        return not self._left and (len(self._gone) < len(self._links) or not self._links)
+        return not self._left and (len(self._outcomes) < len(self._links) or not self._links)
 
     def outcome(self) -> Outcome:
-        """All are gone."""
-        return Outcome("every process that was watched is gone", failed=False)
+        """All are gone; one that did not come to its own end is the one to tell of."""
+        usual = Outcome("every process that was watched is gone", failed=False)
+        return next((each for each in self._outcomes.values() if each.failed), usual)
 
     def interrupt(self) -> None:
         """Follow them no longer."""
@@ -77,6 +87,16 @@ class WatchedProcesses:
             if isinstance(line, Hello):
                 self._record(ProcessAppeared(0, number, label_of(line)))
         self._take(lines, process=number)
+
+
+def _outcome(link: ProbeLink) -> Outcome:
+    name = "a process" if link.hello is None else label_of(link.hello)
+    if link.uncaught is not None:
+        error = link.uncaught.error
+        return Outcome(f"{place_of(link.uncaught)}: {name} raised {error}", True, error)
+    if link.has_left:
+        return Outcome(f"{name} ended", failed=False)
+    return Outcome(f"{name} was killed, or its connection is gone", failed=True)
 
 
 def label_of(hello: Hello) -> str:

@@ -92,12 +92,18 @@ class Uncaught(msgspec.Struct, frozen=True, array_like=True, tag="uncaught"):
     line: int
 
 
-ProbeLine: TypeAlias = Hello | Sent | Called | Taken | Replied | Uncaught | AnyEvent
+class Left(msgspec.Struct, frozen=True, array_like=True, tag="left"):
+    """The process came to its own end."""
+
+    t: int
+
+
+ProbeLine: TypeAlias = Hello | Sent | Called | Taken | Replied | Uncaught | Left | AnyEvent
 
 
 @cache
 def _decoder() -> msgspec.json.Decoder[list[ProbeLine]]:
-    line: Any = reduce(or_, kinds(), Hello | Sent | Called | Taken | Replied | Uncaught)
+    line: Any = reduce(or_, kinds(), Hello | Sent | Called | Taken | Replied | Uncaught | Left)
     return msgspec.json.Decoder(list[line])
 
 

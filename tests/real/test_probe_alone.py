@@ -12,13 +12,15 @@ from pathlib import Path
 
 import pytest
 
-from sim.probes.on_path.cbtui_probe import FOLLOW
+from sim.probes.on_path.cbtui_probe import FOLLOW, PORT, TOKEN
+from sim.probes.on_path.cbtui_probe.consoles import Console as ConsoleLink
+from sim.probes.on_path.cbtui_probe.consoles import lines
 from sim.probes.on_path.cbtui_probe.recorder import Recorder, now
 from sim.probes.on_path.cbtui_probe.sockets import Server
-from sim.real.probe_link import processes_in
+from sim.real.probe_link import process_at, processes_in
 from sim.real.programs import ON_PATH
-from sim.real.wire import Hello, decode_lines
-from sim.trace.events import Notice
+from sim.real.wire import Hello, Left, decode_lines
+from sim.trace.events import EventsLost, Notice
 
 VERSIONS = ("3.10", "3.12", "3.13", "3.14")
 
@@ -108,10 +110,8 @@ class Console:
         return self
 
     def hears_something(self) -> bool:
-        """Whether a line comes, kept in ``first``; who is turned away hears nothing."""
-        line = self._lines.readline()
-        self.first = decode_lines(line)[0] if line else None
-        return bool(line)
+        """Whether a line comes; who is turned away hears nothing."""
+        return bool(self._lines.readline())
 
     def leave(self) -> None:
         self._lines.close()
@@ -153,36 +153,77 @@ def test_who_follows_hears_what_was_and_what_comes(recorder: Recorder, come: Com
     assert text_of(console.next()) == "after"
 
 
-def come_when_nobody_follows(recorder: Recorder, come: Come) -> Console:
-    """Follow as soon as the probe has seen that the one before has left."""
-    while True:
-        console = come().follow()
-        say(recorder, "to whoever follows now")
-        if console.hears_something():
-            return console
+@pytest.mark.usefixtures("server")
+def test_several_consoles_follow_and_come_and_go(recorder: Recorder, folder: Path, come: Come) -> None:
+    say(recorder, "to both")
+    first, second = come().follow(), come().follow()
+    assert text_of(first.next()) == text_of(second.next()) == "to both"
+    first.leave()
+    say(recorder, "to who is left")
+    assert text_of(second.next()) == "to who is left"
+    assert text_of(come().follow().next()) == "to both"
+    assert [hello.process for hello in processes_in(folder)] == [os.getpid()]
 
 
 @pytest.mark.usefixtures("server")
-def test_one_console_follows_at_a_time_and_the_next_when_it_has_left(
-    recorder: Recorder, folder: Path, come: Come
-) -> None:
-    say(recorder, "to the first")
-    first = come().follow()
-    assert first.hears_something()
-    assert not come().follow().hears_something()
-    assert [hello.process for hello in processes_in(folder)] == [os.getpid()]
-    first.leave()
-    come_when_nobody_follows(recorder, come)
+def test_more_consoles_than_there_is_room_for_are_turned_away(recorder: Recorder, come: Come) -> None:
+    say(recorder, "to those who are let in")
+    assert [come().follow().hears_something() for _ in range(5)] == [True, True, True, True, False]
 
 
 @pytest.mark.usefixtures("server")
 def test_what_has_appeared_is_told_to_everybody_who_comes(recorder: Recorder, come: Come) -> None:
     thread = recorder.thread()
-    first = come().follow()
-    assert getattr(first.next(), "thread", None) == thread
-    first.leave()
-    second = come_when_nobody_follows(recorder, come)
-    assert getattr(second.first, "thread", None) == thread
+    assert [getattr(come().follow().next(), "thread", None) for _ in range(2)] == [thread, thread]
+
+
+def test_a_process_that_ends_says_farewell(recorder: Recorder, folder: Path, come: Come) -> None:
+    server = Server(recorder, lambda: None)
+    server.start(str(folder))
+    console = come().follow()
+    server.close()
+    assert isinstance(console.next(), Left)
+
+
+@pytest.fixture
+def port(monkeypatch: pytest.MonkeyPatch) -> int:
+    """A free port, at which probes listen for who knows the token."""
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        number = int(free.getsockname()[1])
+    monkeypatch.setenv(PORT, str(number))
+    monkeypatch.setenv(TOKEN, "swordfish")
+    return number
+
+
+def test_through_a_port_only_who_knows_the_token_is_answered(
+    port: int, request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    request.getfixturevalue("server")
+    hello = process_at(("127.0.0.1", port))
+    assert hello is not None
+    assert hello.process == os.getpid()
+    monkeypatch.setenv(TOKEN, "sword")
+    assert process_at(("127.0.0.1", port)) is None
+
+
+def test_a_console_that_does_not_read_loses_events_and_is_told_how_many() -> None:
+    ours, theirs = socket.socketpair()
+    ours.setblocking(False)
+    console, told = ConsoleLink(ours), lines([("notice", 1, "INFO", "x" * 100_000)])
+    for _ in range(300):
+        console.tell(told, 1)
+    assert console.send()
+    received = b""
+    while not received.endswith(b"\n") or not console.is_up_to_date:
+        received += theirs.recv(1 << 20)
+        console.tell_lost(0)
+        assert console.send()
+    theirs.close()
+    console.close()
+    heard = decode_lines(received)
+    [lost] = [line for line in heard if isinstance(line, EventsLost)]
+    assert lost.count + len(heard) - 1 == 300
 
 
 def test_a_full_buffer_gives_up_the_oldest_and_counts_them(recorder: Recorder) -> None:

@@ -16,3 +16,12 @@ CHANGES = "CBTUI_CHANGES"
 
 FOLLOW = b"follow\n"
 """What a console says that wants to be told what happens; until then it is only told which process it is."""
+
+PORT = "CBTUI_PROBE_PORT"
+"""The environment variable with a port of the loopback interface, for consoles of other machines."""
+
+PORTS = 10
+"""So many ports from that one on are tried, as each process needs its own."""
+
+TOKEN = "CBTUI_PROBE_TOKEN"
+"""The environment variable with what a console must say first there, on a line of its own."""

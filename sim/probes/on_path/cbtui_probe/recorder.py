@@ -69,11 +69,6 @@ class Recorder:
             events.append(self._events.popleft())
         return events
 
-    def trim(self, bound: int) -> None:
-        """Give up the oldest events but for so many, uncounted: nobody waits for them."""
-        for _ in range(len(self._events) - bound):
-            self._events.popleft()
-
     def thread(self) -> int:
         """The id of the calling thread, which appears when it is first asked for."""
         here = self.here

@@ -1,9 +1,9 @@
-"""The socket at which a console finds this process, and the thread that looks and sends."""
+"""The sockets at which consoles find this process, and the thread that looks and sends."""
 
 from __future__ import annotations
 
 import atexit
-import json
+import hmac
 import os
 import platform
 import select
@@ -12,11 +12,13 @@ import struct
 import sys
 import threading
 import time
+from collections import deque
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import FOLLOW, PROTOCOL
+from . import FOLLOW, PORT, PORTS, PROTOCOL, TOKEN
+from .consoles import Console, lines
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -25,21 +27,48 @@ if TYPE_CHECKING:
 
 _PERIOD = 0.01
 """Seconds between two looks."""
-_UNSENT = 1 << 20
-"""Bytes that wait for a slow console before more is encoded; until then events wait as they are."""
-_UNATTENDED = 20_000
-"""Events that are kept while no console is there: the latest."""
-_BATCH = 500
-"""Events of one line at most."""
-_VISITORS = 4
+_LATEST = 20_000
+"""Events that are kept for consoles that are yet to come."""
+_CONSOLES = 4
+"""How many follow at most, and how many may be about to."""
+_LONGEST_WORD = 200
+"""Bytes of what a visitor says."""
 _FAREWELL = 0.5
-"""Seconds for which the process's end waits for a console to take the last events."""
+"""Seconds for which the process's end waits for consoles to take the last events."""
 
-_encode = json.JSONEncoder(separators=(",", ":"), check_circular=False).encode
+
+class _Visitor:
+    """Who came, and has not said yet what it wants. One with a ``token`` to name is told nothing before."""
+
+    def __init__(self, connection: socket.socket, token: str) -> None:
+        self.connection = connection
+        self.is_greeted = False
+        self._token = token
+        self._said = b""
+
+    @property
+    def is_trusted(self) -> bool:
+        """Whether it may know which process this is."""
+        return not self._token
+
+    def listen(self) -> bytes | None:
+        """What it wants, once it has said so; empty if it is to be turned away."""
+        with suppress(BlockingIOError):
+            said = self.connection.recv(_LONGEST_WORD)
+            self._said += said
+            if not said or len(self._said) > _LONGEST_WORD:
+                return b""
+        word, end, rest = self._said.partition(b"\n")
+        if end and self._token:
+            if not hmac.compare_digest(word, self._token.encode()):
+                return b""
+            self._token, self._said = "", rest
+            word, end, _ = rest.partition(b"\n")
+        return word + end if end else None
 
 
 class Server:
-    """Sends the events of ``recorder`` to one console at a time, and has ``look`` called in between.
+    """Sends the events of ``recorder`` to consoles, and has ``look`` called in between.
 
     The thread is a daemon, and nothing it does can hold up or end the program.
     """
@@ -47,33 +76,52 @@ class Server:
     def __init__(self, recorder: Recorder, look: Callable[[], None]) -> None:
         self._recorder = recorder
         self._look = look
-        self._console: socket.socket | None = None
-        self._visitors: list[socket.socket] = []
-        """Those who came, and have not said yet what they want."""
-        self._unsent = b""
-        self._lost_told = 0
+        self._token = os.environ.get(TOKEN, "")
+        self._listeners: list[socket.socket] = []
+        self._visitors: list[_Visitor] = []
+        self._consoles: list[Console] = []
+        self._latest: deque[tuple[Any, ...]] = deque(maxlen=_LATEST)
         self._ends = threading.Event()
         self._thread = threading.Thread(target=self._serve, name="cbtui-probe", daemon=True)
 
     def start(self, folder: str) -> None:
-        """Listen in ``folder``, as ``<process id>.sock``."""
+        """Listen in ``folder``, as ``<process id>.sock``, and on the port that the environment names."""
         self._path = Path(folder) / f"{os.getpid()}.sock"
         self._path.unlink(missing_ok=True)
-        self._listener = socket.socket(socket.AF_UNIX)
-        self._listener.bind(str(self._path))
+        listener = socket.socket(socket.AF_UNIX)
+        listener.bind(str(self._path))
         self._path.chmod(0o600)
-        self._listener.listen(1)
-        self._listener.setblocking(False)
+        self._listeners.append(listener)
+        if os.environ.get(PORT) and self._token:
+            self._listen_on_loopback(int(os.environ[PORT]))
+        for each in self._listeners:
+            each.listen(_CONSOLES)
+            each.setblocking(False)
         self._pid = os.getpid()
         atexit.register(self.close)
         self._thread.start()
+
+    def _listen_on_loopback(self, first: int) -> None:
+        """Listen on the first port that is free: other processes of the same command have theirs."""
+        for port in range(first, first + PORTS):
+            listener = socket.socket()
+            try:
+                listener.bind(("127.0.0.1", port))
+            except OSError:
+                listener.close()
+                continue
+            self._listeners.append(listener)
+            sys.stderr.write(f"cbtui's probe listens on 127.0.0.1:{port}\n")
+            return
+        sys.stderr.write(f"cbtui's probe found no free port from {first} to {first + PORTS - 1}\n")
 
     def _serve(self) -> None:
         looks = True
         while not self._ends.is_set():
             with suppress(OSError):
-                select.select([self._listener], [], [], _PERIOD)
-                self._meet()
+                for listener in select.select(self._listeners, [], [], _PERIOD)[0]:
+                    self._let_in(listener)
+            self._meet()
             if looks:
                 try:
                     self._look()
@@ -91,38 +139,41 @@ class Server:
             return False
         return True
 
+    def _let_in(self, listener: socket.socket) -> None:
+        """Take who comes, if it is the same user; through a port, if it names the token."""
+        connection, _ = listener.accept()
+        is_local = listener.family == socket.AF_UNIX
+        if len(self._visitors) >= _CONSOLES or (is_local and _user_of(connection) not in (0, os.getuid())):
+            connection.close()
+            return
+        connection.setblocking(False)
+        self._visitors.append(_Visitor(connection, "" if is_local else self._token))
+
     def _meet(self) -> None:
-        """Take who comes, if it is the same user, and says that it wants to follow; one at a time."""
-        with suppress(BlockingIOError):
-            visitor, _ = self._listener.accept()
-            credentials = visitor.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, 12)
-            if (
-                struct.unpack("3i", credentials)[1] not in (0, os.getuid())
-                or len(self._visitors) >= _VISITORS
-            ):
-                visitor.close()
-                return
-            visitor.setblocking(False)
-            visitor.sendall(_lines([self._hello()]))
-            self._visitors.append(visitor)
         for visitor in list(self._visitors):
             try:
-                said = visitor.recv(len(FOLLOW))
-            except BlockingIOError:
+                wish = visitor.listen()
+                if visitor.is_trusted and not visitor.is_greeted:
+                    visitor.is_greeted = True
+                    visitor.connection.sendall(lines([self._hello()]))
+            except OSError:  # it has gone
+                wish = b""
+            if wish is None:
                 continue
             self._visitors.remove(visitor)
-            if said == FOLLOW and self._console is None:
-                self._follow(visitor)
+            if wish == FOLLOW and len(self._consoles) < _CONSOLES:
+                self._follow(visitor.connection)
             else:
-                visitor.close()
+                visitor.connection.close()
 
-    def _follow(self, console: socket.socket) -> None:
+    def _follow(self, connection: socket.socket) -> None:
         """Tell a console what is there, what happened lately, and from now on all that happens."""
-        self._console = console
-        waiting = self._recorder.take()
-        told = set(waiting)
-        known = [event for event in self._recorder.appeared.values() if event not in told]
-        self._unsent = _lines([*known, *waiting])
+        console = Console(connection)
+        told = set(self._latest)
+        known = [event for event in list(self._recorder.appeared.values()) if event not in told]
+        events = [*known, *self._latest]
+        console.tell(lines(events), len(events))
+        self._consoles.append(console)
 
     def _hello(self) -> tuple[Any, ...]:
         return (
@@ -137,44 +188,36 @@ class Server:
         )
 
     def _send(self) -> None:
-        console = self._console
-        if console is None:
-            self._recorder.trim(_UNATTENDED)
+        events = self._recorder.take()
+        self._latest.extend(events)
+        if not self._consoles:
             return
-        if len(self._unsent) < _UNSENT:
-            events = self._recorder.take()
-            if self._recorder.lost > self._lost_told:
-                self._lost_told = self._recorder.lost
-                events.append(("lost", time.monotonic_ns(), self._lost_told))
-            self._unsent += _lines(events)
-        try:
-            while self._unsent:
-                self._unsent = self._unsent[console.send(self._unsent) :]
-        except BlockingIOError:
-            return
-        except OSError:  # it has gone, and the program goes on
-            console.close()
-            self._console, self._unsent = None, b""
+        told = lines(events)
+        for console in list(self._consoles):
+            console.tell(told, len(events))
+            console.tell_lost(self._recorder.lost)
+            if not console.send():
+                self._consoles.remove(console)
 
     def close(self) -> None:
-        """Hand on what is left, and listen no more; a child made by fork has nothing to hand on."""
+        """Say farewell, hand on what is left, and listen no more; a child made by fork has nothing to say."""
         if os.getpid() != self._pid:
             return
         self._ends.set()
         self._thread.join(_FAREWELL)
+        self._recorder.put("left", time.monotonic_ns())
         ends_at = time.monotonic() + _FAREWELL
-        while self._console is not None and time.monotonic() < ends_at:
-            self._send()
-            if not self._unsent:
-                break
+        self._send()
+        while any(not each.is_up_to_date for each in self._consoles) and time.monotonic() < ends_at:
             time.sleep(_PERIOD)
-        for each in (self._listener, *self._visitors, self._console):
-            if each is not None:
-                each.close()
+            self._send()
+        for console in self._consoles:
+            console.close()
+        for each in (*self._listeners, *(visitor.connection for visitor in self._visitors)):
+            each.close()
         self._path.unlink(missing_ok=True)
 
 
-def _lines(events: list[tuple[Any, ...]]) -> bytes:
-    """Lines of JSON, each an array of events: one event at a time takes three times as long."""
-    batches = (events[start : start + _BATCH] for start in range(0, len(events), _BATCH))
-    return b"".join(_encode(batch).encode() + b"\n" for batch in batches)
+def _user_of(connection: socket.socket) -> int:
+    credentials = connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, 12)
+    return int(struct.unpack("3i", credentials)[1])
