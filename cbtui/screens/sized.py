@@ -5,7 +5,7 @@ from typing import TypeVar
 from textual.await_complete import AwaitComplete
 from textual.events import Resize
 from textual.geometry import Size
-from textual.screen import ModalScreen, Screen, ScreenResultCallbackType, ScreenResultType
+from textual.screen import Screen, ScreenResultCallbackType, ScreenResultType
 from textual.widgets import Static
 
 from cbtui.screens.layout import Layout, layout_for, too_small
@@ -54,7 +54,3 @@ class SizedScreen(Screen[Result]):
         for sentence in self.query(".too-small").results(Static):
             sentence.update(too_small(size))
         self.laid_out()
-
-
-class SizedModal(ModalScreen[Result], SizedScreen[Result]):
-    """A sized modal screen."""

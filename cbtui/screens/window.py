@@ -5,16 +5,17 @@ from typing import Any, ClassVar
 from textual.app import ComposeResult
 from textual.containers import Container
 from textual.content import Content
+from textual.screen import ModalScreen
 from textual.types import CSSPathType
 
 from cbtui.keys.action import Scope
 from cbtui.keys.bindings import bindings_of
 from cbtui.looks.theme import Charset
-from cbtui.screens.sized import Result, SizedModal
+from cbtui.screens.sized import Result, SizedScreen
 from cbtui.widgets.key_bar import KeyBar
 
 
-class WindowScreen(SizedModal[Result]):
+class WindowScreen(ModalScreen[Result], SizedScreen[Result]):
     """A framed window with ``content`` and the keys of ``SCOPE``; closing it gives None."""
 
     SCOPE: ClassVar[Scope]

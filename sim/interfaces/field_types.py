@@ -2,10 +2,14 @@
 
 The classes and their attributes match ``rosidl_parser.definition``, because a message class shows
 them to everyone in ``SLOT_TYPES``. ``str()`` of a type is its text in ``get_fields_and_field_types()``.
+
+``isinstance`` and ``issubclass`` answer as for rosidl's classes, which stand five deep: here the two deep
+branches, texts and sequences, are registered with the bases above them.
 """
 
 from __future__ import annotations
 
+from abc import ABC
 from collections.abc import Iterable
 from typing import Final, TypeAlias
 
@@ -21,7 +25,7 @@ FLOAT_LIMITS: Final = {"float": 3.402823466e38, "double": 1.7976931348623157e308
 """Largest finite magnitude of every floating point type, in the digits rosidl uses."""
 
 
-class AbstractType:
+class AbstractType(ABC):  # noqa: B024 -- programs only ask whether something is one
     """Any type."""
 
 
@@ -29,7 +33,8 @@ class AbstractNestableType(AbstractType):
     """The type of a single value, which a sequence may have several of."""
 
 
-class AbstractGenericString(AbstractNestableType):
+@AbstractNestableType.register
+class AbstractGenericString(ABC):  # noqa: B024
     """A text."""
 
     def has_maximum_size(self) -> bool:
@@ -45,7 +50,8 @@ class AbstractWString(AbstractGenericString):
     """A text of 16-bit units."""
 
 
-class AbstractNestedType(AbstractType):
+@AbstractType.register
+class AbstractNestedType(ABC):
     """Several values of one type."""
 
     value_type: ElementType

@@ -5,6 +5,8 @@ from __future__ import annotations
 import copy
 import math
 from array import array
+from importlib.machinery import PathFinder
+from importlib.util import module_from_spec
 from typing import Any
 
 import numpy as np
@@ -12,7 +14,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sim.interfaces import Message, interface_module, message, service, type_name
+from sim.interfaces import Message, field_types, interface_module, message, service, type_name
 from sim.interfaces.field_types import (
     Array,
     BasicType,
@@ -206,3 +208,22 @@ def test_an_empty_message_has_no_fields() -> None:
     assert empty.get_fields_and_field_types() == {}
     assert isinstance(empty(), Message)
     assert empty() == empty()
+
+
+def test_field_types_are_instances_of_the_bases_that_rosidls_are_instances_of() -> None:
+    package = PathFinder.find_spec("rosidl_parser")
+    if package is None:
+        pytest.skip("real ROS 2 is not installed")
+    spec = PathFinder.find_spec("definition", package.submodule_search_locations)
+    assert spec is not None
+    assert spec.loader is not None
+    real: Any = module_from_spec(spec)
+    spec.loader.exec_module(real)
+    ours = {
+        name: cls for name, cls in vars(field_types).items() if name.endswith(("Type", "String", "Sequence"))
+    }
+    classes = {name: cls for name, cls in ours.items() if isinstance(cls, type)} | {"Array": Array}
+    assert len(classes) > 12
+    for base, cls in classes.items():
+        theirs = {name for name in classes if issubclass(getattr(real, name), getattr(real, base))}
+        assert {name for name in classes if issubclass(classes[name], cls)} == theirs

@@ -1,4 +1,4 @@
-"""Entities of a launch description: the base of all, and actions."""
+"""Entities of a launch description: the base of all, and actions. They stand as deep as in ``launch``."""
 
 # ruff: noqa: D102 -- what a method does that overrides another stands with that one
 

@@ -295,15 +295,19 @@ class AnySubstitution(_Junction):
     join = any
 
 
-class AndSubstitution(AllSubstitution):
+class AndSubstitution(_Junction):
     """``true`` if both values are."""
+
+    join = all
 
     def __init__(self, left: Any, right: Any) -> None:
         super().__init__(left, right)
 
 
-class OrSubstitution(AnySubstitution):
+class OrSubstitution(_Junction):
     """``true`` if either value is."""
+
+    join = any
 
     def __init__(self, left: Any, right: Any) -> None:
         super().__init__(left, right)

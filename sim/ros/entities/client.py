@@ -11,10 +11,10 @@ import msgspec
 
 from sim.interfaces import copy_message
 from sim.ros.entities.entity_handles import ClientHandle
-from sim.ros.entities.service_entity import ServiceEntity
+from sim.ros.entities.service_endpoint import ServiceEndpoint
 from sim.ros.middleware.delivery import Request
 from sim.ros.qos.qos import QoSProfile
-from sim.ros.scheduling.entity import OwnerNode, Taken
+from sim.ros.scheduling.entity import Entity, OwnerNode, Taken
 from sim.ros.scheduling.task import Future
 from sim.trace.events import EntityKind
 from sim.units import wait_ns
@@ -40,7 +40,7 @@ class Reply(msgspec.Struct, frozen=True):
     sent: int
 
 
-class Client(ServiceEntity):
+class Client(ServiceEndpoint, Entity):
     """Calls one service. The reply is taken by the executor, as a callback of the client's group."""
 
     kind = EntityKind.CLIENT
@@ -56,7 +56,8 @@ class Client(ServiceEntity):
         *,
         srv_name: str | None = None,
     ) -> None:
-        super().__init__(node, srv_type, service_name, qos_profile, callback_group, srv_name)
+        super().__init__(node, service_name, callback_group)
+        self._set_service(srv_type, srv_name, qos_profile)
         self._host = node.context.host
         self.gid = self._host.new_gid()
         self._pending_requests: dict[int, Future[Any]] = {}

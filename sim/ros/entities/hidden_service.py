@@ -13,12 +13,6 @@ if TYPE_CHECKING:
     from sim.ros.scheduling.entity import OwnerNode
 
 
-class HiddenService(Service):
-    """A service that runs as any other does, unseen."""
-
-    traced = False
-
-
 def offer_hidden(
     node: OwnerNode,
     srv_type: Any,
@@ -26,12 +20,13 @@ def offer_hidden(
     callback: Callable[[Any, Any], Any],
     qos_profile: QoSProfile,
     callback_group: CallbackGroup | None = None,
-) -> HiddenService:
+) -> Service:
     """Have a node offer a hidden service, by default in its default group."""
     group = node.default_callback_group if callback_group is None else callback_group
     name = node.resolve_service_name(srv_name)
     with node.context.host.lock:
-        service = HiddenService(node, srv_type, name, callback, group, qos_profile)
+        service = Service(node, srv_type, name, callback, group, qos_profile)
+        service.traced = False
         node._agenda.add(service)
         node.context.network.join_service(service)
     return service

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, TypeVar
 from sim.interfaces import copy_message
 from sim.marks import sends_responses
 from sim.ros.entities.entity_handles import RequestId, ServiceHandle, ServiceInfo, answered
-from sim.ros.entities.service_entity import ServiceEntity
+from sim.ros.entities.service_endpoint import ServiceEndpoint
 from sim.ros.middleware.delivery import Request
 from sim.ros.qos.qos import QoSProfile
-from sim.ros.scheduling.entity import OwnerNode, Taken
+from sim.ros.scheduling.entity import Entity, OwnerNode, Taken
 from sim.trace.events import EntityKind
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ SrvTypeResponse = TypeVar("SrvTypeResponse")
 """For the type hints of programs, which import these from here as from rclpy."""
 
 
-class Service(ServiceEntity):
+class Service(ServiceEndpoint, Entity):
     """Answers calls of one service. A callback that raises sends no reply."""
 
     kind = EntityKind.SERVICE
@@ -42,7 +42,8 @@ class Service(ServiceEntity):
         *,
         srv_name: str | None = None,
     ) -> None:
-        super().__init__(node, srv_type, service_name, qos_profile, callback_group, srv_name)
+        super().__init__(node, service_name, callback_group)
+        self._set_service(srv_type, srv_name, qos_profile)
         self.callback = callback
         self._queue: deque[Request] = deque()
 

@@ -87,7 +87,7 @@ class Entity:
     rank: ClassVar[int]
     """Place of the kind in the order in which a snapshot is served."""
 
-    traced: ClassVar[bool] = True
+    traced = True
     """Whether the trace shows it."""
 
     due = NEVER

@@ -5,36 +5,30 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from sim.ros.entities.service_introspection import ServiceIntrospection, ServiceIntrospectionState
-from sim.ros.scheduling.entity import Entity, OwnerNode
 
 if TYPE_CHECKING:
     from sim.ros.clocks.clock import Clock
     from sim.ros.qos.qos import QoSProfile
-    from sim.ros.scheduling.callback_groups import CallbackGroup
+    from sim.ros.scheduling.entity import OwnerNode
 
 
-class ServiceEntity(Entity):
-    """A client or a service.
+class ServiceEndpoint:
+    """The common part of the entities Client and Service.
 
     ``srv_name`` is the service's name as the program wrote it; ``service_name`` is the full one.
     """
 
-    def __init__(
-        self,
-        node: OwnerNode,
-        srv_type: Any,
-        service_name: str,
-        qos_profile: QoSProfile,
-        callback_group: CallbackGroup,
-        srv_name: str | None,
-    ) -> None:
-        super().__init__(node, service_name, callback_group)
+    node: OwnerNode
+    name: str
+    depth: int
+    _introspection: ServiceIntrospection | None = None
+
+    def _set_service(self, srv_type: Any, srv_name: str | None, qos_profile: QoSProfile) -> None:
         self.srv_type = srv_type
-        self.srv_name = service_name if srv_name is None else srv_name
+        self.srv_name = self.name if srv_name is None else srv_name
         self.qos_profile = qos_profile
         self.depth = qos_profile.queue_length or 0
-        self._probe = node.context.probe
-        self._introspection: ServiceIntrospection | None = None
+        self._probe = self.node.context.probe
 
     @property
     def service_name(self) -> str:
