@@ -9,7 +9,7 @@ from cbtui.commands.options import appearance
 from cbtui.text.output import complain, say
 
 if TYPE_CHECKING:
-    from cbtui.keys.action import Action
+    from cbtui.keys.action import KeyAction
 
 _HEAD = """\
 # The keys of cbtui, and how it looks. Keep what you change in
@@ -51,7 +51,7 @@ def _lines(path: str, now: appearance.Appearance) -> Iterator[str]:
         yield ""
 
 
-def _entry(action: "Action") -> str:
+def _entry(action: "KeyAction") -> str:
     from cbtui.keys.action import key_id
     from cbtui.keys.keymap import keys_of
 

@@ -43,18 +43,18 @@ class Scope(StrEnum):
     HELP = "Help"
 
 
-class Action(NamedTuple):
+class KeyAction(NamedTuple):
     """Something the user can do. ``key`` is Textual's name of a key, ``help`` one sentence.
 
     Neighbours with the same ``label`` share a place in the footer; those with the same ``series`` share a
     line of the help, which says that instead.
     """
 
+    scope: Scope
     id: str
     key: str
     label: str
     help: str
-    scope: Scope
     series: str = ""
 
     @property
@@ -63,18 +63,18 @@ class Action(NamedTuple):
         return self.series or self.help
 
 
-def key_id(action: Action) -> str:
+def key_id(action: KeyAction) -> str:
     """Return an action's name in the configuration: ``lesson.pause``, ``lesson.show_pane_guide``."""
     words = re.findall(r"\w+", action.id)
     return f"{action.scope.name.lower()}.{'_'.join(words)}"
 
 
-def method_of(action: Action) -> tuple[str, tuple[object, ...]]:
+def method_of(action: KeyAction) -> tuple[str, tuple[object, ...]]:
     """Return the name and arguments that ``check_action`` gets for an action."""
     _, name, arguments = parse(action.id)
     return name, arguments
 
 
-def group_by(actions: Iterable[Action], field: str) -> list[tuple[Action, ...]]:
+def group_by(actions: Iterable[KeyAction], field: str) -> list[tuple[KeyAction, ...]]:
     """Group neighbouring actions by the value of a field."""
     return [tuple(group) for _, group in groupby(actions, key=attrgetter(field))]

@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING, Any
 
 from textual.binding import Binding
 
-from cbtui.keys.action import Action, Scope, key_id
+from cbtui.keys.action import KeyAction, Scope, key_id
 from cbtui.keys.actions import ACTIONS
 
 if TYPE_CHECKING:
@@ -31,14 +31,14 @@ def bindings_of(*scopes: Scope) -> list[Binding]:
     return [_binding(action) for action in ACTIONS if action.scope in scopes]
 
 
-async def perform(app: "App[Any]", action: Action) -> None:
+async def perform(app: "App[Any]", action: KeyAction) -> None:
     """Perform an action for a click or the palette; one of the widget with the focus only if there is one."""
     place = _PLACES.get(action.scope, "screen")
     if place != "focused" or app.focused is not None:
         await app.run_action(f"{place}.{action.id}")
 
 
-def _binding(action: Action) -> Binding:
+def _binding(action: KeyAction) -> Binding:
     return Binding(
         action.key,
         action.id,

@@ -6,7 +6,7 @@ from typing import Any
 
 from textual.command import DiscoveryHit, Hit, Hits, Provider
 
-from cbtui.keys.action import Action, Scope, method_of
+from cbtui.keys.action import KeyAction, Scope, method_of
 from cbtui.keys.actions import actions_of
 from cbtui.keys.bindings import perform
 from cbtui.keys.keymap import keymap_of
@@ -31,7 +31,7 @@ class ActionsProvider(Provider):
                 keys = signs_of([action], Charset.ASCII)
                 yield Hit(score, matcher.highlight(action.help), self._run(action), help=f"key {keys}")
 
-    def _actions(self) -> Iterator[Action]:
+    def _actions(self) -> Iterator[KeyAction]:
         scope: Scope | None = getattr(self.screen, "SCOPE", None)
         if scope is None:
             return
@@ -39,5 +39,5 @@ class ActionsProvider(Provider):
             if action.id != "command_palette" and self.screen.check_action(*method_of(action)) is not False:
                 yield action
 
-    def _run(self, action: Action) -> "partial[Coroutine[Any, Any, None]]":
+    def _run(self, action: KeyAction) -> "partial[Coroutine[Any, Any, None]]":
         return partial(perform, self.app, action)

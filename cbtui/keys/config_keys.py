@@ -6,7 +6,7 @@ from itertools import combinations
 
 from textual.keys import Keys
 
-from cbtui.keys.action import Action, Scope, key_id
+from cbtui.keys.action import KeyAction, Scope, key_id
 from cbtui.keys.actions import ACTIONS, actions_of
 from cbtui.keys.keymap import Keymap, canonical, is_typed, keys_of
 
@@ -44,7 +44,7 @@ def read_keys(table: Mapping[str, object], complain: Complain) -> Keymap:
     return Keymap(chosen)
 
 
-def _action(name: str) -> Action:
+def _action(name: str) -> KeyAction:
     if name in _BY_ID:
         return _BY_ID[name]
     near = get_close_matches(name, _BY_ID, n=1)
@@ -53,7 +53,7 @@ def _action(name: str) -> Action:
     )
 
 
-def _keys(action: Action, value: object) -> tuple[str, ...]:
+def _keys(action: KeyAction, value: object) -> tuple[str, ...]:
     values = value if isinstance(value, list) else [value]
     written = [each for each in values if isinstance(each, str)]
     if not values or written != values:
@@ -61,7 +61,7 @@ def _keys(action: Action, value: object) -> tuple[str, ...]:
     return tuple(_key(action, each) for each in written)
 
 
-def _key(action: Action, written: str) -> str:
+def _key(action: KeyAction, written: str) -> str:
     key = canonical(written if len(written) == 1 else written.lower())
     if key in _NEVER_COME:
         raise ValueError(
@@ -82,7 +82,7 @@ def _key(action: Action, written: str) -> str:
     return key
 
 
-def _neighbours(action: Action) -> list[Action]:
+def _neighbours(action: KeyAction) -> list[KeyAction]:
     return [other for other in ACTIONS if other.scope is action.scope]
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from textual.app import App
 
-from cbtui.keys.action import Action, Scope, key_id
+from cbtui.keys.action import KeyAction, Scope, key_id
 from cbtui.keys.actions import ACTIONS
 from cbtui.keys.signs import character_of, signs_of
 from cbtui.looks.theme import Charset
@@ -21,7 +21,7 @@ class Keymap:
     def __init__(self, chosen: Mapping[str, tuple[str, ...]] = MappingProxyType({})) -> None:
         self._chosen = dict(chosen)
 
-    def of(self, actions: Iterable[Action]) -> list[Action]:
+    def of(self, actions: Iterable[KeyAction]) -> list[KeyAction]:
         """Return the actions with their keys in force."""
         return [self._with_its_keys(action) for action in actions]
 
@@ -50,7 +50,7 @@ class Keymap:
         ]
         return {key_id(action): action.key for action in self.of(told)}
 
-    def _with_its_keys(self, action: Action) -> Action:
+    def _with_its_keys(self, action: KeyAction) -> KeyAction:
         chosen = self._chosen.get(key_id(action))
         return action if chosen is None else action._replace(key=",".join(map(_name, chosen)))
 
@@ -65,7 +65,7 @@ def keymap_of(app: App[Any]) -> Keymap:
     return keymap
 
 
-def keys_of(action: Action) -> tuple[str, ...]:
+def keys_of(action: KeyAction) -> tuple[str, ...]:
     """Return an action's keys in canonical form."""
     return tuple(canonical(key) for key in action.key.split(","))
 

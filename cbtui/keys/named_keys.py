@@ -2,7 +2,7 @@
 
 import re
 
-from cbtui.keys.action import Action, Scope
+from cbtui.keys.action import KeyAction, Scope
 from cbtui.keys.actions import ACTIONS
 from cbtui.keys.keymap import STANDARD, Keymap
 from cbtui.keys.signs import signs_of
@@ -47,5 +47,5 @@ def _in_force(key: str, keymap: Keymap) -> list[str]:
     return list(dict.fromkeys(_sign(action, keymap) for action in meant))
 
 
-def _sign(action: Action, keymap: Keymap) -> str:
+def _sign(action: KeyAction, keymap: Keymap) -> str:
     return signs_of(keymap.of([action]), Charset.ASCII)

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 
 from textual.keys import format_key, key_to_character
 
-from cbtui.keys.action import Action
+from cbtui.keys.action import KeyAction
 from cbtui.looks.theme import Charset
 
 _SIGNS = {
@@ -27,7 +27,7 @@ _PLAIN_SIGNS = _SIGNS | {
 }
 
 
-def signs_of(actions: Iterable[Action], charset: Charset) -> str:
+def signs_of(actions: Iterable[KeyAction], charset: Charset) -> str:
     """Return the keys of some actions for display."""
     keys = [action.key.partition(",")[0] for action in actions]
     digits = [key for key in keys if key.isdigit()]

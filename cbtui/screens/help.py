@@ -7,7 +7,7 @@ from textual.containers import VerticalScroll
 from textual.content import Content
 from textual.widgets import Static
 
-from cbtui.keys.action import Action, Scope, group_by
+from cbtui.keys.action import KeyAction, Scope, group_by
 from cbtui.keys.actions import ACTIONS
 from cbtui.keys.keymap import Keymap, keymap_of
 from cbtui.keys.signs import signs_of
@@ -59,6 +59,6 @@ def _sections(first: Scope | None, keymap: Keymap, charset: Charset) -> Iterator
         yield Content("\n").join([Content.styled(scope.value, "bold $text-primary"), *rows, Content("")])
 
 
-def _row(actions: Sequence[Action], charset: Charset) -> Content:
+def _row(actions: Sequence[KeyAction], charset: Charset) -> Content:
     keys = signs_of(actions, charset)
     return Content.assemble((f"{keys:>7}", "bold $text-accent"), f"  {actions[0].line}")

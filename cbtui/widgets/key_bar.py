@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from textual.events import Click
 from textual.geometry import Size
 
-from cbtui.keys.action import Action, Scope, group_by, method_of
+from cbtui.keys.action import KeyAction, Scope, group_by, method_of
 from cbtui.keys.actions import actions_of
 from cbtui.keys.bindings import perform
 from cbtui.keys.keymap import keymap_of
@@ -26,7 +26,7 @@ class KeyBarEntry:
 
     keys: str
     label: str
-    actions: tuple[Action, ...]
+    actions: tuple[KeyAction, ...]
 
     @property
     def width(self) -> int:
@@ -52,7 +52,7 @@ class KeyBar(PaintedWidget):
         self._scope = scope
         self.changed()
 
-    def working(self) -> list[Action]:
+    def working(self) -> list[KeyAction]:
         """Return the available actions with the keys in force."""
         working = [action for action in actions_of(self._scope) if self._works(action)]
         working.sort(key=lambda action: action.label not in self.first)
@@ -80,18 +80,18 @@ class KeyBar(PaintedWidget):
     def _entries(self, width: int) -> list[KeyBarEntry]:
         return fitting_entries(key_bar_entries(self.working(), self._charset), width - 1)
 
-    def _works(self, action: Action) -> bool:
+    def _works(self, action: KeyAction) -> bool:
         return self.screen.check_action(*method_of(action)) is not False
 
 
-def key_bar_entries(actions: Iterable[Action], charset: Charset) -> list[KeyBarEntry]:
+def key_bar_entries(actions: Iterable[KeyAction], charset: Charset) -> list[KeyBarEntry]:
     """Return the entries of some actions."""
     return [
         KeyBarEntry(signs_of(group, charset), group[0].label, group) for group in group_by(actions, "label")
     ]
 
 
-def hint(actions: Iterable[Action], charset: Charset) -> str:
+def hint(actions: Iterable[KeyAction], charset: Charset) -> str:
     """Return the keys of some actions for a widget's frame: ``zoom < >``, separated by dots."""
     between = f" {GLYPHS[charset].between} "
     return between.join(f"{entry.label} {entry.keys}" for entry in key_bar_entries(actions, charset))

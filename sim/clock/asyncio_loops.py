@@ -5,10 +5,10 @@ import selectors
 import threading
 from typing import Any
 
-from sim.clock.interface import Clock
+from sim.clock.interface import RunClock
 from sim.clock.paced import PacedClock
 from sim.clock.virtual import VirtualClock
-from sim.clock.virtual_threads import VirtualSignal
+from sim.clock.virtual_threads import VirtualAutoResetEvent
 from sim.units import wait_ns
 
 _Ready = list[tuple[selectors.SelectorKey, int]]
@@ -24,7 +24,7 @@ class ProgramLoops(asyncio.DefaultEventLoopPolicy):
     they let its time pass, on a paced one they keep its pace.
     """
 
-    def __init__(self, clock: Clock) -> None:
+    def __init__(self, clock: RunClock) -> None:
         super().__init__()
         self._clock = clock
         self._thread = threading.local()
@@ -89,7 +89,7 @@ class _VirtualSelector(selectors.PollSelector):
     def __init__(self, clock: VirtualClock) -> None:
         super().__init__()
         self._clock = clock
-        self._signal: VirtualSignal = clock.signal()
+        self._signal: VirtualAutoResetEvent = clock.auto_reset_event()
 
     def wake(self) -> None:
         """End the current wait, or the next one. Any thread may call it."""
@@ -107,7 +107,7 @@ class _VirtualSelector(selectors.PollSelector):
         if timeout is None or timeout > 0:
             deadline = None if timeout is None else self._clock.now() + wait_ns(timeout)
             self._signal.wait(deadline)
-            self._signal = self._clock.signal()
+            self._signal = self._clock.auto_reset_event()
         else:
             self._clock.poll()
         return []

@@ -1,10 +1,10 @@
-"""The interface of clocks: the time, sleeping, signals between threads, and threads on the clock's time."""
+"""The interface of clocks: the time, sleeping, auto-reset events, and threads on the clock's time."""
 
 from collections.abc import Callable
 from typing import Protocol
 
 
-class Signal(Protocol):
+class AutoResetEvent(Protocol):
     """An auto-reset event: one thread waits, any thread sets it, and a successful wait clears it."""
 
     def wait(self, deadline: int | None) -> bool:
@@ -14,7 +14,7 @@ class Signal(Protocol):
         """Set the flag and let the waiting thread go on. Any thread may call it."""
 
 
-class Clock(Protocol):
+class RunClock(Protocol):
     """Nanoseconds since the run began, and the ways to wait for them. Thread-safe."""
 
     @property
@@ -27,8 +27,8 @@ class Clock(Protocol):
     def sleep(self, duration: int) -> None:
         """Let ``duration`` nanoseconds pass on the calling thread."""
 
-    def signal(self) -> Signal:
-        """A new signal, not set."""
+    def auto_reset_event(self) -> AutoResetEvent:
+        """A new event, not set."""
 
     def choose(self, number: int) -> int:
         """Which of ``number`` equals gets what they all wait for: 0, the oldest, unless orders are explored.

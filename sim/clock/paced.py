@@ -20,7 +20,7 @@ _ASIDE = 20e-6
 """Seconds for which a thread stands aside that asks for the time while the pace is being changed."""
 
 
-class PacedSignal:
+class PacedAutoResetEvent:
     """A signal on the machine's own locks, whose deadline is a moment of a paced clock."""
 
     __slots__ = ("_bell", "_clock", "_is_set")
@@ -91,7 +91,7 @@ class PacedClock:
         self.epoch = time.time_ns()
         self.origin = _monotonic_ns()
         """The machine's monotonic time at which the run began."""
-        self._sleepers: set[PacedSignal] = set()
+        self._sleepers: set[PacedAutoResetEvent] = set()
         self._changing = _allocate_lock()
         self._paused = False
         self._speed = speed
@@ -128,13 +128,13 @@ class PacedClock:
     def sleep(self, duration: int) -> None:
         """Let ``duration`` nanoseconds of this clock pass."""
         if duration > 0:
-            PacedSignal(self).wait(self.now() + duration)
+            PacedAutoResetEvent(self).wait(self.now() + duration)
         else:
             _sleep(0)
 
-    def signal(self) -> PacedSignal:
+    def auto_reset_event(self) -> PacedAutoResetEvent:
         """A new signal, not set."""
-        return PacedSignal(self)
+        return PacedAutoResetEvent(self)
 
     def choose(self, number: int) -> int:
         """The first of some equals."""
@@ -164,7 +164,7 @@ class PacedClock:
         """Run ``action`` on a thread of its own once ``time`` has come."""
 
         def wait() -> None:
-            PacedSignal(self).wait(time)
+            PacedAutoResetEvent(self).wait(time)
             action()
 
         self.start_thread(wait, "timer")

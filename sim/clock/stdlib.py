@@ -26,7 +26,7 @@ from sim.clock.outside import start_outside
 from sim.clock.outside_work import OutsideWork
 from sim.clock.replacing import Replacements
 from sim.clock.virtual import VirtualClock
-from sim.clock.virtual_threads import VirtualSignal, VirtualThread
+from sim.clock.virtual_threads import VirtualAutoResetEvent, VirtualThread
 from sim.units import wait_ns
 
 _allocate_lock = threading.Lock
@@ -291,7 +291,7 @@ class _End:
         self.reached = False
         self.holder: VirtualThread | None = None
         self._clock = clock
-        self._waiters: list[VirtualSignal] = []
+        self._waiters: list[VirtualAutoResetEvent] = []
 
     def reach(self) -> None:
         self.reached = True
@@ -301,7 +301,7 @@ class _End:
     def wait(self, deadline: int | None) -> bool:
         if not self.reached:
             me = self._clock.current
-            waiter = self._clock.signal()
+            waiter = self._clock.auto_reset_event()
             self._waiters.append(waiter)
             if deadline is None:
                 me.wants = self

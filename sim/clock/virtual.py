@@ -15,7 +15,7 @@ from contextlib import contextmanager
 
 from sim.clock.outside import start_outside
 from sim.clock.schedule import FirstCome, Schedule
-from sim.clock.virtual_threads import VirtualSignal, VirtualThread
+from sim.clock.virtual_threads import VirtualAutoResetEvent, VirtualThread
 from sim.clock.virtual_time import VirtualTime
 from sim.units import SECOND
 
@@ -74,9 +74,9 @@ class VirtualClock:
         while self.park(deadline) and self.time.now < deadline:
             continue  # it handled a signal
 
-    def signal(self) -> VirtualSignal:
+    def auto_reset_event(self) -> VirtualAutoResetEvent:
         """A new signal, not set."""
-        return VirtualSignal(self)
+        return VirtualAutoResetEvent(self)
 
     def owns_current_thread(self) -> bool:
         """Whether the calling thread lives on this clock and has the baton."""

@@ -45,7 +45,7 @@ class VirtualThread:
         self.current_wait = 0
 
 
-class VirtualSignal:
+class VirtualAutoResetEvent:
     """A signal between threads on virtual time; others may set it through ``VirtualTime.inject``."""
 
     __slots__ = ("_clock", "_set", "_waiter")

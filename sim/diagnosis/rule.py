@@ -10,7 +10,7 @@ from typing import ClassVar
 import sim
 from sim.diagnosis.timeline_view import TimelineView
 from sim.trace.events import EntityId, ThreadId
-from sim.trace.model import Entity, Nanoseconds
+from sim.trace.model import EntityInfo, Nanoseconds
 from sim.trace.timeline import Timeline
 
 
@@ -107,6 +107,6 @@ def place_of(entity: EntityId, timeline: Timeline) -> CodeLocation | None:
     return CodeLocation(known.file, known.first_line, known.last_line)
 
 
-def entity_of(found: Finding, timeline: Timeline) -> Entity:
+def entity_of(found: Finding, timeline: Timeline) -> EntityInfo:
     """The entity that a finding is about."""
     return timeline.entities[found.subject]

@@ -9,7 +9,7 @@ from operator import attrgetter
 
 from sim.trace.events import EntityId, EntityKind, NodeId, ProcessId, Reason, ThreadId
 from sim.trace.figures.concurrency import Concurrency
-from sim.trace.model import Blocked, Call, Entity, Moment, Nanoseconds, Span, Wait, Window
+from sim.trace.model import Blocked, Call, EntityInfo, Moment, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
 
@@ -58,7 +58,7 @@ class TimelineView:
         """The most threads that ran callbacks at once since the run began."""
         return self._concurrency.peak(self.end)
 
-    def end_of_program(self, entity: Entity) -> Nanoseconds | None:
+    def end_of_program(self, entity: EntityInfo) -> Nanoseconds | None:
         """When the program of an entity's node ended; None while it runs, or if it is unknown."""
         ended = self.timeline.processes_ended
         if not ended:
@@ -81,7 +81,7 @@ class TimelineView:
         """The calls that have no reply yet."""
         return frozenset(call.id for call in self.now.pending_calls)
 
-    def entities(self, *kinds: EntityKind) -> Iterator[Entity]:
+    def entities(self, *kinds: EntityKind) -> Iterator[EntityInfo]:
         """The entities that were or are active in the window, of some kinds (none given: of all).
 
         Idle entities break no rule, and cost nothing.
@@ -89,7 +89,7 @@ class TimelineView:
         return (each for each in self._active if not kinds or each.kind in kinds)
 
     @cached_property
-    def _active(self) -> list[Entity]:
+    def _active(self) -> list[EntityInfo]:
         entities, active = self.timeline.entities, self.timeline.active_since(self.window.start)
         return [entities[each] for each in sorted(active)]
 

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from itertools import count
 
-from sim.clock import Clock, VirtualClock
+from sim.clock import RunClock, VirtualClock
 from sim.engine.watchdogs.function_integrity import FunctionIntegrity
 from sim.ros.middleware.contents import Contents
 from sim.trace.events import AnyEvent, RunEnded, TimePassed
@@ -19,7 +19,7 @@ class Batches:
     ``key`` is what the trace is sealed with, b"" for nothing.
     """
 
-    def __init__(self, clock: Clock, contents: Contents, key: bytes) -> None:
+    def __init__(self, clock: RunClock, contents: Contents, key: bytes) -> None:
         self._clock = clock
         self._contents = contents
         self._seal = Seal(key) if key else None

@@ -8,12 +8,12 @@ from multiprocessing.connection import Connection
 
 import msgspec
 
-from sim.clock import Clock, VirtualClock
+from sim.clock import RunClock, VirtualClock
 from sim.engine import commands
 from sim.engine.programs.ros2_lines import Lines
 from sim.engine.requests import Requests
 from sim.engine.setup import RunSetup
-from sim.engine.shutdown import Cause, Shutdown
+from sim.engine.shutdown import Cause, RunShutdown
 from sim.engine.stdio.terminal import Terminal
 from sim.engine.time_control import RealControl, VirtualControl
 from sim.ros.middleware.contents import Contents
@@ -29,10 +29,10 @@ class CommandLoop:
     def __init__(
         self,
         pipe: Connection,
-        clock: Clock,
+        clock: RunClock,
         record: Callable[[AnyEvent], None],
         control: RealControl | VirtualControl,
-        shutdown: Shutdown,
+        shutdown: RunShutdown,
         contents: Contents,
         requests: Requests,
         lines: Lines,
@@ -109,7 +109,7 @@ class CommandLoop:
                 self._lines.interrupt(line)
             case commands.CompleteLine(line=line, text=text, cursor=cursor):
                 self._lines.complete(line, text, cursor)
-            case commands.Type(text=text, ends=ends):
+            case commands.TerminalInput(text=text, ends=ends):
                 self._type(text, ends=ends)
             case commands.ResetWorld():
                 self._requests.reset_world()

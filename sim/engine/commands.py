@@ -64,7 +64,7 @@ class CompleteLine(msgspec.Struct, frozen=True, tag="complete"):
     cursor: int
 
 
-class Type(msgspec.Struct, frozen=True, tag="type"):
+class TerminalInput(msgspec.Struct, frozen=True, tag="type"):
     """Type text at the terminal of the run's programs; with ``ends``, no more will come."""
 
     text: str
@@ -87,7 +87,9 @@ class Stop(msgspec.Struct, frozen=True, tag="stop"):
 
 PaceCommand: TypeAlias = Pause | Resume | SetSpeed | Step | RunUntil
 
-InputCommand: TypeAlias = CallService | RunLine | InterruptLine | Type | ResetWorld | KeepContents | Stop
+InputCommand: TypeAlias = (
+    CallService | RunLine | InterruptLine | TerminalInput | ResetWorld | KeepContents | Stop
+)
 """What changes a run: given again at the same moments, it brings about the same events."""
 
 WorldCommand: TypeAlias = InputCommand | CompleteLine

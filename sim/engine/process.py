@@ -15,11 +15,12 @@ from typing import TYPE_CHECKING, NoReturn
 import msgspec
 
 from sim import clean_start
-from sim.clock import Clock, PacedClock, VirtualClock
+from sim.clock import PacedClock, RunClock, VirtualClock
 from sim.clock.paced_stdlib import follow
 from sim.clock.schedule import schedule_of
 from sim.clock.stdlib import live_on
 from sim.engine.batches import Batches
+from sim.engine.callback_overrides import overrides_of
 from sim.engine.command_loop import CommandLoop
 from sim.engine.failures.crash_dump import enable_crash_dump, exit_unless_renewed
 from sim.engine.failures.failure import breakdown, is_learners
@@ -30,7 +31,7 @@ from sim.engine.programs.children import allow_children, refuse_children
 from sim.engine.programs.ending import finalise, set_engine_apart
 from sim.engine.programs.exit_functions import share_exit_functions
 from sim.engine.programs.program import ProgramOutcome
-from sim.engine.programs.programs import Programs
+from sim.engine.programs.programs import ProgramSupervisor
 from sim.engine.programs.ros2_lines import Lines
 from sim.engine.programs.set_up_programs import run_programs
 from sim.engine.programs.starting import Starter
@@ -38,12 +39,11 @@ from sim.engine.programs.workspace_imports import use_workspace
 from sim.engine.requests import Requests
 from sim.engine.robot import provide_robot
 from sim.engine.setup import RunSetup
-from sim.engine.shutdown import Cause, Shutdown
+from sim.engine.shutdown import Cause, RunShutdown
 from sim.engine.stdio.descriptors import Descriptors, leave_terminal
 from sim.engine.stdio.redirection import redirect_output
 from sim.engine.stdio.terminal import Terminal
 from sim.engine.time_control import RealControl, VirtualControl
-from sim.engine.tuning import tuning_of
 from sim.engine.watchdogs.endless_waits import EndlessWaits
 from sim.engine.watchdogs.hung_callbacks import HungCallbacks
 from sim.engine.watchdogs.outside_time import Watchdog
@@ -77,7 +77,7 @@ class Engine:
             if setup.clock == "virtual"
             else PacedClock(setup.speed or 1.0)
         )
-        self._clock: Clock = clock
+        self._clock: RunClock = clock
         virtual = clock if isinstance(clock, VirtualClock) else None
         make_room = None if virtual is None else self._make_room
         self._contents = Contents(wanted=setup.contents, make_room=make_room)
@@ -94,14 +94,14 @@ class Engine:
             RealControl(clock, record) if isinstance(clock, PacedClock) else VirtualControl(clock, record)
         )
         self._probe = Probe(clock, control.record, self._contents)
-        self._host = Host(clock, self._probe, threads=setup.threads, tuning=tuning_of(setup))
+        self._host = Host(clock, self._probe, threads=setup.threads, overrides=overrides_of(setup))
         self._endless = None if virtual is None else EndlessWaits(virtual, self._host, record)
         self._descriptors = Descriptors(lambda text, error: record(Printed(clock.now(), text, error)))
-        self._programs = Programs(self._host, record)
+        self._programs = ProgramSupervisor(self._host, record)
         self._starter = Starter(self._programs, setup, _launch)
         self._lines = Lines(self._host, record, self._starter, self._programs.look)
         self._terminal = Terminal(clock, record, setup.keyboard, len(setup.typed))
-        self._shutdown = Shutdown(
+        self._shutdown = RunShutdown(
             setup.title,
             clock,
             self._host,
@@ -221,7 +221,7 @@ def _ignore(_what: object) -> None:
 
 
 def _launch(
-    programs: Programs, starter: Starter, path: Path, arguments: Sequence[str], on_exit: "OnExit"
+    programs: ProgramSupervisor, starter: Starter, path: Path, arguments: Sequence[str], on_exit: "OnExit"
 ) -> "Running":
     from sim.engine.programs.launching import Launching  # most runs launch nothing, and begin the sooner
 

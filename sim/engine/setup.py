@@ -80,8 +80,8 @@ class ProgramSetup(msgspec.Struct, frozen=True):
 class GroupChange(msgspec.Struct, frozen=True):
     """Another callback group for one callback of a node ("": of any), by their names on the trace.
 
-    ``wish`` is ``own``, ``shared``, ``reentrant`` or ``default``, see
-    ``sim.ros.middleware.tuning.GroupChoice``. For what has no callback, ``callback`` is its topic or service.
+    ``wish`` is a value of ``sim.ros.middleware.callback_overrides.GroupChoice``. For what has no callback,
+    ``callback`` is its topic or service.
     """
 
     node: str

@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from functools import partial
 from typing import NoReturn
 
-from sim.clock import Clock, VirtualClock
+from sim.clock import RunClock, VirtualClock
 from sim.engine.outbox import Outbox
 from sim.engine.programs.ending import GRACE, VIRTUAL_GRACE, flush_files_soon
 from sim.engine.programs.program import STOPPED, ProgramOutcome, threads_left_by
-from sim.engine.programs.programs import Programs
+from sim.engine.programs.programs import ProgramSupervisor
 from sim.engine.programs.starting import Starter
 from sim.engine.stdio.descriptors import Descriptors
 from sim.engine.stdio.output import finish_lines
@@ -42,17 +42,17 @@ class Cause:
     time_was_up: bool = False
 
 
-class Shutdown:
+class RunShutdown:
     """Ends a run. Thread-safe: a command, a watchdog, the clock and the program itself may all ask for it."""
 
     def __init__(
         self,
         title: str,
-        clock: Clock,
+        clock: RunClock,
         host: Host,
         outbox: Outbox,
         control: RealControl | VirtualControl,
-        programs: Programs,
+        programs: ProgramSupervisor,
         starter: Starter,
         descriptors: Descriptors,
         endless: EndlessWaits | None,
@@ -120,9 +120,9 @@ class Shutdown:
         self._cause = cause
         if self._endless is not None:
             self._endless.finish()
-        if self._host.tuning is not None and not cause.failed:
+        if self._host.overrides is not None and not cause.failed:
             with self._host.lock:
-                for sentence in self._host.tuning.unmet():
+                for sentence in self._host.overrides.unmet():
                     self._tell(Severity.WARN, sentence)
         return True
 

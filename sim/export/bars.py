@@ -4,7 +4,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Generic, TypeVar
 
-from sim.trace.model import Entity, Group, Nanoseconds, Span, Thread, Wait, Window
+from sim.trace.model import EntityInfo, GroupInfo, Nanoseconds, Span, ThreadInfo, Wait, Window
 from sim.trace.timeline import Timeline
 
 _VISIBLE = 0.4
@@ -13,7 +13,7 @@ _NARROWEST = 0.8
 
 
 @dataclass(frozen=True, slots=True)
-class TimeScale:
+class PixelScale:
     """Maps the times of a window to pixels from ``left`` to ``right``."""
 
     window: Window
@@ -39,7 +39,7 @@ class Bar(Generic[IntervalT]):
     interval: IntervalT
 
 
-def rows(timeline: Timeline, window: Window) -> Iterator[Thread | Group | Entity]:
+def rows(timeline: Timeline, window: Window) -> Iterator[ThreadInfo | GroupInfo | EntityInfo]:
     """All threads, then each group with its entities that have a callback, a call or a wait."""
     yield from timeline.threads.values()
     for group in timeline.groups.values():
@@ -50,7 +50,7 @@ def rows(timeline: Timeline, window: Window) -> Iterator[Thread | Group | Entity
                 yield entity
 
 
-def bars(intervals: Iterable[IntervalT], scale: TimeScale, end: Nanoseconds) -> Iterator[Bar[IntervalT]]:
+def bars(intervals: Iterable[IntervalT], scale: PixelScale, end: Nanoseconds) -> Iterator[Bar[IntervalT]]:
     """The bars of intervals in order of start, at most a few for each pixel and level.
 
     Open intervals end at ``end``.
@@ -72,7 +72,9 @@ def bars(intervals: Iterable[IntervalT], scale: TimeScale, end: Nanoseconds) -> 
         yield Bar(left, right, level, interval)
 
 
-def losses(timeline: Timeline, entity: Entity, scale: TimeScale, step: float) -> Iterator[tuple[float, int]]:
+def losses(
+    timeline: Timeline, entity: EntityInfo, scale: PixelScale, step: float
+) -> Iterator[tuple[float, int]]:
     """Position and number of an entity's lost messages, summed over ``step`` pixels."""
     window = scale.window
     buckets = max(1, int((scale.right - scale.left) / step))

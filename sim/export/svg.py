@@ -5,12 +5,12 @@ from itertools import pairwise
 
 from sim.durations import duration
 from sim.export import svg_elements as draw
-from sim.export.bars import Bar, TimeScale, bars, losses, rows, ticks
+from sim.export.bars import Bar, PixelScale, bars, losses, rows, ticks
 from sim.export.svg_elements import Box
 from sim.export.texts import seconds, xml
 from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import GroupKind, Reason
-from sim.trace.model import Entity, Group, Nanoseconds, Span, Thread, Wait, Window
+from sim.trace.model import EntityInfo, GroupInfo, Nanoseconds, Span, ThreadInfo, Wait, Window
 from sim.trace.timeline import Timeline
 from sim.units import SECOND
 
@@ -44,7 +44,7 @@ class _Picture:
         self._window = window
         self._width = width
         self._height = float(row_height)
-        self._scale = TimeScale(window, LABELS + MARGIN, width - MARGIN)
+        self._scale = PixelScale(window, LABELS + MARGIN, width - MARGIN)
         self._numbers = {group: number for number, group in enumerate(timeline.groups)}
 
     def lines(self) -> Iterator[str]:
@@ -55,7 +55,7 @@ class _Picture:
         y += 18
         top = y
         for row in rows(self._timeline, self._window):
-            y += _GAP if isinstance(row, Entity) else 2.5 * _GAP
+            y += _GAP if isinstance(row, EntityInfo) else 2.5 * _GAP
             body += self._row(row, y)
             y += self._height
         body += self._marks(top, y)
@@ -87,34 +87,34 @@ class _Picture:
 
     # rows
 
-    def _row(self, row: Thread | Group | Entity, y: float) -> Iterator[str]:
+    def _row(self, row: ThreadInfo | GroupInfo | EntityInfo, y: float) -> Iterator[str]:
         yield draw.ground(Box(self._scale.left, y, self._scale.right - self._scale.left, self._height))
-        indent = 14.0 if isinstance(row, Entity) else 0.0
+        indent = 14.0 if isinstance(row, EntityInfo) else 0.0
         label = draw.shortened(self._label(row), LABELS - indent - 6)
-        weight = "" if isinstance(row, Entity) else "bold"
+        weight = "" if isinstance(row, EntityInfo) else "bold"
         yield draw.words(MARGIN + indent, y + self._height / 2 + 4, label, weight=weight)
-        if isinstance(row, Thread):
+        if isinstance(row, ThreadInfo):
             yield from self._thread(row, y)
-        elif isinstance(row, Group):
+        elif isinstance(row, GroupInfo):
             yield from self._group(row, y)
         else:
             yield from self._entity(row, y)
 
-    def _label(self, row: Thread | Group | Entity) -> str:
-        if isinstance(row, Thread):
+    def _label(self, row: ThreadInfo | GroupInfo | EntityInfo) -> str:
+        if isinstance(row, ThreadInfo):
             return row.name
-        if isinstance(row, Group):
+        if isinstance(row, GroupInfo):
             return f"{row.letter} {row.kind.value} {self._timeline.nodes.get(row.node, '')}"
         return row.spoken_name
 
-    def _thread(self, thread: Thread, y: float) -> Iterator[str]:
+    def _thread(self, thread: ThreadInfo, y: float) -> Iterator[str]:
         spans = self._timeline.spans_on(thread.id, self._window)
         for bar in self._bars(spans):
             inset = min(bar.level, _LEVELS) * self._height / 8
             box = Box(bar.left, y + inset, bar.right - bar.left, self._height - 2 * inset)
             yield from self._call(bar, box, self._names(bar))
 
-    def _group(self, group: Group, y: float) -> Iterator[str]:
+    def _group(self, group: GroupInfo, y: float) -> Iterator[str]:
         found = list(self._bars(self._timeline.spans_in(group.id, self._window)))
         levels = 1 + min(_LEVELS - 1, max((bar.level for bar in found), default=0))
         verb = "held by" if group.kind is GroupKind.EXCLUSIVE else "runs"
@@ -125,7 +125,7 @@ class _Picture:
             name = name_of(bar.interval.entity, self._timeline)
             yield from self._call(bar, box, (f"{verb} {name}", name) if levels == 1 else ())
 
-    def _entity(self, entity: Entity, y: float) -> Iterator[str]:
+    def _entity(self, entity: EntityInfo, y: float) -> Iterator[str]:
         height = self._height
         waits = self._timeline.waits_of(entity.id, self._window)
         for wait in bars(waits, self._scale, self._timeline.end):

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from sim.export.texts import printable
 from sim.export.trace_sink import TraceSink, Track, TrackId, TrackKind
 from sim.trace.events import EntityId, EntityKind, GroupId, NodeId, ProcessId, ThreadAppeared, ThreadId
-from sim.trace.model import Entity, Nanoseconds
+from sim.trace.model import EntityInfo, Nanoseconds
 from sim.trace.participants import Participants
 
 GROUPS = "callback groups"
@@ -140,7 +140,7 @@ class TrackLayout:
         self._counters[name] = (track, value)
         self._sink.count(track, t, value)
 
-    def _make_entity(self, entity: EntityId, known: Entity | None) -> EntityTracks:
+    def _make_entity(self, entity: EntityId, known: EntityInfo | None) -> EntityTracks:
         if known is None:
             return EntityTracks(f"callback {entity}", 0, None, 0, {"entity": f"entity {entity}"})
         args: dict[str, str | int | float] = {"entity": known.kind.value}

@@ -56,7 +56,7 @@ _PADDINGS = {size: tuple(bytes(-place % size) for place in range(8)) for size in
 
 
 @frozen
-class _Step:
+class _WriteStep:
     """``write`` appends what ``get`` returns of a message."""
 
     get: Callable[[Any], Any]
@@ -97,7 +97,7 @@ def _flat_encoder(numbers: Sequence[_Number]) -> Encode:
     return lambda message: pack(_LITTLE_ENDIAN, *get(message))
 
 
-def _pieces(interface: Interface, path: str) -> Iterator[_Number | _Step]:
+def _pieces(interface: Interface, path: str) -> Iterator[_Number | _WriteStep]:
     """What a message consists of, in order, with the messages in it taken apart."""
     for name, of in interface.types.items():
         slot = f"{path}_{name}"
@@ -106,12 +106,12 @@ def _pieces(interface: Interface, path: str) -> Iterator[_Number | _Step]:
         elif isinstance(of, BasicType):
             yield _Number(slot, _FORMATS[of.typename])
         else:
-            yield _Step(attrgetter(slot), _writer(name, of, interface))
+            yield _WriteStep(attrgetter(slot), _writer(name, of, interface))
     if not interface.types:
-        yield _Step(_nothing, _write_filler)
+        yield _WriteStep(_nothing, _write_filler)
 
 
-def _steps(pieces: Sequence[_Number | _Step]) -> Iterator[_Step]:
+def _steps(pieces: Sequence[_Number | _WriteStep]) -> Iterator[_WriteStep]:
     """Put numbers that follow each other together."""
     run: list[_Number] = []
     for piece in pieces:
@@ -119,11 +119,11 @@ def _steps(pieces: Sequence[_Number | _Step]) -> Iterator[_Step]:
             run.append(piece)
             continue
         if run:
-            yield _Step(_getter(run), _write_run(run))
+            yield _WriteStep(_getter(run), _write_run(run))
             run = []
         yield piece
     if run:
-        yield _Step(_getter(run), _write_run(run))
+        yield _WriteStep(_getter(run), _write_run(run))
 
 
 def _getter(numbers: Sequence[_Number]) -> Callable[[Any], Any]:

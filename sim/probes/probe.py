@@ -27,7 +27,7 @@ from sim.trace.events import (
 )
 
 if TYPE_CHECKING:
-    from sim.clock import Clock
+    from sim.clock import RunClock
 
 
 class _Here(threading.local):
@@ -47,7 +47,7 @@ class Probe:
     visible = True
 
     def __init__(
-        self, clock: "Clock", sink: Callable[[AnyEvent], None], contents: MessageContents | None = None
+        self, clock: "RunClock", sink: Callable[[AnyEvent], None], contents: MessageContents | None = None
     ) -> None:
         self._now = clock.now
         self._sink = sink
@@ -290,7 +290,7 @@ class SilentProbe(Probe):
 
     visible = False
 
-    def __init__(self, clock: "Clock") -> None:
+    def __init__(self, clock: "RunClock") -> None:
         super().__init__(clock, _forget)
 
     def place_of_call(self) -> tuple[str, int]:
@@ -304,7 +304,7 @@ class PublishingProbe(SilentProbe):
     ``with_calls`` has it record the calls of services too, as of a line in the shell.
     """
 
-    def __init__(self, clock: "Clock", program: Probe, *, with_calls: bool = False) -> None:
+    def __init__(self, clock: "RunClock", program: Probe, *, with_calls: bool = False) -> None:
         super().__init__(clock)
         self._program = program
         self._with_calls = with_calls

@@ -298,7 +298,7 @@ class RealEngine:
             case commands.ResetWorld():
                 self._record(CommandGiven(0, "reset the world", CommandKind.CALL))
                 self._caller.say(["std_srvs/srv/Empty", ["/reset_world"], {}])
-            case commands.Type(text=text, ends=ends):
+            case commands.TerminalInput(text=text, ends=ends):
                 self._type(text, ends=ends)
             case commands.RunLine(line=line, text=text):
                 self._refuse_line(line, text)

@@ -16,7 +16,6 @@ from sim.trace.events import (
     EntityAppeared,
     EntityGone,
     EntityReady,
-    Event,
     EventsLost,
     NodeAppeared,
     Published,
@@ -24,6 +23,7 @@ from sim.trace.events import (
     ServiceCalled,
     ServiceReplied,
     ThreadAppeared,
+    TraceEvent,
     WaitEnded,
     WaitStarted,
 )
@@ -144,7 +144,7 @@ class Translation:
             case CallbackStarted(message=call) if call:
                 number, left = arrivals.reply_taken(line.entity, self._calls.get(call, 0))
                 yield msgspec.structs.replace(line, t=t, message=number, depth=left)
-            case Event():
+            case TraceEvent():
                 if isinstance(line, EntityAppeared):
                     arrivals.appeared(line)
                 elif isinstance(line, EntityGone):

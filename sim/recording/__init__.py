@@ -2,7 +2,7 @@
 
 from sim.recording.background import BackgroundRecorder
 from sim.recording.metadata import RecordingMetadata
-from sim.recording.recorder import Recorder
+from sim.recording.recorder import RecordingWriter
 from sim.recording.recording import RecordedMessage, Recording, RecordingError, Topic, read
 from sim.recording.snapshot import RunSnapshot
 
@@ -11,7 +11,7 @@ __all__ = [
     "BackgroundRecorder",
     "RunSnapshot",
     "RecordedMessage",
-    "Recorder",
+    "RecordingWriter",
     "Recording",
     "RecordingError",
     "Topic",

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from queue import SimpleQueue
 from typing import TypeAlias
 
-from sim.recording.recorder import APPEARING, Recorder
+from sim.recording.recorder import APPEARING, RecordingWriter
 from sim.trace.events import AnyEvent, MessageSent, Notice, Severity, TimePassed
 
 _ROOM = 64_000_000
@@ -25,7 +25,7 @@ class BackgroundRecorder:
     an interpreter that exits closes the recorder too.
     """
 
-    def __init__(self, recorder: Recorder, room: int = _ROOM) -> None:
+    def __init__(self, recorder: RecordingWriter, room: int = _ROOM) -> None:
         self.path = recorder.path
         self.count = 0
         """How many events are recorded, or will be."""

@@ -13,7 +13,7 @@ from mcap.writer import CompressionType, Writer
 from sim.recording import batch
 from sim.recording.growing_file import GrowingFile
 from sim.recording.metadata import NAME, RecordingMetadata, to_metadata
-from sim.recording.source_files import SourceFiles
+from sim.recording.source_files import SourceAttachments
 from sim.trace.events import (
     AnyEvent,
     ArenaShown,
@@ -60,7 +60,7 @@ APPEARING = (
 """Events that introduce participants."""
 
 
-class Recorder:
+class RecordingWriter:
     """Records events, and messages with their topics, to a new ``.mcap`` file. Thread-safe.
 
     Rosbag2, rosbags and Foxglove can read the topics, which have rosbag2's metadata. Events are on a channel
@@ -92,7 +92,7 @@ class Recorder:
         # Of a stream, the library wants these few methods only.
         stream: Any = self._file
         self._writer: Any = Writer(stream, chunk_size=sys.maxsize, compression=CompressionType.LZ4)
-        self._sources = SourceFiles()
+        self._sources = SourceAttachments()
         self._flusher = threading.Thread(target=self._flush_for_ever, name="recorder", daemon=True)
         self._guarded(lambda: self._begin(about))
         self._flusher.start()
@@ -248,14 +248,14 @@ class Recorder:
             )
 
 
-_HANDLERS: dict[type, Callable[[Recorder, Any], bool]] = {
-    **dict.fromkeys(APPEARING, Recorder._appeared),
-    RunStarted: Recorder._run_started,
-    EntityAppeared: Recorder._entity_appeared,
-    CallbackFailed: Recorder._callback_failed,
-    TimePassed: Recorder._time_passed,
-    TopicAppeared: Recorder._topic,
-    MessageSent: Recorder._message,
+_HANDLERS: dict[type, Callable[[RecordingWriter, Any], bool]] = {
+    **dict.fromkeys(APPEARING, RecordingWriter._appeared),
+    RunStarted: RecordingWriter._run_started,
+    EntityAppeared: RecordingWriter._entity_appeared,
+    CallbackFailed: RecordingWriter._callback_failed,
+    TimePassed: RecordingWriter._time_passed,
+    TopicAppeared: RecordingWriter._topic,
+    MessageSent: RecordingWriter._message,
 }
 
 

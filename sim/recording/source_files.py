@@ -11,7 +11,7 @@ _MOST = 5_000_000
 """Bytes of all files at most."""
 
 
-class SourceFiles:
+class SourceAttachments:
     """A queue of source files to attach, each once and within a limit of bytes."""
 
     def __init__(self) -> None:

@@ -35,7 +35,7 @@ class Window:
 
 
 @dataclass(frozen=True, slots=True)
-class Thread:
+class ThreadInfo:
     """A thread, named as in rclpy; ``process`` is its program's, if there are several.
 
     ``executor`` is the one whose worker it is, 0 for a thread that the program started.
@@ -49,7 +49,7 @@ class Thread:
 
 
 @dataclass(frozen=True, slots=True)
-class Executor:
+class ExecutorInfo:
     """An executor and how many callbacks it can run at once."""
 
     id: ExecutorId
@@ -58,7 +58,7 @@ class Executor:
 
 
 @dataclass(frozen=True, slots=True)
-class Group:
+class GroupInfo:
     """A callback group; letters (A, B, …, Z, A2, …) are assigned in order of appearance."""
 
     id: GroupId
@@ -69,7 +69,7 @@ class Group:
 
 
 @dataclass(frozen=True, slots=True)
-class Entity:
+class EntityInfo:
     """Something with a callback: a timer, subscription, service, client, guard condition or waitable."""
 
     id: EntityId

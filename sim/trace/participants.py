@@ -15,7 +15,7 @@ from sim.trace.events import (
     ThreadAppeared,
     ThreadId,
 )
-from sim.trace.model import Entity, Executor, Group, Nanoseconds, Thread
+from sim.trace.model import EntityInfo, ExecutorInfo, GroupInfo, Nanoseconds, ThreadInfo
 
 
 def letter(place: int) -> str:
@@ -31,14 +31,14 @@ class Participants:
         self.processes: dict[ProcessId, str] = {}
         self.ended: dict[ProcessId, Nanoseconds] = {}
         """The end times of programs, in a run of several."""
-        self.threads: dict[ThreadId, Thread] = {}
-        self.executors: dict[ExecutorId, Executor] = {}
+        self.threads: dict[ThreadId, ThreadInfo] = {}
+        self.executors: dict[ExecutorId, ExecutorInfo] = {}
         self.nodes: dict[NodeId, str] = {}
-        self.groups: dict[GroupId, Group] = {}
-        self.entities: dict[EntityId, Entity] = {}
-        self._members: dict[GroupId, list[Entity]] = {}
+        self.groups: dict[GroupId, GroupInfo] = {}
+        self.entities: dict[EntityId, EntityInfo] = {}
+        self._members: dict[GroupId, list[EntityInfo]] = {}
 
-    def members(self, group: GroupId) -> tuple[Entity, ...]:
+    def members(self, group: GroupId) -> tuple[EntityInfo, ...]:
         """The entities of a group, empty for an unknown one."""
         return tuple(self._members.get(group, ()))
 
@@ -54,11 +54,11 @@ class Participants:
         """Add a thread; among several programs its name is prefixed with its program's label."""
         label = self.processes.get(event.process)
         name = event.name if label is None else f"{label} {event.name}"
-        self.threads[event.thread] = Thread(event.thread, name, event.t, event.process, event.executor)
+        self.threads[event.thread] = ThreadInfo(event.thread, name, event.t, event.process, event.executor)
 
     def add_executor(self, event: ExecutorAppeared) -> None:
         """Add an executor."""
-        self.executors[event.executor] = Executor(event.executor, event.kind, event.threads)
+        self.executors[event.executor] = ExecutorInfo(event.executor, event.kind, event.threads)
 
     def add_node(self, event: NodeAppeared) -> None:
         """Add a node."""
@@ -67,11 +67,11 @@ class Participants:
     def add_group(self, event: GroupAppeared) -> None:
         """Add a callback group with the next letter."""
         name = letter(len(self.groups))
-        self.groups[event.group] = Group(event.group, event.node, event.kind, event.class_name, name)
+        self.groups[event.group] = GroupInfo(event.group, event.node, event.kind, event.class_name, name)
 
-    def add_entity(self, event: EntityAppeared) -> Entity:
+    def add_entity(self, event: EntityAppeared) -> EntityInfo:
         """Add an entity."""
-        entity = Entity(
+        entity = EntityInfo(
             event.entity,
             event.node,
             event.group,

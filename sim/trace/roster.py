@@ -5,7 +5,7 @@ from itertools import islice
 from weakref import WeakKeyDictionary
 
 from sim.trace.events import EntityId, EntityKind, GroupId
-from sim.trace.model import Entity, Group
+from sim.trace.model import EntityInfo, GroupInfo
 from sim.trace.timeline import Timeline
 
 HOUSEKEEPING = frozenset(
@@ -38,7 +38,7 @@ class Roster:
         self.places: dict[tuple[str, int], EntityId] = {}
         """The first entity of each place in the source: several may share a callback."""
         self._sizes: dict[GroupId, int] = {}
-        self._members: dict[GroupId, list[Entity]] = {}
+        self._members: dict[GroupId, list[EntityInfo]] = {}
         self._seen = 0
 
     @property
@@ -50,7 +50,7 @@ class Roster:
         """How many members a group has."""
         return self._sizes.get(group, 0)
 
-    def staged(self, timeline: Timeline) -> Iterator[tuple[Group, list[Entity]]]:
+    def staged(self, timeline: Timeline) -> Iterator[tuple[GroupInfo, list[EntityInfo]]]:
         """The groups with their members, in order, up to ``MOST_LANES`` lanes."""
         left = MOST_LANES
         for group in timeline.groups.values():
@@ -71,7 +71,7 @@ class Roster:
             self._seen = len(timeline.entities)
         return self
 
-    def _add(self, entity: Entity) -> None:
+    def _add(self, entity: EntityInfo) -> None:
         size = self._sizes.get(entity.group, 0)
         self._sizes[entity.group] = size + 1
         self.lanes += 2 if size == 1 else 1

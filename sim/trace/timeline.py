@@ -19,15 +19,15 @@ from sim.trace.model import (
     AxisMark,
     Blocked,
     Call,
-    Entity,
-    Executor,
-    Group,
+    EntityInfo,
+    ExecutorInfo,
+    GroupInfo,
     Moment,
     Nanoseconds,
     Publication,
     Queue,
     Span,
-    Thread,
+    ThreadInfo,
     Wait,
     Window,
 )
@@ -57,17 +57,17 @@ class Timeline:
             UntilEnding().cut if until_ending else iter
         )
         self._moment: Moment | None = None
-        self.threads: dict[ThreadId, Thread] = run.participants.threads
+        self.threads: dict[ThreadId, ThreadInfo] = run.participants.threads
         """The threads, in order of appearance."""
         self.processes_ended: dict[ProcessId, Nanoseconds] = run.participants.ended
         """When programs ended, in a run of several."""
-        self.executors: dict[ExecutorId, Executor] = run.participants.executors
+        self.executors: dict[ExecutorId, ExecutorInfo] = run.participants.executors
         """The executors, in order of appearance."""
         self.nodes: dict[NodeId, str] = run.participants.nodes
         """The names of the nodes, in order of appearance."""
-        self.groups: dict[GroupId, Group] = run.participants.groups
+        self.groups: dict[GroupId, GroupInfo] = run.participants.groups
         """The callback groups, in order of appearance, which is the order of their letters."""
-        self.entities: dict[EntityId, Entity] = run.participants.entities
+        self.entities: dict[EntityId, EntityInfo] = run.participants.entities
         """The entities, in order of appearance, including destroyed ones."""
         self.services_called: Collection[str] = run.calls.services
         """The services that were called, in order of their first calls."""
@@ -135,7 +135,7 @@ class Timeline:
         """Time of the latest event, 0 for an empty timeline."""
         return self._run.end
 
-    def group_members(self, group: GroupId) -> tuple[Entity, ...]:
+    def group_members(self, group: GroupId) -> tuple[EntityInfo, ...]:
         """The entities of a group."""
         return self._run.participants.members(group)
 

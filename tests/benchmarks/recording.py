@@ -17,7 +17,7 @@ from cbtui.runs.setup.lesson_setup import RunRequest, setup_for
 from lessons.catalogue import find
 from sim.engine.setup import RobotUse, RunSetup
 from sim.interfaces import to_cdr
-from sim.recording import Recorder, RecordingMetadata, RunSnapshot, read
+from sim.recording import RecordingMetadata, RecordingWriter, RunSnapshot, read
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,
@@ -75,7 +75,7 @@ def _tick(t: int, number: int) -> list[AnyEvent]:
 
 def _record(path: Path, seconds: int) -> float:
     """Record so many seconds of a 100 Hz lesson; returns the seconds that an event took."""
-    recorder = Recorder(path, RecordingMetadata(title="hundred"))
+    recorder = RecordingWriter(path, RecordingMetadata(title="hundred"))
     recorder.take([RunStarted(0, "hundred", "virtual", 0)])
     recorder.take([TopicAppeared(0, 1, "/n", "std_msgs/msg/Int32", "int32 data\n")])
     took, events = 0.0, 0
@@ -116,7 +116,7 @@ def _share(setup: RunSetup, seconds: int) -> float:
     plain = msgspec.structs.replace(setup, until=seconds * 1_000_000_000)
     recorded = msgspec.structs.replace(plain, contents=True)
     with TemporaryDirectory() as folder:
-        recorder = Recorder(Path(folder) / "run.mcap", RecordingMetadata(title="hundred"))
+        recorder = RecordingWriter(Path(folder) / "run.mcap", RecordingMetadata(title="hundred"))
         timelines = Timeline(), Timeline()
 
         def take(events: list[AnyEvent]) -> None:

@@ -54,7 +54,7 @@ def test_what_is_injected_into_a_paced_run_happens_between_its_jumps() -> None:
 
 def test_what_is_injected_wakes_a_run_in_which_nobody_sleeps() -> None:
     def program(clock: VirtualClock) -> None:
-        signal = clock.signal()
+        signal = clock.auto_reset_event()
         outside(lambda: clock.time.inject(signal.set))
         assert signal.wait(None)
 
@@ -65,7 +65,7 @@ def test_injected_actions_happen_in_the_order_of_injecting() -> None:
     happened: list[int] = []
 
     def program(clock: VirtualClock) -> None:
-        signal = clock.signal()
+        signal = clock.auto_reset_event()
 
         def orders() -> None:
             for number in range(20):
@@ -114,7 +114,7 @@ def test_a_run_at_rest_says_so() -> None:
     rested: list[bool] = []
 
     def program(clock: VirtualClock) -> None:
-        signal = clock.signal()
+        signal = clock.auto_reset_event()
 
         def watch() -> None:
             while not clock.time.rests:

@@ -130,7 +130,7 @@ def test_a_speed_given_in_a_pause_holds_after_it(clock: PacedClock) -> None:
 
 def test_a_signal_is_heard_in_a_pause(clock: PacedClock) -> None:
     clock.pause()
-    signal = clock.signal()
+    signal = clock.auto_reset_event()
     waiter = Doing(lambda: signal.wait(clock.now() + 1))
     until_it_waits(clock)
     assert waiter.stands()
@@ -139,7 +139,7 @@ def test_a_signal_is_heard_in_a_pause(clock: PacedClock) -> None:
 
 
 def test_a_change_of_pace_is_no_signal(clock: PacedClock) -> None:
-    signal = clock.signal()
+    signal = clock.auto_reset_event()
     waiter = Doing(lambda: signal.wait(3600 * SECOND))
     until_it_waits(clock)
     for _ in range(5):
@@ -151,7 +151,7 @@ def test_a_change_of_pace_is_no_signal(clock: PacedClock) -> None:
 
 
 def test_a_signal_set_before_the_wait_is_not_lost_and_a_wait_clears_it(clock: PacedClock) -> None:
-    signal = clock.signal()
+    signal = clock.auto_reset_event()
     signal.set()
     signal.set()
     assert signal.wait(None)
@@ -159,7 +159,7 @@ def test_a_signal_set_before_the_wait_is_not_lost_and_a_wait_clears_it(clock: Pa
 
 
 def test_many_threads_setting_one_signal_at_once_do_not_fail(clock: PacedClock) -> None:
-    signal = clock.signal()
+    signal = clock.auto_reset_event()
 
     def set_often() -> None:
         for _ in range(200):
@@ -175,13 +175,13 @@ def test_many_threads_setting_one_signal_at_once_do_not_fail(clock: PacedClock) 
 
 
 def test_a_wait_whose_deadline_has_passed_returns_at_once(clock: PacedClock) -> None:
-    assert not clock.signal().wait(0)
+    assert not clock.auto_reset_event().wait(0)
     clock.pause()
-    assert not clock.signal().wait(0)
+    assert not clock.auto_reset_event().wait(0)
 
 
 def test_an_action_is_done_once_its_time_has_come_on_this_clock(clock: PacedClock) -> None:
-    signal = clock.signal()
+    signal = clock.auto_reset_event()
     moments: list[int] = []
 
     def act() -> None:
@@ -248,7 +248,7 @@ def test_time_never_goes_back_for_anybody_whatever_is_done_to_it(clock: PacedClo
 
 def test_signals_are_neither_lost_nor_heard_twice_while_the_pace_changes(clock: PacedClock) -> None:
     """Two threads pass a ball; one that lost it would wait for ever."""
-    there, back = clock.signal(), clock.signal()
+    there, back = clock.auto_reset_event(), clock.auto_reset_event()
     passes = 2000
 
     def answer() -> int:

@@ -78,7 +78,7 @@ def test_threads_that_wake_each_other_for_ever_have_recesses_too() -> None:
     done: list[int] = []
 
     def program(clock: VirtualClock) -> None:
-        signals = clock.signal(), clock.signal()
+        signals = clock.auto_reset_event(), clock.auto_reset_event()
 
         def answer() -> None:
             while True:
@@ -107,7 +107,7 @@ def test_a_recess_of_waits_for_no_time_lasts_until_the_next_deadline_at_most() -
 
 def test_time_stands_for_threads_that_hand_something_on() -> None:
     def program(clock: VirtualClock) -> None:
-        signals = clock.signal(), clock.signal()
+        signals = clock.auto_reset_event(), clock.auto_reset_event()
 
         def answer() -> None:
             for _ in range(2 * WAITS_TO_RECESS):

@@ -485,7 +485,7 @@ PROGRAMS = {
                 how()
             except KeyboardInterrupt:
                 ends.append(how)
-        waits = (lock.acquire, box.get, event.wait, lambda: time.sleep(99), clock.signal().wait)
+        waits = (lock.acquire, box.get, event.wait, lambda: time.sleep(99), clock.auto_reset_event().wait)
         for how in waits[:4]:
             threading.Thread(target=wait, args=(how,), daemon=True).start()
         def interrupt_all():

@@ -70,7 +70,7 @@ def test_threads_with_one_deadline_go_on_in_the_order_in_which_they_went_to_slee
 
 def test_a_signal_set_before_the_wait_is_not_lost_and_a_wait_clears_it() -> None:
     def program(clock: VirtualClock) -> None:
-        signal = clock.signal()
+        signal = clock.auto_reset_event()
         signal.set()
         signal.set()
         assert signal.wait(SECOND)
@@ -84,8 +84,8 @@ def test_a_signal_set_before_the_wait_is_not_lost_and_a_wait_clears_it() -> None
 def test_a_wait_whose_deadline_has_passed_returns_at_once() -> None:
     def program(clock: VirtualClock) -> None:
         clock.sleep(SECOND)
-        assert not clock.signal().wait(SECOND)
-        assert not clock.signal().wait(0)
+        assert not clock.auto_reset_event().wait(SECOND)
+        assert not clock.auto_reset_event().wait(0)
         assert clock.now() == SECOND
 
     on_virtual_time(program)
@@ -93,7 +93,7 @@ def test_a_wait_whose_deadline_has_passed_returns_at_once() -> None:
 
 def test_a_signal_ends_a_wait_before_its_deadline_and_the_old_deadline_wakes_nobody_later() -> None:
     def program(clock: VirtualClock) -> None:
-        signal = clock.signal()
+        signal = clock.auto_reset_event()
         clock.call_at(SECOND, signal.set)
         assert signal.wait(2 * SECOND)
         assert clock.now() == SECOND
@@ -202,7 +202,7 @@ def test_an_interrupt_passes_what_catches_exceptions() -> None:
 def test_an_interrupt_ends_a_wait_for_a_signal_that_nobody_sets() -> None:
     def program(clock: VirtualClock) -> None:
         for _ in range(3):
-            signal = clock.signal()
+            signal = clock.auto_reset_event()
             clock.start_thread(lambda signal=signal: signal.wait(None), "waiter")  # type: ignore[misc]
         clock.sleep(SECOND)
 

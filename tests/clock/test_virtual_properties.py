@@ -77,7 +77,7 @@ def play(plan: Plan) -> tuple[list[Log], list[tuple[int, int]], list[int]]:
     places = count()
     with no_thread_left():
         clock = EndedClock()
-        signals = [clock.signal() for _ in plan]
+        signals = [clock.auto_reset_event() for _ in plan]
 
         def ask(time: int) -> None:
             clock.call_at(time, lambda: actions.append((time, clock.now())))

@@ -11,7 +11,7 @@ import pytest
 
 from cbtui import cli
 from cbtui.runs.recorded.exporting import ExportError, ExportRequest, export
-from sim.recording import Recorder, RecordingMetadata
+from sim.recording import RecordingMetadata, RecordingWriter
 from sim.trace.events import AnyEvent, EntityAppeared, GroupAppeared, RunStarted, ThreadAppeared
 from tests.export.examples import small_run
 from tests.support.runs import shared_group_run
@@ -42,7 +42,7 @@ class Events:
 @pytest.fixture
 def recording(tmp_path: Path) -> Path:
     path = tmp_path / "run.mcap"
-    recorder = Recorder(path, RecordingMetadata(title="small run"))
+    recorder = RecordingWriter(path, RecordingMetadata(title="small run"))
     recorder.take(small_run())
     recorder.close()
     return path
@@ -136,7 +136,7 @@ def test_a_cut_recording_gives_what_it_holds_and_one_sentence(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = tmp_path / "run.mcap"
-    recorder = Recorder(path, RecordingMetadata(title="cut"))
+    recorder = RecordingWriter(path, RecordingMetadata(title="cut"))
     for event in shared_group_run().events:
         recorder.take([event])
     recorder.close()

@@ -17,7 +17,7 @@ from cbtui.runs.headless.program_log import write_line
 from cbtui.runs.headless.standard_input import StandardInput
 from cbtui.terminal.capabilities import charset_of
 from cbtui.text.output import CannotSayError
-from sim.engine.commands import Type
+from sim.engine.commands import TerminalInput
 from sim.trace.events import KeyboardAsked, Reading
 from tests.support.daily import first_daily
 
@@ -53,12 +53,12 @@ def nobodys_input(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatc
 
 @pytest.mark.usefixtures("nobodys_input")
 def test_where_standard_input_has_no_descriptor_a_program_that_reads_gets_its_end() -> None:
-    given: Queue[Type] = Queue()
+    given: Queue[TerminalInput] = Queue()
     before = Process().num_fds()
     keyboard = StandardInput(given.put)
     assert not keyboard.is_terminal
     keyboard.follow([KeyboardAsked(0, Reading.LINES, "node.py")])
-    assert given.get(timeout=60) == Type("", ends=True)
+    assert given.get(timeout=60) == TerminalInput("", ends=True)
     keyboard.close()
     assert Process().num_fds() == before
 

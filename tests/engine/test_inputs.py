@@ -161,7 +161,7 @@ def test_an_input_comes_when_its_moment_ends_and_after_the_effects_of_the_one_be
     def program(simulation: Simulation) -> None:
         clock = simulation.clock
         assert isinstance(clock, VirtualClock)
-        signal = clock.signal()
+        signal = clock.auto_reset_event()
 
         def hear() -> None:
             signal.wait(None)

@@ -195,7 +195,7 @@ def test_a_moment_that_has_passed_is_refused_in_words_and_time_goes_on_as_before
 
 def test_a_step_of_a_run_in_which_nothing_can_happen_any_more_ends_at_once() -> None:
     def nobody_sleeps(simulation: Simulation) -> None:
-        signal = simulation.clock.signal()
+        signal = simulation.clock.auto_reset_event()
         signal.wait(None)
 
     def steering(helm: Helm) -> None:

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 
 from lessons.catalogue import find
-from sim.recording import Recorder, RecordingMetadata, read
+from sim.recording import RecordingMetadata, RecordingWriter, read
 from tests.faults.support import PATIENCE, node_with, nothing_left
 from tests.support.daily import first_daily, first_row_daily
 from tests.support.processes import engines_of
@@ -58,7 +58,7 @@ def files(folder: Path) -> None:
     Path("learners").mkdir()
     shutil.copy(solution, "learners/split_groups_ann.py")
     node_with(folder, "open('reached', 'w')")
-    recorder = Recorder(Path("whole.mcap"), RecordingMetadata(title="whole"))
+    recorder = RecordingWriter(Path("whole.mcap"), RecordingMetadata(title="whole"))
     recorder.take(EVENTS)
     recorder.close()
 

@@ -4,7 +4,7 @@ import pytest
 from textual.dom import DOMNode
 
 from cbtui.app import CbtuiApp
-from cbtui.keys.action import Action, Scope, group_by, method_of
+from cbtui.keys.action import KeyAction, Scope, group_by, method_of
 from cbtui.keys.actions import ACTIONS, actions_of
 from cbtui.keys.bindings import bindings_of
 from cbtui.keys.signs import signs_of
@@ -57,12 +57,12 @@ HOMES: dict[Scope, type[DOMNode]] = {
     [action for action in ACTIONS if action.scope in HOMES],
     ids=lambda action: f"{action.scope}-{action.id}",
 )
-def test_every_action_has_a_method_where_it_works(action: Action) -> None:
+def test_every_action_has_a_method_where_it_works(action: KeyAction) -> None:
     assert hasattr(HOMES[action.scope], f"action_{method_of(action)[0]}")
 
 
 @pytest.mark.parametrize("action", ACTIONS, ids=lambda action: f"{action.scope}-{action.id}")
-def test_no_key_is_one_that_terminals_keep_for_themselves(action: Action) -> None:
+def test_no_key_is_one_that_terminals_keep_for_themselves(action: KeyAction) -> None:
     for key in action.key.split(","):
         assert key not in {"ctrl+j", "ctrl+m", "ctrl+h", "ctrl+i", "ctrl+s"}
         assert "alt" not in key

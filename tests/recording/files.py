@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from sim.recording import Recorder, RecordingMetadata
+from sim.recording import RecordingMetadata, RecordingWriter
 from sim.trace.events import AnyEvent, MessageSent, TimePassed, TopicAppeared
 from sim.trace.timeline import Timeline
 from tests.support.runs import shared_group_run
@@ -26,7 +26,7 @@ def message(t: int, number: int) -> MessageSent:
 
 def write(path: Path, events: Iterable[AnyEvent], about: RecordingMetadata = ABOUT) -> None:
     """Record a batch of events to a new file."""
-    recorder = Recorder(path, about)
+    recorder = RecordingWriter(path, about)
     recorder.take(events)
     recorder.close()
     assert recorder.failure is None
@@ -34,7 +34,7 @@ def write(path: Path, events: Iterable[AnyEvent], about: RecordingMetadata = ABO
 
 def write_in_chunks(path: Path, batches: Iterable[Sequence[AnyEvent]]) -> None:
     """Record batches, each as a chunk of its own."""
-    recorder = Recorder(path, ABOUT)
+    recorder = RecordingWriter(path, ABOUT)
     for events in batches:
         recorder.take(events)
         recorder.flush()

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from sim.recording import BackgroundRecorder, Recorder, RecordingMetadata, read
+from sim.recording import BackgroundRecorder, RecordingMetadata, RecordingWriter, read
 from sim.trace.events import AnyEvent, Notice, RunStarted, Severity, ThreadAppeared
 from tests.recording.files import ABOUT, run_in_batches, without_contents
 
@@ -21,7 +21,7 @@ def kept(path: Path) -> list[AnyEvent]:
 
 
 def test_everything_is_written_when_it_is_closed(tmp_path: Path) -> None:
-    recorder = BackgroundRecorder(Recorder(tmp_path / "run.mcap", ABOUT))
+    recorder = BackgroundRecorder(RecordingWriter(tmp_path / "run.mcap", ABOUT))
     for events in BATCHES:
         recorder.take(events)
     recorder.close()
@@ -31,7 +31,7 @@ def test_everything_is_written_when_it_is_closed(tmp_path: Path) -> None:
     assert (recorder.count, recorder.lost, recorder.failure) == (len(every), 0, None)
 
 
-class Slow(Recorder):
+class Slow(RecordingWriter):
     """A recorder on a disk that stands until it is told to go on."""
 
     def __init__(self, path: Path) -> None:
@@ -68,7 +68,7 @@ def test_what_comes_while_too_much_waits_is_left_out_counted_and_told(tmp_path: 
 
 
 def test_a_disk_that_fails_is_told_and_nobody_waits(tmp_path: Path) -> None:
-    recorder = BackgroundRecorder(Recorder(Path("/dev/full"), ABOUT, replace=True))
+    recorder = BackgroundRecorder(RecordingWriter(Path("/dev/full"), ABOUT, replace=True))
     for events in BATCHES:
         recorder.take(events)
     recorder.close()
@@ -79,8 +79,8 @@ FORGETFUL = """
 import sys
 from pathlib import Path
 from sim.trace.events import RunStarted
-from sim.recording import RecordingMetadata, BackgroundRecorder, Recorder
-recorder = BackgroundRecorder(Recorder(Path(sys.argv[1]), RecordingMetadata(title="forgotten")))
+from sim.recording import RecordingMetadata, BackgroundRecorder, RecordingWriter
+recorder = BackgroundRecorder(RecordingWriter(Path(sys.argv[1]), RecordingMetadata(title="forgotten")))
 recorder.take([RunStarted(0, "forgotten", "real", 0)])
 {ending}
 """

@@ -13,7 +13,7 @@ from pathlib import Path
 import pytest
 from mcap.writer import CompressionType, Writer
 
-from sim.recording import Recorder, Recording, RecordingError, RecordingMetadata, batch, read
+from sim.recording import Recording, RecordingError, RecordingMetadata, RecordingWriter, batch, read
 from sim.trace.events import AnyEvent, ArenaShown, Printed, RunStarted, TopicAppeared
 from sim.trace.figures.summary import summarise
 from sim.trace.figures.summary_text import plain_text
@@ -159,8 +159,8 @@ WRITER = """
 import mmap, sys, time
 from pathlib import Path
 from sim.trace.events import Printed, RunStarted
-from sim.recording import RecordingMetadata, BackgroundRecorder, Recorder
-recorder = Recorder(Path(sys.argv[1]), RecordingMetadata(title="killed"))
+from sim.recording import RecordingMetadata, BackgroundRecorder, RecordingWriter
+recorder = RecordingWriter(Path(sys.argv[1]), RecordingMetadata(title="killed"))
 if sys.argv[2] == "background":
     recorder = BackgroundRecorder(recorder)
 recorder.take([RunStarted(0, "killed", "real", 0)])
@@ -204,7 +204,7 @@ def test_a_recorder_that_is_killed_leaves_all_but_the_last_second(tmp_path: Path
 
 
 def test_what_was_taken_lately_is_written_without_more_coming(tmp_path: Path) -> None:
-    recorder = Recorder(tmp_path / "run.mcap", RecordingMetadata(title="quiet"))
+    recorder = RecordingWriter(tmp_path / "run.mcap", RecordingMetadata(title="quiet"))
     recorder.take(BATCHES[0])
     _until(lambda: list(read(tmp_path / "run.mcap").batches()) == KEPT[:1])
     recorder.close()

@@ -11,7 +11,7 @@ from typing import Any, cast
 import pytest
 
 from cbtui.runs.recorded.events_file import EventsFile
-from sim.recording import Recorder, RecordingError, RecordingMetadata, read, recorder
+from sim.recording import RecordingError, RecordingMetadata, RecordingWriter, read, recorder
 from sim.trace.events import AnyEvent, Notice, Severity
 from tests.recording.files import run_in_batches, without_contents
 from tests.support.daily import first_daily
@@ -66,7 +66,7 @@ def small_chunks(monkeypatch: pytest.MonkeyPatch) -> None:
 def recorded(room: int, batches: list[list[AnyEvent]]) -> tuple[Disk, str | None]:
     """What a recording leaves on a disk with so much room, and why it failed."""
     disk = Disk(room)
-    recording = Recorder(disk.path, RecordingMetadata(title="small disk"))
+    recording = RecordingWriter(disk.path, RecordingMetadata(title="small disk"))
     for events in batches:
         recording.take(events)
     recording.close()
@@ -108,7 +108,7 @@ def test_a_long_program_takes_no_room_from_the_first_events_however_late_they_co
     program = tmp_path / "node.py"
     program.write_text("# a long program\n" * 1000)
     disk = Disk(2000)
-    recording = Recorder(disk.path, RecordingMetadata(programs=(str(program),)))
+    recording = RecordingWriter(disk.path, RecordingMetadata(programs=(str(program),)))
     recording.flush()
     recording.take(BATCHES[0])
     recording.close()
@@ -138,7 +138,7 @@ def test_long_programs_come_after_the_first_events(tmp_path: Path) -> None:
     program = tmp_path / "long.py"
     program.write_text(f"# {os.urandom(50_000).hex()}")
     disk = Disk(20_000)
-    recording = Recorder(disk.path, RecordingMetadata(title="long", programs=(str(program),)))
+    recording = RecordingWriter(disk.path, RecordingMetadata(title="long", programs=(str(program),)))
     recording.take(EVENTS)
     recording.close()
     assert recording.failure == FULL

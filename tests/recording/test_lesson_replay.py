@@ -12,7 +12,7 @@ from cbtui.runs.live.replay import RecordingReader
 from cbtui.runs.setup.lesson_setup import setup_for
 from lessons.catalogue import find
 from sim.engine.setup import TimedCall
-from sim.recording import Recorder, RecordingMetadata, read
+from sim.recording import RecordingMetadata, RecordingWriter, read
 from sim.trace.events import AnyEvent, MessageSent
 from sim.trace.figures.statistics import statistics
 from sim.trace.model import Window
@@ -37,7 +37,7 @@ def lesson() -> Run:
 @pytest.fixture(scope="module")
 def recorded(lesson: Run, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("lesson") / "run.mcap"
-    recorder = Recorder(path, RecordingMetadata(title="shared-group", clock="virtual"))
+    recorder = RecordingWriter(path, RecordingMetadata(title="shared-group", clock="virtual"))
     for start in range(0, len(lesson.events), FLUSHED_EVERY):
         recorder.take(lesson.events[start : start + FLUSHED_EVERY])
         recorder.flush()

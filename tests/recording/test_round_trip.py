@@ -12,7 +12,7 @@ from mcap.reader import make_reader
 from rosbags.highlevel import AnyReader
 from rosbags.interfaces import ConnectionExtRosbag2
 
-from sim.recording import Recorder, RecordingMetadata, read
+from sim.recording import RecordingMetadata, RecordingWriter, read
 from sim.trace.events import AnyEvent, MessageSent, Printed, TimePassed, TopicAppeared
 from sim.trace.model import Window
 from tests.recording.files import (
@@ -163,9 +163,9 @@ def test_a_file_that_is_there_is_not_replaced_unless_that_is_wanted(tmp_path: Pa
     path = tmp_path / "run.mcap"
     path.write_text("precious")
     with pytest.raises(FileExistsError):
-        Recorder(path, ABOUT)
+        RecordingWriter(path, ABOUT)
     assert path.read_text() == "precious"
-    Recorder(path, ABOUT, replace=True).close()
+    RecordingWriter(path, ABOUT, replace=True).close()
     assert read(path).about == ABOUT
 
 
@@ -179,7 +179,7 @@ def test_a_message_of_an_unknown_topic_or_without_contents_is_no_error(tmp_path:
 
 
 def test_a_disk_that_is_full_ends_the_recording_and_says_so() -> None:
-    recorder = Recorder(Path("/dev/full"), ABOUT, replace=True)
+    recorder = RecordingWriter(Path("/dev/full"), ABOUT, replace=True)
     for batch in BATCHES:
         recorder.take(batch)
     recorder.flush()
@@ -192,5 +192,5 @@ def test_sources_that_are_no_short_text_files_stay_behind(tmp_path: Path) -> Non
         (tmp_path / name).write_bytes(content)
     names = ("long.py", "binary.py", "good.py", "none.py", ".")
     path = tmp_path / "run.mcap"
-    Recorder(path, RecordingMetadata(programs=tuple(str(tmp_path / name) for name in names))).close()
+    RecordingWriter(path, RecordingMetadata(programs=tuple(str(tmp_path / name) for name in names))).close()
     assert read(path).sources == {str(tmp_path / "good.py"): "x = 1\n"}

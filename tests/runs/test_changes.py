@@ -19,7 +19,7 @@ from cbtui.runs.setup.shown_program import of_lesson
 from cbtui.screens.setup_rows import rows_of
 from lessons.catalogue import find, lessons
 from sim.engine.setup import GroupChange, PeriodChange, RobotUse, RunSetup
-from sim.ros.middleware.tuning import GroupChoice
+from sim.ros.middleware.callback_overrides import GroupChoice
 from sim.trace.events import EntityKind
 from sim.trace.timeline import Timeline
 from tests.support.runs import Run, dummy_server_run, shared_group_run

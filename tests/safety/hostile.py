@@ -7,7 +7,7 @@ from pathlib import Path
 
 import msgspec
 
-from sim.recording import Recorder, RecordingMetadata
+from sim.recording import RecordingMetadata, RecordingWriter
 from sim.trace.events import AnyEvent
 from tests.export.examples import small_run
 from tests.trace.samples import FULL
@@ -60,7 +60,7 @@ def recording(path: Path, told: Iterable[AnyEvent] | None = None) -> Path:
         version=HOSTILE,
         recorded=2**62,
     )
-    recorder = Recorder(path, about)
+    recorder = RecordingWriter(path, about)
     recorder.take(list(events() if told is None else told))
     recorder.close()
     assert recorder.failure is None

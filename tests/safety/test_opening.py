@@ -21,7 +21,7 @@ from lessons.lesson import BadLesson
 from lessons.progress import Progress
 from sim.packages import PackageError, find_packages
 from sim.plain_yaml import YamlError, load
-from sim.recording import Recorder, Recording, RecordingError, RecordingMetadata, read
+from sim.recording import Recording, RecordingError, RecordingMetadata, RecordingWriter, read
 from sim.ros.context.arguments import ArgumentsError, parse_arguments
 from sim.ros.parameters.yaml_files import ParameterYamlError, read_nodes
 from tests.safety import hostile
@@ -178,7 +178,7 @@ def recording(tmp_path: Path, marks: Marks) -> Path:
     path = tmp_path / "here" / "run.mcap"
     path.parent.mkdir()
     setup = '{"title":"x","programs":[{"path":"../elsewhere/x.py","arguments":[]}],"clock":"virtual"}'
-    recorder = Recorder(
+    recorder = RecordingWriter(
         path, RecordingMetadata(title="../../x", programs=("../elsewhere/x.py", str(theirs)), setup=setup)
     )
     for name in (str(theirs), "../../x", "/../x"):
@@ -231,7 +231,7 @@ def test_a_recording_cannot_have_any_file_of_this_machine_shown(tmp_path: Path, 
 
 def naming(program: str, folder: Path) -> Recording:
     """A recording that names a program and does not hold it."""
-    Recorder(folder / "run.mcap", RecordingMetadata(title="run")).close()
+    RecordingWriter(folder / "run.mcap", RecordingMetadata(title="run")).close()
     opened = read(folder / "run.mcap")
     opened.about = RecordingMetadata(programs=(program,))
     return opened

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
-from sim.clock import Clock
+from sim.clock import RunClock
 from sim.ros.node.node import Node
 from sim.ros.scheduling.executors import SingleThreadedExecutor
 from sim.shell import OnExit, Packages, Running, ShellLine
@@ -37,7 +37,7 @@ class FakeProgram:
 class FakeTools:
     """Keeps what a line says and starts."""
 
-    clock: Clock
+    clock: RunClock
     said: list[Said] = field(default_factory=list)
     statuses: list[int] = field(default_factory=list)
     started: list[tuple[object, ...]] = field(default_factory=list)

@@ -8,7 +8,7 @@ from typing import TypeAlias
 from cbtui.app import CbtuiApp
 from cbtui.runs.compared_runs import ComparedRun, ComparisonTerms
 from lessons.catalogue import lessons
-from sim.recording import Recorder, Recording, RecordingMetadata, read
+from sim.recording import Recording, RecordingMetadata, RecordingWriter, read
 from tests.support.builder import ns
 from tests.support.console import RecordedConsole
 from tests.support.fake_session import FakeEngines
@@ -79,7 +79,7 @@ def program(folder: Path) -> Path:
 
 def recorded(chance: Random, path: Path) -> Recording:
     """A recording at a place."""
-    recorder = Recorder(path, RecordingMetadata(title="shared-group", clock="virtual"))
+    recorder = RecordingWriter(path, RecordingMetadata(title="shared-group", clock="virtual"))
     recorder.take(chance.choice(RUNS))
     recorder.close()
     return read(path)

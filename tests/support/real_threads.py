@@ -36,17 +36,17 @@ class ParallelClock(PacedClock):
     def sleep(self, duration: int) -> None:
         """Let ``duration`` nanoseconds pass."""
         time.sleep(0)
-        self.signal().wait(self._now + duration)
+        self.auto_reset_event().wait(self._now + duration)
 
-    def signal(self) -> "ParallelSignal":  # type: ignore[override]
+    def auto_reset_event(self) -> "ParallelAutoResetEvent":  # type: ignore[override]
         """A new signal, not set."""
-        return ParallelSignal(self)
+        return ParallelAutoResetEvent(self)
 
     def call_at(self, time: int, action: Callable[[], None]) -> None:
         """Run ``action`` on a thread of its own once ``time`` has come."""
 
         def run() -> None:
-            self.signal().wait(time)
+            self.auto_reset_event().wait(time)
             action()
 
         self.start_thread(run, "timer")
@@ -94,7 +94,7 @@ class _Wait:
         self.is_over = False
 
 
-class ParallelSignal:
+class ParallelAutoResetEvent:
     """A signal of a parallel clock."""
 
     def __init__(self, clock: ParallelClock) -> None:

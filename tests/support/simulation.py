@@ -8,7 +8,7 @@ from contextlib import contextmanager, suppress
 from typing import Any, NamedTuple, TypeVar
 
 import sim.ros.rclpy
-from sim.clock import Clock, VirtualClock
+from sim.clock import RunClock, VirtualClock
 from sim.clock.schedule import Schedule
 from sim.probes.probe import Probe, PublishingProbe
 from sim.ros.context.context import Context
@@ -109,7 +109,7 @@ class Trace:
 class Simulation:
     """What a simulated program has at hand. Its context is the default one, and has begun."""
 
-    def __init__(self, clock: Clock) -> None:
+    def __init__(self, clock: RunClock) -> None:
         self.events: list[AnyEvent] = []
         self.clock = clock
         self.host = Host(clock, Probe(clock, self._record))

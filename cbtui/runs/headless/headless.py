@@ -19,7 +19,7 @@ from sim.diagnosis import diagnose, findings_text
 from sim.durations import timestamp
 from sim.engine.commands import Stop
 from sim.engine.setup import Keyboard, RunSetup
-from sim.recording import Recorder
+from sim.recording import RecordingWriter
 from sim.trace.events import AnyEvent
 from sim.trace.figures.summary import summarise
 from sim.trace.figures.summary_text import plain_text
@@ -47,7 +47,7 @@ def run_headless(
             return 2
         if file is not None:
             files.callback(file.close)
-        recorder: Recorder | None = None
+        recorder: RecordingWriter | None = None
         if recording_path is not None:
             try:
                 with deferred_interrupt():
@@ -70,7 +70,7 @@ def run_headless(
 class _Headless:
     """One run, followed on this thread."""
 
-    def __init__(self, setup: RunSetup, file: EventsFile | None, recorder: Recorder | None) -> None:
+    def __init__(self, setup: RunSetup, file: EventsFile | None, recorder: RecordingWriter | None) -> None:
         self._setup = setup
         self._run = FollowedRun(setup, ListeningSession)
         self._timeline = Timeline(until_ending=True)
@@ -169,7 +169,7 @@ class _Headless:
         return 0
 
 
-def _close(recorder: Recorder) -> None:
+def _close(recorder: RecordingWriter) -> None:
     """Finish a recording even if Ctrl-C is pressed meanwhile."""
     with deferred_interrupt():
         recorder.close()

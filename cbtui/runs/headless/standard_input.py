@@ -12,7 +12,7 @@ from contextlib import ExitStack, suppress
 from pathlib import Path
 from typing import Any
 
-from sim.engine.commands import END_OF_INPUT, INTERRUPT, Type
+from sim.engine.commands import END_OF_INPUT, INTERRUPT, TerminalInput
 from sim.trace.events import AnyEvent, KeyboardAsked, Reading
 
 _READ_SIZE = 4096
@@ -25,7 +25,7 @@ class StandardInput:
     ``give`` is called on a thread of its own.
     """
 
-    def __init__(self, give: Callable[[Type], None]) -> None:
+    def __init__(self, give: Callable[[TerminalInput], None]) -> None:
         self._give = give
         self._opened = ExitStack()
         self._descriptor = _descriptor(self._opened)
@@ -81,7 +81,7 @@ class StandardInput:
             if text == latest == INTERRUPT:
                 os.kill(os.getpid(), signal.SIGINT)  # handled on the main thread
             latest = text
-            self._give(Type(text if data or not goes_on else END_OF_INPUT, ends=not goes_on))
+            self._give(TerminalInput(text if data or not goes_on else END_OF_INPUT, ends=not goes_on))
             if not goes_on:
                 return
 

@@ -9,7 +9,7 @@ from typing import TypeAlias
 
 from cbtui.runs.recorded.recording_file import NameTakenError, start_recording
 from sim.engine.setup import RunSetup
-from sim.recording import BackgroundRecorder, Recorder, RunSnapshot
+from sim.recording import BackgroundRecorder, RecordingWriter, RunSnapshot
 from sim.trace.events import AnyEvent
 
 FinishFile: TypeAlias = Callable[[], str]
@@ -63,7 +63,7 @@ class LiveRecording:
         self._recorder.take(self._snapshot.events())
         return f"Recording to {self._recorder.path}; {key} again ends it"
 
-    def _recorder_here(self, tries: int) -> Recorder:
+    def _recorder_here(self, tries: int) -> RecordingWriter:
         try:
             return start_recording(unused_name(self._setup.title), self._setup)
         except NameTakenError:

@@ -21,7 +21,7 @@ from sim.engine.commands import (
     RunUntil,
     SetSpeed,
     Step,
-    Type,
+    TerminalInput,
 )
 from sim.engine.setup import RunSetup
 from sim.trace.events import (
@@ -268,7 +268,7 @@ class LiveRun:
 
     def type(self, text: str) -> None:
         """Type at the terminal of the programs."""
-        self._session.send(Type(text))
+        self._session.send(TerminalInput(text))
 
     def interrupt_line(self) -> None:
         """Interrupt the last line, as Ctrl-C would."""

@@ -8,7 +8,7 @@ from pathlib import Path
 import msgspec
 
 from sim.engine.setup import RunSetup
-from sim.recording import Recorder, RecordingMetadata
+from sim.recording import RecordingMetadata, RecordingWriter
 from sim.units import SECOND
 
 
@@ -20,7 +20,7 @@ class NameTakenError(CannotRecordError):
     """A recording that would have to replace a file."""
 
 
-def start_recording(path: Path, setup: RunSetup, *, replace: bool = False) -> Recorder:
+def start_recording(path: Path, setup: RunSetup, *, replace: bool = False) -> RecordingWriter:
     """Begin to record a run of ``setup``; an existing file is only overwritten with ``replace``.
 
     Raises:
@@ -31,7 +31,7 @@ def start_recording(path: Path, setup: RunSetup, *, replace: bool = False) -> Re
         if path.is_dir():
             raise CannotRecordError(f"cannot record to {path}: it is a folder; name a file in it")
         is_new = not path.exists()
-        recorder = Recorder(path, about(setup), replace=replace)
+        recorder = RecordingWriter(path, about(setup), replace=replace)
     except FileExistsError:
         sentence = f"there is a file {path} already; give another name, or --force to replace it"
         raise NameTakenError(sentence) from None

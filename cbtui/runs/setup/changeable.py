@@ -10,7 +10,7 @@ from lessons.lesson import number_after
 from sim.engine.setup import RobotUse, RunSetup
 from sim.trace.descriptions import executor_label
 from sim.trace.events import EntityKind
-from sim.trace.model import Entity, Nanoseconds
+from sim.trace.model import EntityInfo, Nanoseconds
 from sim.trace.roster import HOUSEKEEPING
 from sim.trace.timeline import Timeline
 
@@ -86,17 +86,17 @@ def callbacks_of(timeline: Timeline) -> dict[CallbackPlace, ChangeableCallback]:
     return found
 
 
-def place_of(entity: Entity, timeline: Timeline) -> CallbackPlace:
+def place_of(entity: EntityInfo, timeline: Timeline) -> CallbackPlace:
     """Return the names by which a change names an entity's callback."""
     return timeline.nodes.get(entity.node, ""), entity.callback or entity.name
 
 
-def _is_programs_own(entity: Entity) -> bool:
+def _is_programs_own(entity: EntityInfo) -> bool:
     named = bool(entity.callback or entity.name)
     return named and entity.kind is not EntityKind.WAITABLE and entity.label not in HOUSEKEEPING
 
 
-def _group_of(entity: Entity, timeline: Timeline) -> str:
+def _group_of(entity: EntityInfo, timeline: Timeline) -> str:
     group = timeline.groups[entity.group]
     others = [
         short_name(member.spoken_name)

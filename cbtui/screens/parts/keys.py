@@ -6,7 +6,7 @@ from typing import Any
 
 from textual.widget import Widget
 
-from cbtui.keys.action import Action, Scope
+from cbtui.keys.action import KeyAction, Scope
 from cbtui.looks.theme import Charset
 from cbtui.screens.layout import Layout
 from cbtui.screens.parts.part import ScreenParts
@@ -54,7 +54,7 @@ class OfferedKeys:
     screen: SizedScreen[Any]
     parts: ScreenParts
     charset: Charset
-    _shown: tuple[Action, ...] = ()
+    _shown: tuple[KeyAction, ...] = ()
 
     def offer(self, action: str, parameters: tuple[object, ...]) -> bool:
         """Tell whether an action is available now."""

@@ -11,7 +11,7 @@ from cbtui.widgets.lanes.names import short_thread
 from sim.durations import duration
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId
-from sim.trace.model import Entity, Moment, Nanoseconds, Span, Window
+from sim.trace.model import EntityInfo, Moment, Nanoseconds, Span, Window
 from sim.trace.roster import roster_of
 from sim.trace.timeline import Timeline
 
@@ -67,7 +67,7 @@ def marks_at(timeline: Timeline, at: Nanoseconds, files: SourceFiles) -> dict[So
     return {file: [marks[line] for line in sorted(marks)] for file, marks in found.items()}
 
 
-def _marked(entity: Entity, timeline: Timeline, moment: Moment) -> CallbackMark:
+def _marked(entity: EntityInfo, timeline: Timeline, moment: Moment) -> CallbackMark:
     group = timeline.groups[entity.group]
     doing, texts, since = _doing(entity, timeline, moment)
     return CallbackMark(
@@ -83,7 +83,7 @@ def _marked(entity: Entity, timeline: Timeline, moment: Moment) -> CallbackMark:
 
 
 def _doing(
-    entity: Entity, timeline: Timeline, moment: Moment
+    entity: EntityInfo, timeline: Timeline, moment: Moment
 ) -> tuple[CallbackActivity, tuple[str, ...], Nanoseconds]:
     running = list(_running(entity.id, moment))
     if running:

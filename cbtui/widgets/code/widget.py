@@ -23,7 +23,7 @@ from cbtui.widgets.code.marks import CallbackActivity, CallbackMark, marks_at
 from cbtui.widgets.code.source_files import SourceFile, SourceFiles
 from cbtui.widgets.inked_view import InkedView
 from sim.trace.events import EntityId, Reason
-from sim.trace.model import Entity, Nanoseconds
+from sim.trace.model import EntityInfo, Nanoseconds
 from sim.trace.timeline import Timeline
 
 _GUTTER = 7
@@ -105,7 +105,7 @@ class CodeView(InkedView):
             self.refresh_lines(line - 1, count)
         self._follow()
 
-    def show_callback(self, entity: Entity) -> None:
+    def show_callback(self, entity: EntityInfo) -> None:
         """Pick a callback's first line and scroll to it, if its source is available."""
         self.show_line(entity.file, entity.first_line)
 

@@ -6,7 +6,7 @@ from cbtui.widgets.factory.canvas import FAINT, PLAIN, STRONG, Canvas
 from cbtui.widgets.factory.scene import FactoryWorker, WorkerState
 from cbtui.widgets.factory.seats import SeatPainter
 from cbtui.widgets.factory.texts import blocked_texts, finished_texts, first_fitting, suspended_texts
-from sim.trace.model import Entity
+from sim.trace.model import EntityInfo
 
 _CHAIR = 7
 _WORDS_AT = _CHAIR + 3
@@ -50,7 +50,7 @@ class LargeSeatPainter(SeatPainter):
         self._seat(self._start + 1, line)
         self._words(("free",), line, FAINT)
 
-    def _kept(self, entity: Entity, line: int, rows: int) -> None:
+    def _kept(self, entity: EntityInfo, line: int, rows: int) -> None:
         self._seat(self._start + 1, line)
         self._words(suspended_texts(entity), line, PLAIN)
 

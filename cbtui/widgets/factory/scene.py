@@ -8,7 +8,7 @@ from functools import cached_property
 from cbtui.widgets.lanes.names import short_thread
 from cbtui.widgets.lanes.rows import GroupLane, MemberLane, SoleLane, ThreadLane, all_lanes, ever_ran
 from sim.trace.events import EntityKind, GroupKind, ThreadId
-from sim.trace.model import Blocked, Entity, Group, Moment, Nanoseconds, Queue, Span, Wait, Window
+from sim.trace.model import Blocked, EntityInfo, GroupInfo, Moment, Nanoseconds, Queue, Span, Wait, Window
 from sim.trace.roster import roster_of
 from sim.trace.timeline import Timeline
 
@@ -56,7 +56,7 @@ class TimerTick:
 class Belt:
     """What brings work for one callback."""
 
-    entity: Entity
+    entity: EntityInfo
     queue: Queue
     wait: Wait | None
     tick: TimerTick | None
@@ -80,11 +80,11 @@ class Area:
     nowhere, such as a suspended coroutine.
     """
 
-    group: Group
+    group: GroupInfo
     number: int
     belts: tuple[Belt, ...]
     visitors: tuple[FactoryWorker, ...]
-    kept: tuple[Entity, ...]
+    kept: tuple[EntityInfo, ...]
     more: int = 0
     """Callbacks of the group that have no belt, where there are more than anybody could look at."""
 
@@ -142,8 +142,8 @@ class _SceneBuilder:
         self._numbers = {group: place for place, group in enumerate(timeline.groups)}
 
     def scene(self) -> FactoryScene:
-        members: dict[int, list[Entity]] = {}
-        groups: dict[int, Group] = {}
+        members: dict[int, list[EntityInfo]] = {}
+        groups: dict[int, GroupInfo] = {}
         workers = []
         for lane in all_lanes(self._timeline, ""):
             match lane:
@@ -196,7 +196,7 @@ class _SceneBuilder:
                 return max(ended, key=lambda span: span.end_at(self._now))
         return None
 
-    def _area(self, group: Group, members: list[Entity], workers: list[FactoryWorker]) -> Area:
+    def _area(self, group: GroupInfo, members: list[EntityInfo], workers: list[FactoryWorker]) -> Area:
         ids = {member.id for member in members}
         visitors = tuple(worker for worker in workers if worker.span and worker.span.entity in ids)
         seated = {worker.span.entity for worker in visitors if worker.inside and worker.span}
@@ -206,12 +206,12 @@ class _SceneBuilder:
         more = roster_of(self._timeline).size(group.id) - len(belts)
         return Area(group, self._numbers[group.id], belts, visitors, kept, more)
 
-    def _belt(self, entity: Entity) -> Belt:
+    def _belt(self, entity: EntityInfo) -> Belt:
         wait = self._moment.waiting.get(entity.id)
         tick = self._tick(entity) if entity.kind is EntityKind.TIMER else None
         return Belt(entity, self._moment.queues.get(entity.id, _NO_QUEUE), wait, tick)
 
-    def _tick(self, timer: Entity) -> TimerTick:
+    def _tick(self, timer: EntityInfo) -> TimerTick:
         """Work out a timer's next due time from its last call, as rcl does: what was missed is left out."""
         period = timer.period
         spans = self._timeline.spans_of(timer.id, Window(self._now - 2 * period, self._now + 1))

@@ -10,7 +10,7 @@ from cbtui.widgets.factory.plan import AreaPlacement, FactoryColumns
 from cbtui.widgets.factory.scene import STEPS, FactoryScene, FactoryWorker, WorkerState
 from cbtui.widgets.factory.texts import blocked_texts, finished_texts, first_fitting, suspended_texts
 from sim.durations import duration
-from sim.trace.model import Entity
+from sim.trace.model import EntityInfo
 
 _FREE_SEATS = 4
 """How many free seats an open area shows: there is always room for more."""
@@ -122,7 +122,7 @@ class SeatPainter:
         self._seat(self._start, line)
         self._canvas.write(self._start + 4, line, "free", FAINT, self._end - self._start - 5)
 
-    def _kept(self, entity: Entity, line: int, rows: int) -> None:
+    def _kept(self, entity: EntityInfo, line: int, rows: int) -> None:
         """Draw a seat that is held by a call which runs on no thread now."""
         self._seat(self._start, line)
         self._canvas.put(self._start + 1, line, self._canvas.glyphs.away, self._line_ink)

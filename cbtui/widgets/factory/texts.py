@@ -9,7 +9,7 @@ from sim.durations import duration
 from sim.plural import counted
 from sim.trace.descriptions import name_of
 from sim.trace.events import EntityKind, GroupKind, Reason
-from sim.trace.model import Entity, Nanoseconds
+from sim.trace.model import EntityInfo, Nanoseconds
 from sim.trace.timeline import Timeline
 
 _LATE_AT_LEAST: Nanoseconds = 1_000_000
@@ -215,7 +215,7 @@ def finished_texts(worker: FactoryWorker, callback: str) -> tuple[str, ...]:
     )
 
 
-def suspended_texts(entity: Entity) -> tuple[str, ...]:
+def suspended_texts(entity: EntityInfo) -> tuple[str, ...]:
     """Say that a call which runs on no thread holds a seat, from the fullest to the shortest."""
     name = entity.spoken_name
     return (f"kept by {name}, which awaits", f"kept by {name}", f"kept: {short_name(name)}")

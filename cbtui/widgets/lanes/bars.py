@@ -14,7 +14,7 @@ from cbtui.widgets.lanes.status import is_late
 from sim.durations import duration
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
-from sim.trace.model import Blocked, Entity, Group, Nanoseconds, Span, Wait
+from sim.trace.model import Blocked, EntityInfo, GroupInfo, Nanoseconds, Span, Wait
 from sim.trace.timeline import Timeline
 
 _WAIT_SHOWS_FROM = 2
@@ -71,7 +71,7 @@ class BarPainter:
             ink._replace(selected=True) for ink in row.inks[first : max(first, last + 1)]
         ]
 
-    def group(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None], group: Group) -> None:
+    def group(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None], group: GroupInfo) -> None:
         """Draw who holds a group: a line for as long as it is held, a point for an instant."""
         ink = Ink(Role.LINE, self.numbers[group.id])
         if group.kind is GroupKind.REENTRANT:
@@ -100,7 +100,7 @@ class BarPainter:
             texts = (f"{most} at once",) if most > 1 else (f"runs {callback}", f"runs {short_name(callback)}")
             self._words(row, stretch.first, stretch.after, texts)
 
-    def calls(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None], entity: Entity) -> None:
+    def calls(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None], entity: EntityInfo) -> None:
         """Draw when a callback runs: a mark for a short call, a line with its thread for a long one."""
         number = self._number(entity.id)
         late = []

@@ -10,7 +10,7 @@ from cbtui.widgets.lanes.selection import Bar, Selection
 from sim.durations import duration, timestamp
 from sim.trace.descriptions import name_of, why_waiting
 from sim.trace.events import EntityId, EntityKind
-from sim.trace.model import Call, Entity, Nanoseconds, Span, Wait, Window
+from sim.trace.model import Call, EntityInfo, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
 _FIRST_REACH: Nanoseconds = 1_000_000
@@ -88,7 +88,7 @@ def _blocked(timeline: Timeline, span: Span, now: Nanoseconds) -> Iterator[str]:
             yield f"stood {duration(max(0, lasted))} in call {blocked.service}"
 
 
-def _cause(timeline: Timeline, span: Span, entity: Entity) -> Iterator[str]:
+def _cause(timeline: Timeline, span: Span, entity: EntityInfo) -> Iterator[str]:
     """Say what let it run: a period, a message and its publisher, or a request and who called."""
     match entity.kind:
         case EntityKind.TIMER:
@@ -107,7 +107,7 @@ def _lateness(age: Nanoseconds) -> str:
     return f"late by {duration(age)}" if age > 0 else "on time"
 
 
-def _publisher(timeline: Timeline, span: Span, entity: Entity) -> str:
+def _publisher(timeline: Timeline, span: Span, entity: EntityInfo) -> str:
     on = f"on {entity.name}"
     publication = timeline.publication(span.message)
     if publication is None:

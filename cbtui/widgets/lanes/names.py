@@ -1,7 +1,7 @@
 """What lanes are called, in as many columns as there are."""
 
 from cbtui.text.callback_names import short_name
-from sim.trace.model import Entity, Group, Thread
+from sim.trace.model import EntityInfo, GroupInfo, ThreadInfo
 
 _LEAST_PROGRAM = 3
 """Columns below which nothing is left of a program's name to know it by."""
@@ -14,7 +14,7 @@ def short_thread(name: str) -> str:
     return name.replace("ThreadPoolExecutor", "Pool", 1)
 
 
-def thread_name(thread: Thread, room: int, ellipsis: str) -> str:
+def thread_name(thread: ThreadInfo, room: int, ellipsis: str) -> str:
     """Return a thread's name in at most ``room`` columns, if any form of it is as short as that.
 
     The program that it belongs to, of several, gives way in its middle: the end is what tells two apart.
@@ -37,18 +37,18 @@ def _without_middle(text: str, room: int, ellipsis: str) -> str:
     return f"{text[:before]}{ellipsis}{text[len(text) - (room - 1 - before) :]}"
 
 
-def group_name(group: Group, room: int) -> str:
+def group_name(group: GroupInfo, room: int) -> str:
     """Return what kind of group one of several callbacks is."""
     whole, brief = _kinds(group)
     return whole if len(whole) <= room else brief
 
 
-def entity_name(entity: Entity, room: int) -> str:
+def entity_name(entity: EntityInfo, room: int) -> str:
     """Return the name of a callback of a group of several."""
     return entity.label if len(entity.label) <= room else short_name(entity.label)
 
 
-def sole_name(entity: Entity, group: Group, room: int) -> str:
+def sole_name(entity: EntityInfo, group: GroupInfo, room: int) -> str:
     """Return the name of a group's only callback, after the kind of the group where there is room for it."""
     names = (entity.label, short_name(entity.label))
     for text in (f"{kind} {name}" for kind in _kinds(group) for name in names):
@@ -67,6 +67,6 @@ def more_lanes(hidden: int, key: str, room: int) -> str:
     return next((text for text in told if len(text) <= room), plain)
 
 
-def _kinds(group: Group) -> tuple[str, str]:
+def _kinds(group: GroupInfo) -> tuple[str, str]:
     """A group's kind, whole and brief."""
     return group.kind.value, group.kind.value[:_BRIEF]

@@ -31,7 +31,7 @@ from cbtui.widgets.lanes.service_calls import LatestCalls, draw_calls
 from cbtui.widgets.lanes.status import LaneStatus
 from sim.durations import duration
 from sim.trace.events import EntityId, EntityKind
-from sim.trace.model import AxisMark, Blocked, Entity, Group, Moment, Nanoseconds, Span, Wait, Window
+from sim.trace.model import AxisMark, Blocked, EntityInfo, GroupInfo, Moment, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
 FAINT = Ink(Role.FAINT)
@@ -132,7 +132,7 @@ class LanePainter:
             self._columns[key] = LaneColumns(partial(query, subject))
         return self._columns[key]
 
-    def losses(self, entity: Entity, timeline: Timeline) -> InstantColumns:
+    def losses(self, entity: EntityInfo, timeline: Timeline) -> InstantColumns:
         """Return when the queue of a callback lost messages."""
         if entity.id not in self._losses:
             self._losses[entity.id] = InstantColumns(partial(timeline.losses_of, entity.id))
@@ -340,7 +340,7 @@ class _LaneFrame:
         """How many columns of a name are left."""
         return self._layout.names - sum(len(run.text) for run in runs)
 
-    def _letter(self, group: Group) -> list[TextRun]:
+    def _letter(self, group: GroupInfo) -> list[TextRun]:
         """A group's letter, and its texture where there is room."""
         number = self._numbers[group.id]
         letter = TextRun(f"{group.letter} ", Ink(Role.LETTER, number))

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 from sim.trace.events import EntityId, GroupId, ThreadId
-from sim.trace.model import Entity, Group, Nanoseconds, Thread, Window
+from sim.trace.model import EntityInfo, GroupInfo, Nanoseconds, ThreadInfo, Window
 from sim.trace.roster import MOST_LANES, roster_of
 from sim.trace.timeline import Timeline
 from sim.units import SECOND
@@ -14,30 +14,30 @@ from sim.units import SECOND
 class ThreadLane:
     """What a thread runs."""
 
-    thread: Thread
+    thread: ThreadInfo
 
 
 @dataclass(frozen=True, slots=True)
 class GroupLane:
     """Who holds a group of several callbacks; its members follow in lanes of their own."""
 
-    group: Group
+    group: GroupInfo
 
 
 @dataclass(frozen=True, slots=True)
 class MemberLane:
     """When a callback of the group above runs, when it waits and why."""
 
-    entity: Entity
-    group: Group
+    entity: EntityInfo
+    group: GroupInfo
 
 
 @dataclass(frozen=True, slots=True)
 class SoleLane:
     """A group together with its only callback."""
 
-    entity: Entity
-    group: Group
+    entity: EntityInfo
+    group: GroupInfo
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +75,7 @@ def lanes_beyond(lanes: list[Lane], timeline: Timeline) -> int:
     return roster_of(timeline).lanes - shown
 
 
-def _working_threads(timeline: Timeline) -> list[Thread]:
+def _working_threads(timeline: Timeline) -> list[ThreadInfo]:
     """Return the threads without a main thread that only hands out work to others."""
     threads = list(timeline.threads.values())
     if len(threads) < 2:
@@ -140,7 +140,7 @@ class _LanePriority:
             case ServiceLane(service):
                 return 5 if service in self.timeline.services_called else 3
 
-    def _thread(self, thread: Thread) -> int:
+    def _thread(self, thread: ThreadInfo) -> int:
         busy = self.timeline.busy(thread.id, self.window)
         return 9 if busy >= 0.5 else 7 if busy > 0 else 2
 

@@ -8,7 +8,7 @@ from cbtui.widgets.lanes.rows import GroupLane, Lane, MemberLane, ServiceLane, S
 from cbtui.widgets.lanes.service_calls import LatestCalls
 from sim.durations import duration
 from sim.trace.events import EntityKind, GroupKind
-from sim.trace.model import Entity, Group, Moment, Span, Thread, Window
+from sim.trace.model import EntityInfo, GroupInfo, Moment, Span, ThreadInfo, Window
 from sim.trace.timeline import Timeline
 
 PLAIN = Ink(Role.TEXT)
@@ -42,7 +42,7 @@ class LaneStatus:
             case ServiceLane(service):
                 return TextRun(self.calls.summary(service, self.moment.at), PLAIN)
 
-    def _thread(self, thread: Thread) -> TextRun:
+    def _thread(self, thread: ThreadInfo) -> TextRun:
         past = Window(self.shown.start, min(self.shown.end, self.moment.at))
         share = self.timeline.busy(thread.id, past) if past.length > 0 else 0.0
         running = self.moment.running.get(thread.id)
@@ -59,7 +59,7 @@ class LaneStatus:
         entity = self.timeline.entities[span.entity]
         return f"{self.timeline.groups[entity.group].letter} {short_name(entity.spoken_name)}"
 
-    def _group(self, group: Group) -> TextRun:
+    def _group(self, group: GroupInfo) -> TextRun:
         entities = self.timeline.entities
         waiting = sum([entities[entity].group == group.id for entity in self.moment.waiting])
         holders = len(self.moment.holders.get(group.id, ()))
@@ -71,7 +71,7 @@ class LaneStatus:
             return TextRun(f"{state}, {waiting} wait", WARN)
         return TextRun(state, PLAIN if holders else FAINT)
 
-    def _entity(self, entity: Entity, latest: Span | None) -> TextRun:
+    def _entity(self, entity: EntityInfo, latest: Span | None) -> TextRun:
         match entity.kind:
             case EntityKind.TIMER:
                 return self._timer(entity, latest)
@@ -84,7 +84,7 @@ class LaneStatus:
             case _:
                 return TextRun("", PLAIN)
 
-    def _timer(self, timer: Entity, latest: Span | None) -> TextRun:
+    def _timer(self, timer: EntityInfo, latest: Span | None) -> TextRun:
         wait = self.moment.waiting.get(timer.id)
         if wait is not None:
             return TextRun(f"late {duration(self.moment.at - wait.since)}", WARN)
@@ -94,7 +94,7 @@ class LaneStatus:
             return TextRun(f"was late {duration(latest.age)}", WARN)
         return TextRun("on time", FAINT)
 
-    def _client(self, client: Entity) -> TextRun:
+    def _client(self, client: EntityInfo) -> TextRun:
         """Tell a client from the service of the same name; what waits for it are replies."""
         replies = self.timeline.queue(client.id, self.moment.at).depth
         if replies == 0:
@@ -102,7 +102,7 @@ class LaneStatus:
         told = f"client, {replies} {'reply' if replies == 1 else 'replies'}"
         return TextRun(told if len(told) < self.width else "client", PLAIN)
 
-    def _queue(self, entity: Entity, latest: Span | None) -> TextRun:
+    def _queue(self, entity: EntityInfo, latest: Span | None) -> TextRun:
         queue = self.timeline.queue(entity.id, self.moment.at)
         full = entity.depth and queue.depth >= entity.depth
         level = f"{queue.depth}/{entity.depth}{'!' if full else ''}"
@@ -113,7 +113,7 @@ class LaneStatus:
         return TextRun(next(fitting, level), WARN if full else PLAIN)
 
 
-def is_late(span: Span, timer: Entity) -> bool:
+def is_late(span: Span, timer: EntityInfo) -> bool:
     """Tell whether a timer's call came late: by a tenth of its period or more, and by 1 ms at least."""
     return span.age >= max(timer.period // 10, _LATE_AT_LEAST)
 

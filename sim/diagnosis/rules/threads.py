@@ -7,7 +7,7 @@ from sim.diagnosis.rule import Explanation, Finding, Rule, Weight, place_of
 from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import listed, thread_count
 from sim.trace.events import EntityKind, GroupKind, NodeId
-from sim.trace.model import Entity, Executor, Group, Nanoseconds
+from sim.trace.model import EntityInfo, ExecutorInfo, GroupInfo, Nanoseconds
 from sim.trace.timeline import Timeline
 from sim.units import SECOND
 
@@ -94,11 +94,11 @@ def _abbreviated(letters: list[str]) -> list[str]:
     return [*shown, f"{len(letters) - len(shown)} more"]
 
 
-def _with_workers(timeline: Timeline) -> list[Executor]:
+def _with_workers(timeline: Timeline) -> list[ExecutorInfo]:
     return [each for each in timeline.executors.values() if each.threads > 1]
 
 
-def _only_group(timeline: Timeline) -> Group | None:
+def _only_group(timeline: Timeline) -> GroupInfo | None:
     """The exclusive group that all callbacks share despite several threads."""
     if not _with_workers(timeline):
         return None
@@ -108,9 +108,9 @@ def _only_group(timeline: Timeline) -> Group | None:
     return groups[0] if len(_callbacks(timeline, groups[0])) > 1 else None
 
 
-def _node_with_groups(timeline: Timeline) -> Entity | None:
+def _node_with_groups(timeline: Timeline) -> EntityInfo | None:
     """A callback of a node that has several groups or a reentrant one."""
-    first: dict[NodeId, Entity] = {}
+    first: dict[NodeId, EntityInfo] = {}
     for group in timeline.groups.values():
         for callback in _callbacks(timeline, group)[:1]:
             if group.node in first or group.kind is GroupKind.REENTRANT:
@@ -119,7 +119,7 @@ def _node_with_groups(timeline: Timeline) -> Entity | None:
     return None
 
 
-def _callbacks(timeline: Timeline, group: Group) -> list[Entity]:
+def _callbacks(timeline: Timeline, group: GroupInfo) -> list[EntityInfo]:
     """The first two entities of a group that a program made: those with a callback, and clients."""
     members = timeline.group_members(group.id)
     return list(islice((each for each in members if each.callback or each.kind is EntityKind.CLIENT), 2))

@@ -8,7 +8,7 @@ from sim.diagnosis.timeline_view import TimelineView
 from sim.diagnosis.words import group_of, listed, often, threads_for, who, with_threads
 from sim.durations import duration
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
-from sim.trace.model import Entity, Nanoseconds, Span, Wait, Window
+from sim.trace.model import EntityInfo, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
 _HABIT = 3
@@ -162,6 +162,6 @@ class LongCallbackAmongSensors(Rule):
         )
 
 
-def _kind_of_group(entity: Entity, view: TimelineView) -> GroupKind | None:
+def _kind_of_group(entity: EntityInfo, view: TimelineView) -> GroupKind | None:
     group = view.timeline.groups.get(entity.group)
     return None if group is None else group.kind

@@ -9,7 +9,7 @@ from sim.diagnosis.timeline_view import LongWait, TimelineView
 from sim.diagnosis.words import group_of, often, threads_for, who
 from sim.durations import duration
 from sim.trace.events import EntityId, EntityKind, GroupKind, Reason
-from sim.trace.model import Entity, Nanoseconds, Window
+from sim.trace.model import EntityInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 from sim.units import SECOND
 
@@ -145,7 +145,7 @@ def _kept_waiting(
             yield Finding(rule, wait.since, wait.until, entity.id, culprit, size=waited)
 
 
-def _may_wait_for_its_caller(entity: Entity, wait: LongWait, view: TimelineView) -> bool:
+def _may_wait_for_its_caller(entity: EntityInfo, wait: LongWait, view: TimelineView) -> bool:
     """Whether a request or reply may wait for its own caller, which other rules cover."""
     if entity.kind is EntityKind.CLIENT and wait.is_open:
         return True

@@ -4,7 +4,7 @@ import shlex
 from collections.abc import Sequence
 
 from sim.engine.programs.line_tools import LineTools
-from sim.engine.programs.programs import Programs
+from sim.engine.programs.programs import ProgramSupervisor
 from sim.engine.programs.starting import Starter
 from sim.shell import OnExit, ShellLine
 from sim.trace.events import Printed, ProcessEnded
@@ -14,7 +14,7 @@ class LaunchedLine:
     """Carries out the line from the moment of making on."""
 
     def __init__(
-        self, programs: Programs, starter: Starter, label: str, words: Sequence[str], on_exit: OnExit
+        self, programs: ProgramSupervisor, starter: Starter, label: str, words: Sequence[str], on_exit: OnExit
     ) -> None:
         self._programs = programs
         self._on_exit = on_exit

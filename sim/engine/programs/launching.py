@@ -5,8 +5,8 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from sim.engine.programs.launched_line import LaunchedLine
-from sim.engine.programs.program import Program, ProgramOutcome
-from sim.engine.programs.programs import Programs, RunningProgram
+from sim.engine.programs.program import ProgramOutcome, ProgramSpec
+from sim.engine.programs.programs import ProgramSupervisor, RunningProgram
 from sim.engine.programs.starting import Starter
 from sim.launch import LaunchRun, ProcessSpec, RunningProcess
 from sim.shell import OnExit
@@ -22,7 +22,7 @@ class Launching:
 
     def __init__(
         self,
-        programs: Programs,
+        programs: ProgramSupervisor,
         starter: Starter,
         path: Path,
         arguments: Sequence[str],
@@ -85,7 +85,7 @@ class Launching:
         """Start a program."""
         if spec.working_folder is not None:
             raise NotImplementedError("cwd: all programs of a run share one working folder")
-        program = Program(
+        program = ProgramSpec(
             path=str(spec.path),
             folder=str(spec.folder),
             arguments=tuple(spec.arguments),

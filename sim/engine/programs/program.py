@@ -30,7 +30,7 @@ _INTERRUPTED = 130
 
 
 @dataclass(frozen=True, slots=True)
-class Program:
+class ProgramSpec:
     """What to run: the file ``path`` as a script, or ``function`` of the module ``module``.
 
     ``folder`` is where imports look first. ``arguments`` are those behind the program's own name.
@@ -43,9 +43,9 @@ class Program:
     function: str = ""
 
 
-def script(path: str, arguments: tuple[str, ...] = ()) -> Program:
+def script(path: str, arguments: tuple[str, ...] = ()) -> ProgramSpec:
     """The program that a file is, as Python runs it: what a link leads to imports from its own folder."""
-    return Program(path, str(Path(path).resolve().parent), arguments)
+    return ProgramSpec(path, str(Path(path).resolve().parent), arguments)
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ class ProgramOutcome:
     error: str = ""
 
 
-def run_program(program: Program) -> ProgramOutcome:
+def run_program(program: ProgramSpec) -> ProgramOutcome:
     """Run it in this thread, and wait for the threads that it leaves.
 
     A file that defines ``main`` and does nothing with it, as one for an entry point may, has it called.
@@ -77,7 +77,7 @@ def run_program(program: Program) -> ProgramOutcome:
     return outcome
 
 
-def _outcome_of(program: Program) -> ProgramOutcome:
+def _outcome_of(program: ProgramSpec) -> ProgramOutcome:
     try:
         status = _status(_load(program)())
         _join_left_threads()
@@ -99,7 +99,7 @@ def _returned() -> str:
     return f"the program returned, as rclpy was shut down ({at})" if at else "the program returned"
 
 
-def _load(program: Program) -> Callable[[], object]:
+def _load(program: ProgramSpec) -> Callable[[], object]:
     """What has to be called to run the program."""
     if program.function:
         source = read_source(Path(program.path))
@@ -112,7 +112,7 @@ def _load(program: Program) -> Callable[[], object]:
     return lambda: _run_script(program)
 
 
-def _run_script(program: Program) -> object:
+def _run_script(program: ProgramSpec) -> object:
     source = read_source(Path(program.path))
     names = _namespace(program, "__main__")
     exec(_code(program, source), names)
@@ -124,13 +124,13 @@ def _run_script(program: Program) -> object:
     return _entry(program, names["main"])()
 
 
-def _on_no_entry(program: Program, source: str, function: str, otherwise: str) -> str:
+def _on_no_entry(program: ProgramSpec, source: str, function: str, otherwise: str) -> str:
     name = Path(program.path).name
     found = misplaced(function, source)
     return f"{name}: {found}" if found else f"{name} {otherwise}"
 
 
-def _entry(program: Program, function: Callable[..., object]) -> Callable[[], object]:
+def _entry(program: ProgramSpec, function: Callable[..., object]) -> Callable[[], object]:
     """The function, if it can be called as an entry point is."""
     try:
         inspect.signature(function).bind()
@@ -143,11 +143,11 @@ def _entry(program: Program, function: Callable[..., object]) -> Callable[[], ob
     return function
 
 
-def _code(program: Program, source: str) -> CodeType:
+def _code(program: ProgramSpec, source: str) -> CodeType:
     return compile(source, program.path, "exec", dont_inherit=True)
 
 
-def _namespace(program: Program, name: str) -> dict[str, Any]:
+def _namespace(program: ProgramSpec, name: str) -> dict[str, Any]:
     """The globals of a module of its own: two programs of one file share nothing."""
     spec = importlib.util.spec_from_file_location(name, program.path)
     assert spec is not None
@@ -206,7 +206,7 @@ def threads_left_by(process: Process) -> list[threading.Thread]:
     ]
 
 
-def _exited(exit_: SystemExit, program: Program) -> ProgramOutcome:
+def _exited(exit_: SystemExit, program: ProgramSpec) -> ProgramOutcome:
     if exit_.code in {None, 0}:
         return ProgramOutcome("the program returned", failed=False)
     place = place_of(exit_, program.path, program.folder)

@@ -10,10 +10,10 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from itertools import count
 
-from sim.clock import Signal
+from sim.clock import AutoResetEvent
 from sim.engine.programs.ending import flush_files
 from sim.engine.programs.exit_functions import run_exit_functions
-from sim.engine.programs.program import Program, ProgramOutcome, run_program
+from sim.engine.programs.program import ProgramOutcome, ProgramSpec, run_program
 from sim.engine.stdio.output import finish_lines
 from sim.ros.context.context import end_contexts_by_signal
 from sim.ros.context.signals import deliver_sigint
@@ -28,9 +28,9 @@ Ended = Callable[[ProgramOutcome], None]
 class RunningProgram:
     """A program that was started; ``number`` stands for the process id."""
 
-    programs: "Programs"
+    programs: "ProgramSupervisor"
     process: Process
-    program: Program
+    program: ProgramSpec
     on_exit: Ended
     thread: int | None = None
     outcome: ProgramOutcome | None = None
@@ -57,7 +57,7 @@ class RunningProgram:
 
 
 @dataclass(eq=False)
-class Programs:
+class ProgramSupervisor:
     """Starts programs and knows which of them run. Thread-safe; ``record`` takes events."""
 
     host: Host
@@ -68,9 +68,9 @@ class Programs:
     _only: list[Process] = field(default_factory=list)
     _numbers: "count[int]" = field(default_factory=lambda: count(1))
     _held: int = 0
-    _waiters: list[Signal] = field(default_factory=list)
+    _waiters: list[AutoResetEvent] = field(default_factory=list)
 
-    def run_only(self, program: Program) -> ProgramOutcome:
+    def run_only(self, program: ProgramSpec) -> ProgramOutcome:
         """Run the run's only program on the calling thread."""
         process = Process(self.host, arguments=[program.path, *program.arguments])
         process.enter()
@@ -79,7 +79,7 @@ class Programs:
 
     def start(
         self,
-        program: Program,
+        program: ProgramSpec,
         label: str,
         on_exit: Ended,
         environment: Mapping[str, str] | None = None,
@@ -141,7 +141,7 @@ class Programs:
     def wait_until(self, condition: Callable[[], bool]) -> None:
         """Wait until ``condition`` holds; it is asked whenever a program has ended or ``look`` is called."""
         while True:
-            signal = self.host.clock.signal()
+            signal = self.host.clock.auto_reset_event()
             with self.host.lock:
                 if condition():
                     return

@@ -12,8 +12,8 @@ from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, TypeAlias
 
-from sim.engine.programs.program import Program, ProgramOutcome
-from sim.engine.programs.programs import Programs
+from sim.engine.programs.program import ProgramOutcome, ProgramSpec
+from sim.engine.programs.programs import ProgramSupervisor
 from sim.engine.setup import RunSetup
 from sim.interfaces import add_definitions, find_definition_folders
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from sim.shell import OnExit, Running
 
 
-Launch: TypeAlias = "Callable[[Programs, Starter, Path, Sequence[str], OnExit], Running]"
+Launch: TypeAlias = "Callable[[ProgramSupervisor, Starter, Path, Sequence[str], OnExit], Running]"
 
 
 class StartError(Exception):
@@ -35,7 +35,7 @@ class Starter:
     ``launch`` carries out a launch file.
     """
 
-    def __init__(self, programs: Programs, setup: RunSetup, launch: Launch) -> None:
+    def __init__(self, programs: ProgramSupervisor, setup: RunSetup, launch: Launch) -> None:
         self._programs = programs
         self._launch = launch
         self._folders = [*(Path(each.path) for each in setup.programs), *map(Path, setup.packages)]
@@ -72,7 +72,7 @@ class Starter:
         """
         with _told():
             found = self.packages().package(package).executable(executable)
-        program = Program(
+        program = ProgramSpec(
             path=str(found.path),
             folder=str(found.folder),
             arguments=tuple(arguments),

@@ -9,7 +9,7 @@ from importlib.machinery import ModuleSpec, PathFinder
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, cast
 
-from sim.clock import Clock, VirtualClock
+from sim.clock import RunClock, VirtualClock
 from sim.clock.hashes import number_tasks
 
 if TYPE_CHECKING:
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 _LAUNCH = frozenset(("ament_index_python", "launch", "launch_ros"))
 
 
-def use_workspace(packages: Callable[[], Packages], clock: Clock) -> None:
+def use_workspace(packages: Callable[[], Packages], clock: RunClock) -> None:
     """Make the modules of ``packages`` importable, and ``launch``; have asyncio's loops live on ``clock``."""
     sys.meta_path[:0] = (_AsyncioFinder(clock), _LaunchFinder(packages))
     sys.meta_path.append(_WorkspaceFinder(packages))
@@ -67,7 +67,7 @@ class _WorkspaceFinder:
 class _AsyncioFinder:
     """Lets asyncio be imported as ever, and then gives it loops for the programs of a run."""
 
-    def __init__(self, clock: Clock) -> None:
+    def __init__(self, clock: RunClock) -> None:
         self._clock = clock
 
     def find_spec(

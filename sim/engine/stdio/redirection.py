@@ -3,13 +3,13 @@
 import sys
 from collections.abc import Callable
 
-from sim.clock import Clock
+from sim.clock import RunClock
 from sim.engine.stdio.output import ProcessStream
 from sim.ros.middleware.process import Process, current_process
 from sim.trace.events import AnyEvent, Notice, Printed, Severity
 
 
-def redirect_output(clock: Clock, record: Callable[[AnyEvent], None]) -> None:
+def redirect_output(clock: RunClock, record: Callable[[AnyEvent], None]) -> None:
     """Replace Python's streams by such as record what each program writes."""
 
     def tell_of_hidden_output() -> None:

@@ -22,7 +22,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
-from sim.clock import Clock, Signal, VirtualClock
+from sim.clock import AutoResetEvent, RunClock, VirtualClock
 from sim.engine.commands import END_OF_INPUT, INTERRUPT
 from sim.engine.setup import Keyboard
 from sim.engine.stdio.output import ProcessStream
@@ -62,7 +62,7 @@ class Terminal:
     """
 
     def __init__(
-        self, clock: Clock, record: Callable[[AnyEvent], None], keyboard: Keyboard, scheduled: int
+        self, clock: RunClock, record: Callable[[AnyEvent], None], keyboard: Keyboard, scheduled: int
     ) -> None:
         self._clock = clock
         self._record = record
@@ -77,7 +77,7 @@ class Terminal:
         self._text = ""
         self._place = 0
         self._line_begun = False
-        self._waiters: list[Signal] = []
+        self._waiters: list[AutoResetEvent] = []
         self._asked = Reading.NOTHING
         self._warned: set[str] = set()
         self._lock = _allocate_lock()
@@ -138,7 +138,7 @@ class Terminal:
                 if over and deadline is None:
                     break
                 waited = True
-                signal = self._clock.signal()
+                signal = self._clock.auto_reset_event()
                 self._waiters.append(signal)
             try:
                 with self._awaited(not over):

@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable
 from types import FrameType
 
-from sim.clock import Clock
+from sim.clock import RunClock
 from sim.marks import calls_the_program, waits_for_keyboard, waits_for_time
 from sim.probes.own_code import is_own, outwards, place_of
 from sim.trace.events import AnyEvent, Notice, NoticeKind, Severity
@@ -26,7 +26,7 @@ _MODEL = ("sim.ros.", "sim.interfaces.")
 class HungCallbacks:
     """Samples the stacks of all threads, and warns of each call once."""
 
-    def __init__(self, clock: Clock, record: Callable[[AnyEvent], None]) -> None:
+    def __init__(self, clock: RunClock, record: Callable[[AnyEvent], None]) -> None:
         self._clock = clock
         self._record = record
         self._seen: dict[int, tuple[int, int]] = {}

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 
-from sim.clock import Clock
+from sim.clock import RunClock
 from sim.probes.own_code import place_of_caller
 from sim.trace.events import AnyEvent, Notice, Severity
 
@@ -10,7 +10,7 @@ from sim.trace.events import AnyEvent, Notice, Severity
 class Repeatability:
     """Whether a run can be repeated exactly, as far as is known. ``record`` takes events."""
 
-    def __init__(self, clock: Clock, record: Callable[[AnyEvent], None]) -> None:
+    def __init__(self, clock: RunClock, record: Callable[[AnyEvent], None]) -> None:
         self._clock = clock
         self._record = record
         self._lost = False

@@ -111,7 +111,7 @@ class ClientPart(Part, Client):
 
     def wait_for(self, future: Future[Any]) -> Any:
         """Wait on this thread until one of its futures is done; returns the result."""
-        arrived = self._host.clock.signal()
+        arrived = self._host.clock.auto_reset_event()
         future.add_done_callback(lambda _: arrived.set())
         with self._host.lock:
             call = next((call for call, each in self._pending_requests.items() if each is future), None)

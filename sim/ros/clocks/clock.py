@@ -16,7 +16,7 @@ from sim.ros.time.duration import Duration
 from sim.ros.time.time import Time
 
 if TYPE_CHECKING:
-    from sim.clock import Signal
+    from sim.clock import AutoResetEvent
     from sim.ros.middleware.endpoints import ContextLifetime
 
 __all__ = [
@@ -248,7 +248,7 @@ class ClockEvent:
     def __init__(self) -> None:
         self._host = current_host()
         self._set = False
-        self._waiters: list[Signal] = []
+        self._waiters: list[AutoResetEvent] = []
 
     def is_set(self) -> bool:
         """Whether it is set."""
@@ -273,7 +273,7 @@ class ClockEvent:
         with self._host.lock:
             if self._set:
                 return
-            signal = self._host.clock.signal()
+            signal = self._host.clock.auto_reset_event()
             self._waiters.append(signal)
             owner: Clock = clock.owner if isinstance(clock, Handle) else clock
             deadline = owner._deadline(until)

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import msgspec
 
 from sim.interfaces import copy_message
+from sim.ros.entities.client_or_service import ClientOrService
 from sim.ros.entities.entity_handles import ClientHandle
-from sim.ros.entities.service_endpoint import ServiceEndpoint
 from sim.ros.middleware.delivery import Request
 from sim.ros.qos.qos import QoSProfile
 from sim.ros.scheduling.entity import Entity, OwnerNode, Taken
@@ -40,7 +40,7 @@ class Reply(msgspec.Struct, frozen=True):
     sent: int
 
 
-class Client(ServiceEndpoint, Entity):
+class Client(ClientOrService, Entity):
     """Calls one service. The reply is taken by the executor, as a callback of the client's group."""
 
     kind = EntityKind.CLIENT
@@ -83,7 +83,7 @@ class Client(ServiceEndpoint, Entity):
             TypeError: the request is not of the service's type.
             InvalidHandle: the client was destroyed.
         """
-        arrived = self._host.clock.signal()
+        arrived = self._host.clock.auto_reset_event()
         call, future = self._send(request)
         future.add_done_callback(lambda _: arrived.set())
         deadline = None if timeout_sec is None else self._host.clock.now() + wait_ns(timeout_sec)

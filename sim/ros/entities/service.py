@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 from sim.interfaces import copy_message
 from sim.marks import sends_responses
+from sim.ros.entities.client_or_service import ClientOrService
 from sim.ros.entities.entity_handles import RequestId, ServiceHandle, ServiceInfo, answered
-from sim.ros.entities.service_endpoint import ServiceEndpoint
 from sim.ros.middleware.delivery import Request
 from sim.ros.qos.qos import QoSProfile
 from sim.ros.scheduling.entity import Entity, OwnerNode, Taken
@@ -25,7 +25,7 @@ SrvTypeResponse = TypeVar("SrvTypeResponse")
 """For the type hints of programs, which import these from here as from rclpy."""
 
 
-class Service(ServiceEndpoint, Entity):
+class Service(ClientOrService, Entity):
     """Answers calls of one service. A callback that raises sends no reply."""
 
     kind = EntityKind.SERVICE

@@ -11,7 +11,7 @@ from sim.interfaces import message
 
 if TYPE_CHECKING:
     from sim.ros.clocks.clock import Clock
-    from sim.ros.entities.service_endpoint import ServiceEndpoint
+    from sim.ros.entities.client_or_service import ClientOrService
     from sim.ros.qos.qos import QoSProfile
 
 _TOPIC_SUFFIX = "/_service_event"
@@ -32,7 +32,7 @@ class ServiceIntrospection:
     """
 
     def __init__(
-        self, owner: ServiceEndpoint, clock: Clock, qos_profile: QoSProfile, state: ServiceIntrospectionState
+        self, owner: ClientOrService, clock: Clock, qos_profile: QoSProfile, state: ServiceIntrospectionState
     ) -> None:
         self._event_type = owner.srv_type.Event
         self._clock = clock

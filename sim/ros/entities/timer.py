@@ -19,7 +19,7 @@ from sim.ros.time.time import Time
 from sim.trace.events import EntityKind
 
 if TYPE_CHECKING:
-    from sim.clock import Signal
+    from sim.clock import AutoResetEvent
     from sim.ros.context.context import Context
     from sim.ros.scheduling.callback_groups import CallbackGroup
 
@@ -299,7 +299,7 @@ class Rate:
     def __init__(self, timer: Timer, *, context: Context) -> None:
         self._context = context
         self._host = context.host
-        self._sleepers: list[Signal] = []
+        self._sleepers: list[AutoResetEvent] = []
         self._ticked = False
         self._destroyed = False
         self._timer = timer
@@ -327,7 +327,7 @@ class Rate:
             if self._ticked:
                 self._ticked = False
                 return
-            tick = self._host.clock.signal()
+            tick = self._host.clock.auto_reset_event()
             self._sleepers.append(tick)
         tick.wait(None)
         if not self._context.ok():

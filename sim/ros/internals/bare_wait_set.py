@@ -44,7 +44,7 @@ class BareWaitSet(ProgramWaitSet):
         )
         owner: Context = context.owner
         self._host = owner.host
-        self._more = owner.host.clock.signal()
+        self._more = owner.host.clock.auto_reset_event()
 
     def clear_entities(self) -> None:
         """Wait for nothing any more; as much can be added as at first."""

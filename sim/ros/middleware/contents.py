@@ -12,11 +12,11 @@ from sim.ros.qos.qos import QoSProfile
 from sim.trace.events import (
     AnyEvent,
     ContentsLost,
-    Event,
     MessageId,
     MessageSent,
     TopicAppeared,
     TopicId,
+    TraceEvent,
     escape_surrogates,
 )
 
@@ -44,7 +44,7 @@ class _Content:
         self.topic = topic
 
 
-class _MessageWaiting(Event, frozen=True, tag="message"):
+class _MessageWaiting(TraceEvent, frozen=True, tag="message"):
     """A ``MessageSent`` whose data is not encoded yet; both are packed alike."""
 
     message: MessageId

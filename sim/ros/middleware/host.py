@@ -12,12 +12,12 @@ from itertools import count
 from typing import Protocol
 from weakref import ref
 
-from sim.clock import Clock, PacedClock
+from sim.clock import PacedClock, RunClock
 from sim.probes.probe import Probe, SilentProbe
+from sim.ros.middleware.callback_overrides import CallbackOverrides
 from sim.ros.middleware.domain import domain_of_machine
 from sim.ros.middleware.host_lock import lock_on
 from sim.ros.middleware.network import Network
-from sim.ros.middleware.tuning import Tuning
 
 # Kept from before sim.clock.stdlib puts the virtual one in its place.
 _RLock = threading.RLock
@@ -28,15 +28,15 @@ class Host:
     """The state that all contexts of this process share.
 
     ``lock`` guards all state of executors, groups and queues; it is never held during a wait or a callback.
-    ``threads`` replaces the number of threads of every executor (None: the program's own), ``tuning`` has the
-    other changes to the programs. ``default_domain`` is used outside programs. ``takes_signals``: the whole
-    process is the program's, so rclpy's signal handlers may be installed.
+    ``threads`` replaces the number of threads of every executor (None: the program's own), ``overrides`` has
+    the other changes to the programs. ``default_domain`` is used outside programs. ``takes_signals``: the
+    whole process is the program's, so rclpy's signal handlers may be installed.
     """
 
-    clock: Clock
+    clock: RunClock
     probe: Probe
     threads: int | None = None
-    tuning: Tuning | None = None
+    overrides: CallbackOverrides | None = None
     lock: AbstractContextManager[bool] = field(init=False)
     default_domain: int = field(default_factory=domain_of_machine)
     takes_signals: bool = False

@@ -5,7 +5,7 @@ import time
 from contextlib import AbstractContextManager
 from types import TracebackType
 
-from sim.clock import Clock, VirtualClock
+from sim.clock import RunClock, VirtualClock
 
 # Kept from before sim.clock.stdlib puts the virtual ones in their place.
 _RLock = threading.RLock
@@ -55,6 +55,6 @@ class SwitchedLock:
         self._clock.switch_point()
 
 
-def lock_on(clock: Clock) -> AbstractContextManager[bool]:
+def lock_on(clock: RunClock) -> AbstractContextManager[bool]:
     """Make the lock of a host with that clock."""
     return SwitchedLock(clock) if isinstance(clock, VirtualClock) and clock.explores else HostLock()

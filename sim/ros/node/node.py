@@ -24,11 +24,11 @@ from sim.ros.node.delegation import Delegated
 from sim.ros.node.graph import Graph
 from sim.ros.node.logging_service import LoggingService
 from sim.ros.node.node_entities import NodeEntities
+from sim.ros.node.node_overrides import NodeOverrides
 from sim.ros.node.parameter_events import parameter_event_publisher, publish_change
 from sim.ros.node.parameter_service import ParameterService
 from sim.ros.node.rosout import RosoutPublisher, offer_rosout, withdraw_rosout
 from sim.ros.node.time_source import TimeSource
-from sim.ros.node.tuned_node import TunedNode
 from sim.ros.node.type_description_service import TypeDescriptionService
 from sim.ros.parameters.checks import PARAM_REL_TOL
 from sim.ros.parameters.parameter import Parameter
@@ -112,7 +112,7 @@ class Node:
         if enable_logger_service:
             self._logger_service = LoggingService(self)
         self._type_description_service = TypeDescriptionService(self)
-        self._node_entities.tuned = self._tuning()
+        self._node_entities.overrides = self._callback_overrides()
 
     __module__ = "rclpy.node"  # as its name is printed
 
@@ -324,12 +324,12 @@ class Node:
         if here and (entity := next(running, None)) is not None:
             probe.node_destroyed_by_itself(self._node_names.full_name, entity)
 
-    def _tuning(self) -> TunedNode | None:
+    def _callback_overrides(self) -> NodeOverrides | None:
         """What a person changed about the node; only what is on the screen can be changed there."""
-        tuning = self._context.host.tuning
-        if tuning is None or not self._context.probe.visible:
+        overrides = self._context.host.overrides
+        if overrides is None or not self._context.probe.visible:
             return None
-        return TunedNode(self._node_names.full_name, tuning)
+        return NodeOverrides(self._node_names.full_name, overrides)
 
     def _tell_parameter_change(self, change: ParameterChange) -> None:
         publish_change(self._parameter_event_publisher, change)

@@ -15,8 +15,8 @@ from sim.ros.entities.service import Service
 from sim.ros.entities.subscription import Subscription
 from sim.ros.entities.timer import Rate, Timer
 from sim.ros.entities.type_support import check_is_valid_msg_type, check_is_valid_srv_type
+from sim.ros.node.node_overrides import NodeOverrides
 from sim.ros.node.qos_overriding_options import QoSOverridingOptions, overridden
-from sim.ros.node.tuned_node import TunedNode
 from sim.ros.qos.qos import QoSProfile, as_profile, qos_profile_services_default
 from sim.ros.scheduling.callback_groups import (
     CallbackGroup,
@@ -41,7 +41,7 @@ class NodeEntities:
         self._publishers: list[Publisher] = []
         self.default_group = MutuallyExclusiveCallbackGroup()
         self._rate_group = ReentrantCallbackGroup()
-        self.tuned: TunedNode | None = None
+        self.overrides: NodeOverrides | None = None
         """What a person changed about the node; None while it is made, for what it brings along is not the
         program's."""
 
@@ -191,8 +191,8 @@ class NodeEntities:
         with self._agenda.host.lock:
             name = "" if callback is None else callback_name(callback)
             group = self._chosen_group(callback_group, name)
-            if self.tuned is not None:
-                period = self.tuned.period(name, period)
+            if self.overrides is not None:
+                period = self.overrides.period(name, period)
             timer = Timer(
                 self._node, period, callback, group, clock or self._node.get_clock(), autostart=autostart
             )
@@ -265,7 +265,7 @@ class NodeEntities:
         """The group of what goes by ``name``: the program's choice unless a person made another."""
         default = self.default_group
         asked = default if wanted is None else wanted
-        return asked if self.tuned is None else self.tuned.group(name, asked, default)
+        return asked if self.overrides is None else self.overrides.group(name, asked, default)
 
     # Removing them
 

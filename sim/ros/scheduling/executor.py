@@ -52,7 +52,7 @@ class Executor:
         self._runner = Runner(self)
         chooses = type(self).can_execute is not Executor.can_execute
         self._cycle = Cycle(self._nodes, self._runner.entity_of, self.can_execute if chooses else None)
-        self._signal = self._clock.signal()
+        self._signal = self._clock.auto_reset_event()
         self._asks_waitables = False
         self._waitables_due: int | None = None
         self._waits_until: int | None = None

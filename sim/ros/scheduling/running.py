@@ -14,7 +14,7 @@ from sim.ros.scheduling.task import Task
 from sim.trace.events import Reason
 
 if TYPE_CHECKING:
-    from sim.clock import Signal
+    from sim.clock import AutoResetEvent
     from sim.ros.scheduling.cycle import Work
     from sim.ros.scheduling.executor import Executor
 
@@ -40,7 +40,7 @@ class Runner:
         """How many callbacks and tasks have begun and not ended."""
         self.refuses = False
         """Whether nothing may begin any more."""
-        self._idle_signals: list[Signal] = []
+        self._idle_signals: list[AutoResetEvent] = []
 
     @property
     def executor(self) -> Executor:
@@ -223,7 +223,7 @@ class Runner:
         with self.lock:
             if self.at_work == 0:
                 return True
-            signal = self.clock.signal()
+            signal = self.clock.auto_reset_event()
             self._idle_signals.append(signal)
         return signal.wait(None if nanoseconds < 0 else self.clock.now() + nanoseconds)
 

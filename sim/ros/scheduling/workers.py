@@ -13,7 +13,7 @@ from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from sim.clock import Signal
+from sim.clock import AutoResetEvent
 from sim.ros.scheduling.cycle import Work
 from sim.ros.scheduling.running import Begun, Started
 from sim.ros.scheduling.waiting_ends import never
@@ -31,7 +31,7 @@ class Worker:
 
     __slots__ = ("called", "signal", "thread")
 
-    def __init__(self, signal: Signal) -> None:
+    def __init__(self, signal: AutoResetEvent) -> None:
         self.signal = signal
         self.called = False
         self.thread: threading.Thread | None = None
@@ -61,7 +61,7 @@ class WorkerPool:
         self._errors: list[BaseException] = []
         self._dismissed = False
         self._living = 0
-        self._end_signals: list[Signal] = []
+        self._end_signals: list[AutoResetEvent] = []
 
     @property
     def _max_workers(self) -> int:
@@ -106,7 +106,7 @@ class WorkerPool:
             self._expect(worker, now)
             worker.signal.set()
         elif len(self._workers) < self._executor.threads:
-            worker = Worker(self._clock.signal())
+            worker = Worker(self._clock.auto_reset_event())
             self._workers.append(worker)
             self._living += 1
             self._expect(worker, now)
@@ -243,7 +243,7 @@ class WorkerPool:
         """Wait until every worker's thread is gone, after ``dismiss``; a worker itself waits for nobody."""
         if any(worker.thread is threading.current_thread() for worker in self._workers):
             return
-        ended = self._clock.signal()
+        ended = self._clock.auto_reset_event()
         with self._lock:
             self._end_signals.append(ended)
             if self._living == 0:

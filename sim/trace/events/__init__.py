@@ -9,7 +9,7 @@ from typing import TypeAlias
 from sim.trace.events.callbacks import *
 from sim.trace.events.communication import *
 from sim.trace.events.event import *
-from sim.trace.events.event import Event
+from sim.trace.events.event import TraceEvent
 from sim.trace.events.fields import *
 from sim.trace.events.graph import *
 from sim.trace.events.packing import *
@@ -17,5 +17,5 @@ from sim.trace.events.robot import *
 from sim.trace.events.run import *
 from sim.trace.events.terminal import *
 
-AnyEvent: TypeAlias = Event
+AnyEvent: TypeAlias = TraceEvent
 """An event of any kind."""

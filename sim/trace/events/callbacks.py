@@ -2,7 +2,7 @@
 
 from enum import StrEnum
 
-from sim.trace.events.event import Event
+from sim.trace.events.event import TraceEvent
 from sim.trace.events.fields import (
     EntityId,
     HolderId,
@@ -26,7 +26,7 @@ class Reason(StrEnum):
     """Its node is in no executor, or that executor is not spinning."""
 
 
-class EntityReady(Event, frozen=True, tag="ready"):
+class EntityReady(TraceEvent, frozen=True, tag="ready"):
     """A message, request or reply arrived, or a timer fell due."""
 
     entity: EntityId
@@ -35,7 +35,7 @@ class EntityReady(Event, frozen=True, tag="ready"):
     message: Maybe[MessageId]
 
 
-class MessageDropped(Event, frozen=True, tag="message_drop"):
+class MessageDropped(TraceEvent, frozen=True, tag="message_drop"):
     """A queue lost a message.
 
     A full queue loses its oldest message to a newer one, and any queue a message that stays longer than the
@@ -48,7 +48,7 @@ class MessageDropped(Event, frozen=True, tag="message_drop"):
     message: Maybe[MessageId]
 
 
-class WaitStarted(Event, frozen=True, tag="wait_start"):
+class WaitStarted(TraceEvent, frozen=True, tag="wait_start"):
     """A ready callback does not run.
 
     Another ``wait_start`` of the same entity replaces the reason.
@@ -65,13 +65,13 @@ class WaitStarted(Event, frozen=True, tag="wait_start"):
     """Whether no thread was free either."""
 
 
-class WaitEnded(Event, frozen=True, tag="wait_end"):
+class WaitEnded(TraceEvent, frozen=True, tag="wait_end"):
     """A callback that waited got its thread, or what it waited for is gone."""
 
     entity: EntityId
 
 
-class CallbackStarted(Event, frozen=True, tag="callback_start"):
+class CallbackStarted(TraceEvent, frozen=True, tag="callback_start"):
     """A thread began to run an entity's callback.
 
     Recorded on that thread, after the group let it in and the message was taken, before the callback's
@@ -87,28 +87,28 @@ class CallbackStarted(Event, frozen=True, tag="callback_start"):
     """Messages left in the queue."""
 
 
-class CallbackEnded(Event, frozen=True, tag="callback_end"):
+class CallbackEnded(TraceEvent, frozen=True, tag="callback_end"):
     """The callback returned or raised, and its group is free of it."""
 
     entity: EntityId
     thread: ThreadId
 
 
-class CallbackSuspended(Event, frozen=True, tag="callback_suspend"):
+class CallbackSuspended(TraceEvent, frozen=True, tag="callback_suspend"):
     """A coroutine callback awaits something; its thread is free, its group still held."""
 
     entity: EntityId
     thread: ThreadId
 
 
-class CallbackResumed(Event, frozen=True, tag="callback_resume"):
+class CallbackResumed(TraceEvent, frozen=True, tag="callback_resume"):
     """A suspended coroutine callback runs on, perhaps on another thread."""
 
     entity: EntityId
     thread: ThreadId
 
 
-class CallbackFailed(Event, frozen=True, tag="callback_error"):
+class CallbackFailed(TraceEvent, frozen=True, tag="callback_error"):
     """A callback raised."""
 
     entity: EntityId

@@ -1,6 +1,6 @@
 """What goes between nodes: messages, their contents, service calls and their replies."""
 
-from sim.trace.events.event import Event
+from sim.trace.events.event import TraceEvent
 from sim.trace.events.fields import (
     CallbackId,
     CallId,
@@ -18,7 +18,7 @@ from sim.trace.events.fields import (
 )
 
 
-class Published(Event, frozen=True, tag="publish"):
+class Published(TraceEvent, frozen=True, tag="publish"):
     """A message was published."""
 
     message: MessageId
@@ -27,7 +27,7 @@ class Published(Event, frozen=True, tag="publish"):
     entity: CallbackId
 
 
-class QosMismatched(Event, frozen=True, tag="qos_mismatch"):
+class QosMismatched(TraceEvent, frozen=True, tag="qos_mismatch"):
     """A publisher and a subscription of one topic do not match, so no message goes between them.
 
     The node is the publisher's, the callback the subscription's, none for one outside the program. A
@@ -45,7 +45,7 @@ class QosMismatched(Event, frozen=True, tag="qos_mismatch"):
     """Where the program makes the subscription, as ``file:line``."""
 
 
-class TopicAppeared(Event, frozen=True, tag="topic"):
+class TopicAppeared(TraceEvent, frozen=True, tag="topic"):
     """The first message was published of a topic whose contents are recorded."""
 
     topic: WireOnly[TopicId]
@@ -60,7 +60,7 @@ class TopicAppeared(Event, frozen=True, tag="topic"):
     """What the first publisher offers, as YAML in rosbag2's form."""
 
 
-class MessageSent(Event, frozen=True, tag="message"):
+class MessageSent(TraceEvent, frozen=True, tag="message"):
     """A published message was encoded; only in runs whose contents are recorded."""
 
     message: MessageId
@@ -69,7 +69,7 @@ class MessageSent(Event, frozen=True, tag="message"):
     """Bytes of the message as little-endian CDR; none where it could not be encoded."""
 
 
-class ServiceCalled(Event, frozen=True, tag="service_call"):
+class ServiceCalled(TraceEvent, frozen=True, tag="service_call"):
     """A request left for a service."""
 
     call: CallId
@@ -79,7 +79,7 @@ class ServiceCalled(Event, frozen=True, tag="service_call"):
     """The request, as Python shows it."""
 
 
-class ServiceReplied(Event, frozen=True, tag="service_reply"):
+class ServiceReplied(TraceEvent, frozen=True, tag="service_reply"):
     """A service answered a call."""
 
     call: CallId
@@ -88,14 +88,14 @@ class ServiceReplied(Event, frozen=True, tag="service_reply"):
     """The response, as Python shows it."""
 
 
-class RequestLost(Event, frozen=True, tag="request_lost"):
+class RequestLost(TraceEvent, frozen=True, tag="request_lost"):
     """A request was sent while nobody offered the service; no answer will ever come."""
 
     call: CallId
     service: ServiceName
 
 
-class CallBlocked(Event, frozen=True, tag="blocked"):
+class CallBlocked(TraceEvent, frozen=True, tag="blocked"):
     """A thread blocks in ``Client.call`` until the reply comes."""
 
     call: CallId
@@ -104,7 +104,7 @@ class CallBlocked(Event, frozen=True, tag="blocked"):
     service: ServiceName
 
 
-class CallUnblocked(Event, frozen=True, tag="unblocked"):
+class CallUnblocked(TraceEvent, frozen=True, tag="unblocked"):
     """``Client.call`` returned."""
 
     call: CallId

@@ -7,7 +7,7 @@ import msgspec
 from sim.trace.events.fields import Nanoseconds
 
 
-class Event(msgspec.Struct, frozen=True, array_like=True, gc=False):
+class TraceEvent(msgspec.Struct, frozen=True, array_like=True, gc=False):
     """Something that happened in a run.
 
     A subclass describes one kind of event, and is the only description of it: the types of its fields and
@@ -20,9 +20,11 @@ class Event(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 
 @cache
-def kinds() -> tuple[type[Event], ...]:
+def kinds() -> tuple[type[TraceEvent], ...]:
     """Every kind of event. For use after ``sim.trace.events`` has been imported, which imports them all.
 
     A class elsewhere may stand for one of them until it is packed; it is no kind of its own.
     """
-    return tuple(each for each in Event.__subclasses__() if each.__module__.startswith(f"{__package__}."))
+    return tuple(
+        each for each in TraceEvent.__subclasses__() if each.__module__.startswith(f"{__package__}.")
+    )

@@ -2,7 +2,7 @@
 
 from enum import StrEnum
 
-from sim.trace.events.event import Event
+from sim.trace.events.event import TraceEvent
 from sim.trace.events.fields import (
     CallbackId,
     EntityId,
@@ -37,7 +37,7 @@ class GroupKind(StrEnum):
     CUSTOM = "custom"
 
 
-class ProcessAppeared(Event, frozen=True, tag="process"):
+class ProcessAppeared(TraceEvent, frozen=True, tag="process"):
     """One of several programs of the run was started."""
 
     process: ProcessId
@@ -45,7 +45,7 @@ class ProcessAppeared(Event, frozen=True, tag="process"):
     """Tells the program from the others."""
 
 
-class ProcessEnded(Event, frozen=True, tag="process_end"):
+class ProcessEnded(TraceEvent, frozen=True, tag="process_end"):
     """One of several programs ended."""
 
     process: ProcessId
@@ -55,7 +55,7 @@ class ProcessEnded(Event, frozen=True, tag="process_end"):
     """Exit code."""
 
 
-class ThreadAppeared(Event, frozen=True, tag="thread"):
+class ThreadAppeared(TraceEvent, frozen=True, tag="thread"):
     """A thread of a program ran its first callback, or its executor named it."""
 
     thread: WireOnly[ThreadId]
@@ -66,7 +66,7 @@ class ThreadAppeared(Event, frozen=True, tag="thread"):
     """The executor whose worker the thread is; 0 for a thread that the program itself started."""
 
 
-class ExecutorAppeared(Event, frozen=True, tag="executor"):
+class ExecutorAppeared(TraceEvent, frozen=True, tag="executor"):
     """An executor was made."""
 
     executor: WireOnly[ExecutorId]
@@ -76,7 +76,7 @@ class ExecutorAppeared(Event, frozen=True, tag="executor"):
     """How many callbacks it can run at once."""
 
 
-class NodeAppeared(Event, frozen=True, tag="node"):
+class NodeAppeared(TraceEvent, frozen=True, tag="node"):
     """A node of a program was made."""
 
     node: NodeId
@@ -84,7 +84,7 @@ class NodeAppeared(Event, frozen=True, tag="node"):
     """Fully qualified name (``/sub_node``)."""
 
 
-class GroupAppeared(Event, frozen=True, tag="group"):
+class GroupAppeared(TraceEvent, frozen=True, tag="group"):
     """A callback group got its first entity."""
 
     group: GroupId
@@ -94,7 +94,7 @@ class GroupAppeared(Event, frozen=True, tag="group"):
     """Python class of the group."""
 
 
-class EntityAppeared(Event, frozen=True, tag="entity"):
+class EntityAppeared(TraceEvent, frozen=True, tag="entity"):
     """An entity with a callback was made."""
 
     entity: EntityId
@@ -117,13 +117,13 @@ class EntityAppeared(Event, frozen=True, tag="entity"):
     """Time between a timer's calls; 0 for others."""
 
 
-class EntityGone(Event, frozen=True, tag="entity_gone"):
+class EntityGone(TraceEvent, frozen=True, tag="entity_gone"):
     """An entity was destroyed."""
 
     entity: EntityId
 
 
-class SpinClashed(Event, frozen=True, tag="spin_clash"):
+class SpinClashed(TraceEvent, frozen=True, tag="spin_clash"):
     """A thread asked to spin what is being spun already.
 
     Without ``node`` nothing was taken from an executor: the executor, which spins already, raised

@@ -6,12 +6,12 @@ from typing import Any
 
 import msgspec
 
-from sim.trace.events.event import Event, kinds
+from sim.trace.events.event import TraceEvent, kinds
 
 _encoder = msgspec.msgpack.Encoder()
 
 
-def encode(events: list[Event]) -> bytes:
+def encode(events: list[TraceEvent]) -> bytes:
     """Pack a batch of events."""
     try:
         return _encoder.encode(events)
@@ -19,7 +19,7 @@ def encode(events: list[Event]) -> bytes:
         return _encoder.encode(escape_surrogates(events))
 
 
-def escape_surrogates(events: list[Event]) -> list[Event]:
+def escape_surrogates(events: list[TraceEvent]) -> list[TraceEvent]:
     """Return events in whose texts lone surrogates, which UTF-8 does not have, are written as ``\\udc80``.
 
     They come from names of files that are not UTF-8, and what programs print can hold them.
@@ -39,7 +39,7 @@ def _escaped(value: Any) -> Any:
     return value
 
 
-def decode(batch: bytes) -> list[Event]:
+def decode(batch: bytes) -> list[TraceEvent]:
     """Unpack what ``encode`` packed.
 
     Raises:
@@ -52,6 +52,6 @@ def decode(batch: bytes) -> list[Event]:
 
 
 @cache
-def _decoder() -> msgspec.msgpack.Decoder[list[Event]]:
+def _decoder() -> msgspec.msgpack.Decoder[list[TraceEvent]]:
     event: Any = reduce(or_, kinds())
     return msgspec.msgpack.Decoder(list[event])

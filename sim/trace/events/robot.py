@@ -1,6 +1,6 @@
 """The robot and what stands around it."""
 
-from sim.trace.events.event import Event
+from sim.trace.events.event import TraceEvent
 from sim.trace.events.fields import (
     MessageId,
     Metres,
@@ -11,7 +11,7 @@ from sim.trace.events.fields import (
 )
 
 
-class ArenaShown(Event, frozen=True, tag="arena"):
+class ArenaShown(TraceEvent, frozen=True, tag="arena"):
     """What stands around the robot."""
 
     walls: tuple[tuple[float, float, float, float], ...]
@@ -22,7 +22,7 @@ class ArenaShown(Event, frozen=True, tag="arena"):
     """Distance from the middle of the robot to its rim."""
 
 
-class RobotMoved(Event, frozen=True, tag="robot"):
+class RobotMoved(TraceEvent, frozen=True, tag="robot"):
     """Where the robot is, and how it moves."""
 
     x: Metres
@@ -47,7 +47,7 @@ class RobotMoved(Event, frozen=True, tag="robot"):
     """Distance driven since the run began."""
 
 
-class Scanned(Event, frozen=True, tag="scan"):
+class Scanned(TraceEvent, frozen=True, tag="scan"):
     """The laser measured a full turn."""
 
     message: MessageId
@@ -59,7 +59,7 @@ class Scanned(Event, frozen=True, tag="scan"):
     """
 
 
-class VelocityCommanded(Event, frozen=True, tag="cmd_vel"):
+class VelocityCommanded(TraceEvent, frozen=True, tag="cmd_vel"):
     """The robot's driver took a velocity command."""
 
     linear: MetresPerSecond

@@ -2,11 +2,11 @@
 
 from enum import StrEnum
 
-from sim.trace.events.event import Event
+from sim.trace.events.event import TraceEvent
 from sim.trace.events.fields import Nanoseconds, Text, WireOnly
 
 
-class RunStarted(Event, frozen=True, tag="run_start"):
+class RunStarted(TraceEvent, frozen=True, tag="run_start"):
     """The run began."""
 
     target: str
@@ -30,7 +30,7 @@ class CommandKind(StrEnum):
     """Also in recordings that do not tell."""
 
 
-class RunEnded(Event, frozen=True, tag="run_end"):
+class RunEnded(TraceEvent, frozen=True, tag="run_end"):
     """The run is over: its time was up, its program returned or failed, or somebody stopped it."""
 
     reason: str
@@ -43,14 +43,14 @@ class RunEnded(Event, frozen=True, tag="run_end"):
     """The exception that ended it, as ``CallbackFailed.error`` has it; "" for none, None if not known."""
 
 
-class RunEnding(Event, frozen=True, tag="run_ending"):
+class RunEnding(TraceEvent, frozen=True, tag="run_ending"):
     """The program was told to end, as by Ctrl-C: what follows is its own ending, and checks leave it out."""
 
     reason: str
     """Why the run ends, as a sentence."""
 
 
-class CommandGiven(Event, frozen=True, tag="command"):
+class CommandGiven(TraceEvent, frozen=True, tag="command"):
     """The person at the keyboard or the command line did something to the run, such as calling a service."""
 
     text: Text
@@ -59,7 +59,7 @@ class CommandGiven(Event, frozen=True, tag="command"):
     """What it does to the run."""
 
 
-class InputGiven(Event, frozen=True, tag="input"):
+class InputGiven(TraceEvent, frozen=True, tag="input"):
     """Something was told to the run from outside, and is carried out now: what a repetition has to be told.
 
     What the set-up of the run foresaw is not among these, nor is what is done to the run's time.
@@ -71,28 +71,28 @@ class InputGiven(Event, frozen=True, tag="input"):
     """0 at the end of its moment; a moment that does not end takes inputs in recesses, counted from 1."""
 
 
-class TimeHalted(Event, frozen=True, tag="halt"):
+class TimeHalted(TraceEvent, frozen=True, tag="halt"):
     """Time stands again: what the run was to go on to has come."""
 
     text: Text
     """The command that said how far to go."""
 
 
-class TimePassed(Event, frozen=True, tag="time"):
+class TimePassed(TraceEvent, frozen=True, tag="time"):
     """The run on the real clock has come to ``t``: told while nothing else is, so that time goes on.
 
     Lines of JSON leave it out.
     """
 
 
-class EventsLost(Event, frozen=True, tag="lost"):
+class EventsLost(TraceEvent, frozen=True, tag="lost"):
     """The trace could not keep up, and events were thrown away."""
 
     count: int
     """How many were lost since the run began."""
 
 
-class ContentsLost(Event, frozen=True, tag="contents_lost"):
+class ContentsLost(TraceEvent, frozen=True, tag="contents_lost"):
     """Messages were published faster than they could be encoded."""
 
     count: int

@@ -2,7 +2,7 @@
 
 from enum import StrEnum
 
-from sim.trace.events.event import Event
+from sim.trace.events.event import TraceEvent
 from sim.trace.events.fields import CallbackId, LineId, LoggerName, Maybe, ProcessId, Text, ThreadId, WireOnly
 
 
@@ -36,7 +36,7 @@ class Reading(StrEnum):
         return self in (Reading.KEYS, Reading.RAW)
 
 
-class Logged(Event, frozen=True, tag="log"):
+class Logged(TraceEvent, frozen=True, tag="log"):
     """A program wrote a line to its log."""
 
     severity: Severity
@@ -49,7 +49,7 @@ class Logged(Event, frozen=True, tag="log"):
     entity: CallbackId
 
 
-class Printed(Event, frozen=True, tag="print"):
+class Printed(TraceEvent, frozen=True, tag="print"):
     """A program wrote a line to standard output or error."""
 
     text: Text
@@ -76,7 +76,7 @@ class NoticeKind(StrEnum):
     """Threads wait without a timeout for what cannot come any more."""
 
 
-class Notice(Event, frozen=True, tag="notice"):
+class Notice(TraceEvent, frozen=True, tag="notice"):
     """The engine has something to say to the person about the run itself."""
 
     severity: Severity
@@ -94,7 +94,7 @@ class Notice(Event, frozen=True, tag="notice"):
     """The part of ``text`` that says what to do about it."""
 
 
-class KeyboardAsked(Event, frozen=True, tag="keyboard"):
+class KeyboardAsked(TraceEvent, frozen=True, tag="keyboard"):
     """A program waits for the keyboard; recorded where it begins to, does so in another way, or stops.
 
     A program that looks for keys again and again, each time for a moment, is recorded the first time only.
@@ -107,14 +107,14 @@ class KeyboardAsked(Event, frozen=True, tag="keyboard"):
     """What people call the program."""
 
 
-class Typed(Event, frozen=True, tag="typed"):
+class Typed(TraceEvent, frozen=True, tag="typed"):
     """Text was typed at the terminal of the run's programs."""
 
     text: Text
     """What was typed; a password is spelt in dots."""
 
 
-class LineGiven(Event, frozen=True, tag="line"):
+class LineGiven(TraceEvent, frozen=True, tag="line"):
     """A ``ros2`` line was given, at the prompt, on the command line or by the run's set-up."""
 
     line: LineId
@@ -122,7 +122,7 @@ class LineGiven(Event, frozen=True, tag="line"):
     """The line."""
 
 
-class LineSaid(Event, frozen=True, tag="line_text"):
+class LineSaid(TraceEvent, frozen=True, tag="line_text"):
     """A ``ros2`` line wrote a line of text."""
 
     line: LineId
@@ -132,7 +132,7 @@ class LineSaid(Event, frozen=True, tag="line_text"):
     """Whether it went to standard error."""
 
 
-class LineEnded(Event, frozen=True, tag="line_end"):
+class LineEnded(TraceEvent, frozen=True, tag="line_end"):
     """A ``ros2`` line is done."""
 
     line: LineId
@@ -140,7 +140,7 @@ class LineEnded(Event, frozen=True, tag="line_end"):
     """Exit code."""
 
 
-class LineCompleted(Event, frozen=True, tag="completion"):
+class LineCompleted(TraceEvent, frozen=True, tag="completion"):
     """The answer to a request for completion in a ``ros2`` line."""
 
     line: LineId

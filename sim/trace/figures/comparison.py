@@ -11,7 +11,7 @@ from sim.trace.figures.concurrency import threads_incrementally
 from sim.trace.figures.statistics import CallbackStatistics, statistics_incrementally
 from sim.trace.figures.summary import RobotFigures, robot_incrementally, trail_in_parts
 from sim.trace.incremental import STEP_SIZE, Incremental, collect, run_to_end
-from sim.trace.model import Entity, Nanoseconds, Wait, Window
+from sim.trace.model import EntityInfo, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
 
 Key: TypeAlias = tuple[str, str, str, str, int]
@@ -146,7 +146,7 @@ def _callbacks_of(timeline: Timeline, window: Window) -> Incremental[dict[Key, C
     return callbacks
 
 
-def _description(entity: Entity, timeline: Timeline) -> tuple[str, str, str, str]:
+def _description(entity: EntityInfo, timeline: Timeline) -> tuple[str, str, str, str]:
     return timeline.nodes.get(entity.node, ""), entity.kind.value, entity.callback, entity.name
 
 

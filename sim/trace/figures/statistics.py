@@ -17,7 +17,7 @@ import numpy as np
 from sim.trace.events import EntityId, EntityKind, ThreadId
 from sim.trace.figures.concurrency import threads_at_once
 from sim.trace.incremental import STEP_SIZE, Incremental, collect, run_to_end, split
-from sim.trace.model import Entity, Nanoseconds, Window
+from sim.trace.model import EntityInfo, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 _Ranked: TypeAlias = np.ndarray[Any, np.dtype[np.int64]]
@@ -52,7 +52,7 @@ class CallbackStatistics:
     - ``errors``: calls that started in the window and raised.
     """
 
-    entity: Entity
+    entity: EntityInfo
     calls: int
     duration: Distribution | None
     wait: Distribution | None
@@ -208,7 +208,7 @@ def _finished_series(
 
 
 def _jitter(
-    entity: Entity, starts: Sequence[Nanoseconds], ages: Sequence[Nanoseconds]
+    entity: EntityInfo, starts: Sequence[Nanoseconds], ages: Sequence[Nanoseconds]
 ) -> Incremental[Distribution | None]:
     if entity.kind is EntityKind.TIMER:
         steps = (after - before for before, after in pairwise(starts))
@@ -221,7 +221,7 @@ def _jitter(
     return None
 
 
-def ages_used(timeline: Timeline, timer: Entity, window: Window) -> dict[EntityId, Distribution]:
+def ages_used(timeline: Timeline, timer: EntityInfo, window: Window) -> dict[EntityId, Distribution]:
     """The age of each subscription's newest message, of the timer's node, at the start of the timer's calls.
 
     The newest message is the one published last of those taken at or before that time. Calls before the first

@@ -9,7 +9,7 @@ from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityId, RobotMoved
 from sim.trace.figures.concurrency import threads_at_once
 from sim.trace.incremental import STEP_SIZE, Incremental, collect, run_to_end, split
-from sim.trace.model import Call, Entity, Nanoseconds, Wait, Window
+from sim.trace.model import Call, EntityInfo, Nanoseconds, Wait, Window
 from sim.trace.timeline import Timeline
 
 TURNING = 0.02
@@ -37,7 +37,7 @@ class CallbackFigures:
     the age of the oldest message it took, or a timer's greatest lateness.
     """
 
-    entity: Entity
+    entity: EntityInfo
     name: str
     group: str
     calls: int

@@ -7,7 +7,7 @@ import msgspec
 import pytest
 
 from cbtui.engines.session import ProcessSession
-from sim.engine.commands import Type
+from sim.engine.commands import TerminalInput
 from sim.engine.inputs import inputs_of
 from sim.engine.setup import Keyboard, RunSetup, TimedText
 from sim.trace.events import (
@@ -250,7 +250,7 @@ def test_curses_says_what_does_its_work_here(tmp_path: Path) -> None:
     assert run.ending.reason.endswith("; print, and read keys with termios")
 
 
-def live(setup: RunSetup, *keys: Type) -> Run:
+def live(setup: RunSetup, *keys: TerminalInput) -> Run:
     """Run a program and type the first of some texts when it waits for the keyboard, then one by one."""
     news: Queue[list[AnyEvent] | str | None] = Queue()
     session = ProcessSession(msgspec.structs.replace(setup, keyboard=Keyboard.LIVE), news.put, news.put)
@@ -273,7 +273,7 @@ def live(setup: RunSetup, *keys: Type) -> Run:
 @pytest.mark.parametrize("source", [ASKING, TELEOP], ids=["lines", "keys"])
 def test_a_run_that_was_typed_to_is_repeated_byte_for_byte(tmp_path: Path, source: str) -> None:
     setup = set_up(tmp_path, source, seconds=3)
-    run = live(setup, Type("1\n"), Type("2\n"), Type("wwd", ends=True))
+    run = live(setup, TerminalInput("1\n"), TerminalInput("2\n"), TerminalInput("wwd", ends=True))
     assert [event.text for event in run.events if isinstance(event, Typed)]
     again = run_to_end(
         msgspec.structs.replace(setup, keyboard=Keyboard.REPEATED, inputs=inputs_of(run.events))
@@ -282,7 +282,7 @@ def test_a_run_that_was_typed_to_is_repeated_byte_for_byte(tmp_path: Path, sourc
 
 
 def test_a_run_as_fast_as_it_can_waits_for_whoever_types(tmp_path: Path) -> None:
-    run = live(set_up(tmp_path, ASKING), Type("1\n"), Type("q\n"))
+    run = live(set_up(tmp_path, ASKING), TerminalInput("1\n"), TerminalInput("q\n"))
     assert run.ending.reason == "the program returned"
     assert run.ending.t < SECOND
 
@@ -291,5 +291,5 @@ def test_a_run_as_fast_as_it_can_waits_for_whoever_types(tmp_path: Path) -> None
 def test_many_lines_from_a_pipe_arrive_whole(tmp_path: Path) -> None:
     source = "import sys\nnumbers = [int(line) for line in sys.stdin]\nprint(len(numbers), sum(numbers))"
     text = "".join(f"{number}\n" for number in range(5000))
-    run = live(set_up(tmp_path, source), Type(text, ends=True))
+    run = live(set_up(tmp_path, source), TerminalInput(text, ends=True))
     assert printed(run) == ["5000 12497500"]

@@ -7,7 +7,7 @@ import pytest
 from textual.pilot import Pilot
 
 from cbtui.widgets.shell import ProgramKeyboard, ShellOutput
-from sim.engine.commands import Type
+from sim.engine.commands import TerminalInput
 from sim.trace.events import AnyEvent, KeyboardAsked, Printed, Reading, RunEnded, Typed
 from tests.support.builder import ns
 from tests.support.console import NARROW, WIDE, RecordedConsole, settle
@@ -42,7 +42,7 @@ async def press(pilot: Pilot[None], *keys: str) -> None:
 
 
 def typed(app: RecordedConsole) -> list[str]:
-    return [command.text for command in app.engines.latest.commands if isinstance(command, Type)]
+    return [command.text for command in app.engines.latest.commands if isinstance(command, TerminalInput)]
 
 
 @pytest.mark.parametrize("size", first_daily(WIDE, NARROW))

@@ -2,7 +2,7 @@ import pytest
 
 from cbtui.widgets.lanes.names import group_name, more_lanes, thread_name
 from sim.trace.events import GroupKind
-from sim.trace.model import Group, Thread
+from sim.trace.model import GroupInfo, ThreadInfo
 
 
 @pytest.mark.parametrize(
@@ -19,17 +19,17 @@ from sim.trace.model import Group, Thread
     ],
 )
 def test_a_threads_name_gives_way_where_it_tells_least(name: str, room: int, shown: str) -> None:
-    assert thread_name(Thread(1, name, 0), room, "…") == shown
+    assert thread_name(ThreadInfo(1, name, 0), room, "…") == shown
 
 
 def test_threads_of_programs_that_differ_at_the_end_stay_apart() -> None:
-    names = {thread_name(Thread(1, f"exercise53-{n} MainThread", 0), 11, "…") for n in range(1, 4)}
+    names = {thread_name(ThreadInfo(1, f"exercise53-{n} MainThread", 0), 11, "…") for n in range(1, 4)}
     assert len(names) == 3
 
 
 @pytest.mark.parametrize(("room", "shown"), [(9, "exclusive"), (8, "excl")])
 def test_a_groups_kind_is_cut_to_what_it_is_known_by(room: int, shown: str) -> None:
-    assert group_name(Group(1, 1, GroupKind.EXCLUSIVE, "", "A"), room) == shown
+    assert group_name(GroupInfo(1, 1, GroupKind.EXCLUSIVE, "", "A"), room) == shown
 
 
 @pytest.mark.parametrize(

@@ -24,7 +24,7 @@ class _AwaitedMessage(Subscription):
         group = node.default_callback_group
         super().__init__(node, msg_type, name, _ignore, group, qos_profile, topic=topic)
         self.handed_out = True
-        self.arrived = node.context.host.clock.signal()
+        self.arrived = node.context.host.clock.auto_reset_event()
 
     def deliver(self, delivery: Delivery) -> None:
         """A message arrived: whoever waits goes on."""

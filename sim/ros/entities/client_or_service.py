@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from sim.ros.scheduling.entity import OwnerNode
 
 
-class ServiceEndpoint:
+class ClientOrService:
     """The common part of the entities Client and Service.
 
     ``srv_name`` is the service's name as the program wrote it; ``service_name`` is the full one.

@@ -25,7 +25,7 @@ class GroupChoice(StrEnum):
 
 
 @dataclass
-class Tuning:
+class CallbackOverrides:
     """The changes; ``periods`` are nanoseconds. Everything else stays as in the program.
 
     A change for a node takes precedence over one for any node. Use it with the host's lock held.

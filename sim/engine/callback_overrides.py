@@ -1,18 +1,18 @@
-"""Turns the changes of a set-up into the tuning of the model."""
+"""Turns the changes of a set-up into the overrides that the model applies."""
 
 from sim.engine.setup import RunSetup
-from sim.ros.middleware.tuning import GroupChoice, Tuning
+from sim.ros.middleware.callback_overrides import CallbackOverrides, GroupChoice
 
 
-def tuning_of(setup: RunSetup) -> Tuning | None:
-    """Return what is changed about the programs, None for nothing.
+def overrides_of(setup: RunSetup) -> CallbackOverrides | None:
+    """Return the overrides; None if the set-up has none.
 
     Raises:
         ValueError: a wish that there is not.
     """
     if not setup.groups and not setup.periods:
         return None
-    return Tuning(
+    return CallbackOverrides(
         {(each.node, each.callback): GroupChoice(each.wish) for each in setup.groups},
         {(each.node, each.callback): each.period for each in setup.periods},
     )
