@@ -6,8 +6,8 @@ import argparse
 
 from sim.interfaces import DefinitionError
 from sim.packages import PackageError, Packages
-from sim.ros.middleware.host import Host
 from sim.shell.commands import next_names, verb_parser
+from sim.shell.ground import Ground
 from sim.shell.parser import LineParser, Surroundings
 from sim.shell.session import CommandFailed
 from sim.shell.splitting import scan
@@ -21,7 +21,7 @@ def word_start(text: str, cursor: int) -> int:
     return scanned.words[-1].start if scanned.ends_in_word else cursor
 
 
-def complete(host: Host, packages: Packages, text: str, cursor: int) -> list[str]:
+def complete(ground: Ground, packages: Packages, text: str, cursor: int) -> list[str]:
     """What can stand in place of the text from ``word_start`` to the cursor, quoted for a shell.
 
     Looks at the graph as it is; takes no time and starts nothing. Thread-safe on the real clock; on
@@ -39,7 +39,7 @@ def complete(host: Host, packages: Packages, text: str, cursor: int) -> list[str
             names = ["ros2", *names]
         return [name for name in names if name.startswith(begun)]
     parser, used = found
-    candidates = _Place(parser, words[used:]).candidates(begun, host, packages)
+    candidates = _Place(parser, words[used:]).candidates(begun, ground, packages)
     return [each for each in candidates if _unquoted(each).startswith(begun)]
 
 
@@ -54,7 +54,7 @@ class _Place:
         for word in words:
             self._take(word)
 
-    def candidates(self, begun: str, host: Host, packages: Packages) -> list[str]:
+    def candidates(self, begun: str, ground: Ground, packages: Packages) -> list[str]:
         action = self._awaited or self._next_positional()
         if self._awaited is None and begun.startswith("-") and not _takes_anything(action):
             return sorted(each for each in self._parser._option_string_actions if each.startswith("--"))
@@ -64,7 +64,7 @@ class _Place:
         if completer is None:
             return []
         try:
-            return sorted(set(completer(Surroundings(host, packages, tuple(self._given)))))
+            return sorted(set(completer(Surroundings(ground, packages, tuple(self._given)))))
         except (CommandFailed, PackageError, DefinitionError):  # what was given before is not known
             return []
 

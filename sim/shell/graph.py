@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
-from collections.abc import Callable, Iterable
-from itertools import chain
-from typing import Any
+from collections.abc import Callable
+from typing import TypeAlias
 
-from sim.interfaces import type_name
 from sim.ros.exceptions import InvalidServiceNameException, InvalidTopicNameException
 from sim.ros.naming.expand_topic_name import expand_topic_name
 from sim.ros.naming.validate_full_topic_name import validate_full_topic_name
-from sim.ros.node.graph import NamesAndTypes, nodes_on
-from sim.ros.node.node import Node
 from sim.shell.parser import Completer, Surroundings
 from sim.shell.session import CommandFailed, ShellSession
+
+NamesAndTypes: TypeAlias = list[tuple[str, list[str]]]
 
 
 def is_hidden(name: str) -> bool:
@@ -41,7 +38,7 @@ def full_topic_name(session: ShellSession, topic: str) -> str:
 def topic_types(session: ShellSession, topic: str) -> list[str] | None:
     """The types of a topic, None if nobody speaks of it."""
     full = full_topic_name(session, topic)
-    session.want(full)
+    session.ground.want(full)
     return dict(session.node.get_topic_names_and_types()).get(full)
 
 
@@ -65,48 +62,24 @@ def absolute(node_name: str) -> str:
 # Candidates
 
 
-def _ends(
-    surroundings: Surroundings, of: Callable[[Node], Iterable[tuple[str, Any]]]
-) -> dict[str, list[str]]:
-    host = surroundings.host
-    found: defaultdict[str, set[str]] = defaultdict(set)
-    with host.lock:
-        for name, kind in chain.from_iterable(map(of, nodes_on(host.network))):
-            found[name].add(type_name(kind))
-    return {name: sorted(types) for name, types in found.items()}
-
-
 def known_topics(surroundings: Surroundings) -> dict[str, list[str]]:
     """Every topic and its types."""
-
-    def ends(node: Node) -> list[tuple[str, Any]]:
-        heard = [(each.topic_name, each.msg_type) for each in node.subscriptions]
-        return heard + [(each.topic_name, each.msg_type) for each in node.publishers]
-
-    return _ends(surroundings, ends)
+    return surroundings.ground.topics()
 
 
 def known_services(surroundings: Surroundings) -> dict[str, list[str]]:
     """Every service and its types."""
-    return _ends(surroundings, lambda node: [(each.name, each.srv_type) for each in node.services])
+    return surroundings.ground.services()
 
 
 def known_nodes(surroundings: Surroundings) -> list[str]:
     """Every node that is not hidden."""
-    with surroundings.host.lock:
-        nodes = nodes_on(surroundings.host.network)
-    names = [node.get_fully_qualified_name() for node in nodes]
-    return [name for name in names if not is_hidden(name)]
+    return [name for name in surroundings.ground.nodes() if not is_hidden(name)]
 
 
 def known_parameters(surroundings: Surroundings) -> list[str]:
-    """The parameters of the node that was given first, known even while nobody spins it."""
-    wanted = absolute(surroundings.given[0])
-    with surroundings.host.lock:
-        for node in nodes_on(surroundings.host.network):
-            if node.get_fully_qualified_name() == wanted:
-                return list(node.list_parameters([], 0).names)
-    return []
+    """The parameters of the node that was given first."""
+    return surroundings.ground.parameters(absolute(surroundings.given[0]))
 
 
 def type_of_given(known: Callable[[Surroundings], dict[str, list[str]]]) -> Completer:

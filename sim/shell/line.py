@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import signal
 
-from sim.clock import VirtualClock
-from sim.ros.middleware.host import Host
 from sim.shell.command_names import ELSEWHERE, listed
 from sim.shell.commands import parse
+from sim.shell.ground import Ground
 from sim.shell.parser import HelpAsked, UsageError
 from sim.shell.session import CommandFailed, CommandInterrupted, Ended, ShellSession
 from sim.shell.splitting import LineError, split
@@ -21,23 +20,17 @@ _INTERRUPTED = int(signal.SIGINT)
 class ShellLine:
     """A ``ros2`` line. What it prints and how it ends goes to ``tools``; its node is hidden."""
 
-    def __init__(self, host: Host, text: str, tools: Tools) -> None:
-        self._host = host
+    def __init__(self, ground: Ground, text: str, tools: Tools) -> None:
         self._text = text
-        self._session = ShellSession(host, tools)
-        self._session.process.take_output = tools.say
+        self._session = ShellSession(ground, tools)
 
     def start(self) -> None:
-        """Begin. It does not wait; call it on a thread that has the run's time (see ``Clock.call_at``)."""
-        self._session.process.start_thread(self._run, "ros2")
+        """Begin. It does not wait; call it on a thread that has the ground's time."""
+        self._session.process.start_thread(self._run)
 
     def interrupt(self) -> None:
         """End the line as Ctrl-C would; again if what it started does not end. Any thread may call it."""
-        clock = self._host.clock
-        if isinstance(clock, VirtualClock) and not clock.owns_current_thread():
-            clock.time.inject(self._session.interrupt)
-        else:
-            self._session.interrupt()
+        self._session.process.on_own_time(self._session.interrupt)
 
     def _run(self) -> None:
         try:

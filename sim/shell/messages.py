@@ -2,38 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TypeVar
+from typing import Any
 
 from sim import plain_yaml
-from sim.interfaces import Message, ServiceType, UnknownInterfaceError, action, message, service
+from sim.interfaces import Kind, Message, ServiceType, UnknownInterfaceError
 from sim.interfaces.base import ActionType
 from sim.interfaces.rosidl_runtime_py import message_to_yaml, set_message_fields
 from sim.plain_yaml import YamlError
+from sim.shell.ground import Ground
 from sim.shell.quoting import double_quoted, quoted
 from sim.shell.session import CommandFailed
-
-T = TypeVar("T")
 
 NO_DICTIONARY = "The passed value needs to be a dictionary in YAML format"
 
 
-def message_class(name: str) -> type[Message]:
+def message_class(ground: Ground, name: str) -> type[Message]:
     """The class of ``std_msgs/msg/Int32`` or ``std_msgs/Int32``; raises CommandFailed if there is none."""
-    return _found(name, "msg", "message", message)
+    found: type[Message] = _found(ground, name, "msg", "message")
+    return found
 
 
-def service_class(name: str) -> ServiceType:
+def service_class(ground: Ground, name: str) -> ServiceType:
     """The class of ``std_srvs/srv/SetBool`` or ``std_srvs/SetBool``; or raises CommandFailed."""
-    return _found(name, "srv", "service", service)
+    found: ServiceType = _found(ground, name, "srv", "service")
+    return found
 
 
-def action_class(name: str) -> ActionType:
+def action_class(ground: Ground, name: str) -> ActionType:
     """The class of ``example_interfaces/action/Fibonacci``; raises CommandFailed if there is none."""
-    return _found(name, "action", "action", action)
+    found: ActionType = _found(ground, name, "action", "action")
+    return found
 
 
-def _found(name: str, kind: str, noun: str, find: Callable[[str, str], T]) -> T:
+def _found(ground: Ground, name: str, kind: Kind, noun: str) -> Any:
     parts = name.split("/")
     if len(parts) == 2:
         parts.insert(1, kind)
@@ -42,7 +43,7 @@ def _found(name: str, kind: str, noun: str, find: Callable[[str, str], T]) -> T:
             f"The passed {noun} type is invalid: {name!r} is not of the form package/{kind}/Name"
         )
     try:
-        return find(parts[0], parts[2])
+        return ground.interface(kind, parts[0], parts[2])
     except UnknownInterfaceError as error:
         raise CommandFailed(f"The passed {noun} type is invalid: {error}") from None
 

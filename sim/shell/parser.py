@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, NoReturn, TypeAlias
 
 from sim.packages import Packages
-from sim.ros.middleware.host import Host
+from sim.shell.ground import Ground
 
 _WIDTH = 78
 """Columns of help and usage: what argparse makes of a terminal of 80."""
@@ -18,7 +18,7 @@ _WIDTH = 78
 class Surroundings:
     """What candidates are looked up in; ``given`` are the arguments before the one that is completed."""
 
-    host: Host
+    ground: Ground
     packages: Packages
     given: tuple[str, ...]
 

@@ -13,7 +13,7 @@ from sim.shell.tools import OnExit, Running
 
 def wait_for(session: ShellSession, start: Callable[[OnExit], Running]) -> int:
     """Start programs and wait for their end, whatever they make of Ctrl-C; returns the exit status."""
-    signal = session.host.clock.auto_reset_event()
+    signal = session.ground.signal()
     statuses: list[int] = []
 
     def on_exit(status: int) -> None:

@@ -5,17 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any
 
-from sim.probes.probe import PublishingProbe
-from sim.ros.context.context import Context
-from sim.ros.middleware.host import Host
-from sim.ros.middleware.process import Process
 from sim.ros.node.node import Node
-from sim.ros.parameters.store import ParameterChange
 from sim.ros.scheduling.executors import Executor, ExternalShutdownException, SingleThreadedExecutor
 from sim.ros.scheduling.task import Future
+from sim.shell.ground import Ground
 from sim.shell.tools import Tools
-
-HIDDEN_NODE_PREFIX = "_ros2cli_"
 
 _SERVICE_POLL = 0.25
 """Seconds between two looks for a service, as in rclpy."""
@@ -41,63 +35,36 @@ class CommandInterrupted(Exception):  # noqa: N818
     """Ctrl-C, or the end of the context."""
 
 
-class _LineNode(Node):
-    """A line's node: its parameters are set before any other program could have discovered it."""
-
-    def _tell_parameter_change(self, change: ParameterChange) -> None:
-        """Tell nobody."""
-
-
 class ShellSession:
     """One line's stay on the network. Only ``interrupt`` may be called by other threads than the line's."""
 
-    def __init__(self, host: Host, tools: Tools) -> None:
-        self.host = host
+    def __init__(self, ground: Ground, tools: Tools) -> None:
+        self.ground = ground
         self.tools = tools
-        self._context = Context(host=host, probe=PublishingProbe(host.clock, host.probe, with_calls=True))
-        self._context.init([])
+        self.process = ground.enter(tools.say)
+        self._interrupted = False
         self._listeners: list[Callable[[], None]] = []
         self._made_node: Node | None = None
         self._made_executor: Executor | None = None
 
     @property
-    def process(self) -> Process:
-        """The process whose thread the line is to run on."""
-        return self._context.process
-
-    def want(self, name: str) -> None:
-        """Tell the network that the line is about to use a topic or service."""
-        with self.host.lock:
-            self._context.network.announce_use(name)
-
-    @property
     def node(self) -> Node:
         """The hidden node, which is made when first asked for."""
         if self._made_node is None:
-            self.make_node(self._free_name())
+            self.make_node(self.process.free_name())
         assert self._made_node is not None
         return self._made_node
 
     def make_node(self, name: str) -> None:
         """Make the line's node under another name than the one it gets by itself."""
-        self._made_node = _LineNode(
-            name, context=self._context, start_parameter_services=False, enable_rosout=False
-        )
+        self._made_node = self.process.make_node(name)
         self._executor.add_node(self._made_node)
-
-    def _free_name(self) -> str:
-        with self.host.lock:
-            taken = {node.get_name() for node in self._context.network.nodes()}
-        number = 1
-        while f"{HIDDEN_NODE_PREFIX}{number}" in taken:
-            number += 1
-        return f"{HIDDEN_NODE_PREFIX}{number}"
 
     @property
     def _executor(self) -> Executor:
         # Made on the line's own thread, so that it belongs to the line's process.
         if self._made_executor is None:
-            self._made_executor = SingleThreadedExecutor(context=self._context)
+            self._made_executor = SingleThreadedExecutor(context=self.process.context)
         return self._made_executor
 
     # Output
@@ -120,6 +87,7 @@ class ShellSession:
         Raises:
             CommandInterrupted: the line was interrupted meanwhile.
         """
+        self.check()
         future = Future() if until is None else until
         try:
             self._executor.spin_until_future_complete(future, seconds)
@@ -140,25 +108,31 @@ class ShellSession:
 
     def check(self) -> None:
         """Raise CommandInterrupted if the line was interrupted."""
-        if not self._context.ok():
+        if self._is_interrupted:
             raise CommandInterrupted
+
+    @property
+    def _is_interrupted(self) -> bool:
+        return self._interrupted or not self.process.context.ok()
 
     # Interrupting
 
     def on_interrupt(self, listener: Callable[[], None]) -> None:
         """Have ``listener`` called at every Ctrl-C, at once if there was one already; it must not wait."""
         self._listeners.append(listener)
-        if not self._context.ok():
+        if self._is_interrupted:
             listener()
 
     def interrupt(self) -> None:
         """Have every wait of the line end."""
+        self._interrupted = True
         for listener in tuple(self._listeners):
             listener()
-        self._context.try_shutdown()
+        if self._made_executor is not None:
+            self._made_executor.shutdown(timeout_sec=0)
 
     def close(self) -> None:
         """Leave the network."""
         if self._made_node is not None:
             self._made_node.destroy_node()
-        self._context.try_shutdown()
+        self.process.leave()

@@ -8,7 +8,7 @@ from typing import Protocol, TypeAlias
 from sim.packages import Packages
 
 OnExit: TypeAlias = Callable[[int], None]
-"""Called once with the exit status, by a thread that lives on the host's time."""
+"""Called once with the exit status, by a thread that lives on the ground's time."""
 
 
 class Running(Protocol):

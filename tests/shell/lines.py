@@ -10,6 +10,7 @@ from sim.clock import RunClock
 from sim.ros.node.node import Node
 from sim.ros.scheduling.executors import SingleThreadedExecutor
 from sim.shell import OnExit, Packages, Running, ShellLine
+from sim.shell.model_ground import ModelGround
 from tests.support.simulation import Simulation, Trace, simulate
 
 
@@ -120,7 +121,7 @@ def carry_out(
         kept.append(tools)
         setup(simulation)
         simulation.sleep(at)
-        line = ShellLine(simulation.host, text, tools)
+        line = ShellLine(ModelGround(simulation.host), text, tools)
         line.start()
         if interrupt_at is not None:
             simulation.at(interrupt_at, line.interrupt)

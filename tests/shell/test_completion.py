@@ -2,12 +2,13 @@
 
 import pytest
 
-from sim.interfaces import message, service
+from sim.interfaces import message, message_of_type, service
 from sim.packages import Packages
 from sim.plain_yaml import load
 from sim.ros.node.node import Node
 from sim.shell import complete, word_start
-from sim.shell.messages import Outgoing, message_class
+from sim.shell.messages import Outgoing
+from sim.shell.model_ground import ModelGround
 from sim.shell.splitting import scan
 from tests.support.simulation import Simulation, simulate
 
@@ -23,7 +24,7 @@ def completed(text: str, packages: Packages | None = None, cursor: int | None = 
         node.create_publisher(message("std_msgs", "Int32"), "/count", 10)
         node.create_service(service("std_srvs", "SetBool"), "/dummy_server_srv", lambda _, response: response)
         at = len(text) if cursor is None else cursor
-        found.extend(complete(simulation.host, packages or Packages(), text, at))
+        found.extend(complete(ModelGround(simulation.host), packages or Packages(), text, at))
 
     simulate(program)
     return found
@@ -81,7 +82,7 @@ def test_a_prototype_is_read_back_as_the_default_message(name: str) -> None:
     (prototype,) = completed(f"topic pub /new {name} ")
     assert "\n" not in prototype
     (word,) = scan(prototype).words
-    cls = message_class(name)
+    cls = message_of_type(name)
     assert Outgoing(cls, load(word.text)).message == cls()
 
 

@@ -7,6 +7,7 @@ from sim.engine.programs.line_tools import LineTools
 from sim.engine.programs.programs import ProgramSupervisor
 from sim.engine.programs.starting import Starter
 from sim.shell import OnExit, ShellLine
+from sim.shell.model_ground import ModelGround
 from sim.trace.events import Printed, ProcessEnded
 
 
@@ -20,7 +21,7 @@ class LaunchedLine:
         self._on_exit = on_exit
         self.number = programs.announce(label)
         tools = LineTools(starter, self._take, self._end)
-        self._line = ShellLine(programs.host, shlex.join(words), tools)
+        self._line = ShellLine(ModelGround(programs.host), shlex.join(words), tools)
         self._line.start()
 
     def interrupt(self) -> None:

@@ -50,6 +50,7 @@ class Lines:
     def begin(self, number: LineId, text: str) -> None:
         """Carry out a line."""
         from sim.shell import ShellLine  # only for runs that are given lines
+        from sim.shell.model_ground import ModelGround
 
         def take(said: str, error: bool) -> None:
             self._record(LineSaid(self._host.clock.now(), number, said, error))
@@ -60,7 +61,8 @@ class Lines:
 
         with self._host.lock:
             self._record(LineGiven(self._host.clock.now(), number, text))
-            line = self._running[number] = ShellLine(self._host, text, LineTools(self._starter, take, end))
+            line = ShellLine(ModelGround(self._host), text, LineTools(self._starter, take, end))
+            self._running[number] = line
         line.start()
 
     def _end(self, number: LineId) -> None:
@@ -82,7 +84,8 @@ class Lines:
     def complete(self, number: LineId, text: str, cursor: int) -> None:
         """Put on the trace what could stand at ``cursor``."""
         from sim.shell import complete, word_start
+        from sim.shell.model_ground import ModelGround
 
-        words = complete(self._host, self._starter.packages(), text, cursor)
+        words = complete(ModelGround(self._host), self._starter.packages(), text, cursor)
         start = word_start(text, cursor)
         self._record(LineCompleted(self._host.clock.now(), number, start, tuple(words)))

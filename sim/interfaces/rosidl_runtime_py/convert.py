@@ -1,24 +1,20 @@
-"""Messages as dictionaries, YAML and CSV; mirrors ``rosidl_runtime_py.convert``."""
+"""Messages as dictionaries, YAML and CSV; mirrors ``rosidl_runtime_py.convert``.
+
+Messages are asked only what those of rosidl answer, too.
+"""
 
 from __future__ import annotations
 
 from array import array
 from collections import OrderedDict
 from functools import partial
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 
 from sim import plain_yaml
 from sim.interfaces.base import Message
-from sim.interfaces.field_types import (
-    AbstractNestedType,
-    Array,
-    BoundedSequence,
-    FieldType,
-    NamespacedType,
-    SequenceType,
-)
+from sim.interfaces.field_types import FieldType, SequenceType
 
 _COLLECTIONS = (list, tuple, array, np.ndarray)
 
@@ -32,8 +28,7 @@ def message_to_ordereddict(
     put the type and length in place of sequences and texts.
     """
     plain = partial(_plain, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
-    types = msg.__interface__.types
-    return OrderedDict((name, plain(getattr(msg, name), of)) for name, of in types.items())
+    return OrderedDict((name, plain(getattr(msg, name), of)) for name, of in field_types(msg).items())
 
 
 def message_to_yaml(
@@ -56,12 +51,12 @@ def message_to_csv(
 
     def written(value: Any, of: FieldType | None = None) -> str:
         if isinstance(value, _COLLECTIONS):
-            if no_arr and isinstance(of, AbstractNestedType):
+            if no_arr and of is not None and is_nested(of):
                 return _length_of(value, of)
             shown = len(value) if truncate_length is None else truncate_length
             items = [written(item) for item in value[:shown]]
             return ",".join([*items, "..."] if len(value) > shown else items)
-        if isinstance(value, Message):
+        if hasattr(value, "SLOT_TYPES"):
             return message_to_csv(value, truncate_length=truncate_length, no_arr=no_arr, no_str=no_str)
         if isinstance(value, str | bytes):
             if no_str:
@@ -69,22 +64,32 @@ def message_to_csv(
             return str(_shortened(value, truncate_length))
         return str(value)
 
-    return ",".join(written(getattr(msg, name), of) for name, of in msg.__interface__.types.items())
+    return ",".join(written(getattr(msg, name), of) for name, of in field_types(msg).items())
 
 
 def get_message_slot_types(msg: Message | type[Message]) -> OrderedDict[str, FieldType]:
     """Return the type of every field by slot: ``{"_data": BasicType("int32")}``."""
-    return OrderedDict((f"_{name}", of) for name, of in msg.__interface__.types.items())
+    return OrderedDict((f"_{name}", of) for name, of in field_types(msg).items())
+
+
+def field_types(msg: Message | type[Message]) -> dict[str, FieldType]:
+    """Return the type of every field by its name."""
+    return dict(zip(msg.get_fields_and_field_types(), msg.SLOT_TYPES, strict=True))
+
+
+def is_nested(of: FieldType) -> TypeGuard[SequenceType]:
+    """Whether this is the type of an array or sequence."""
+    return hasattr(of, "value_type")
 
 
 def _plain(
     value: Any, of: FieldType | None, *, truncate_length: int | None, no_arr: bool, no_str: bool
 ) -> Any:
     options: dict[str, Any] = {"truncate_length": truncate_length, "no_arr": no_arr, "no_str": no_str}
-    if isinstance(value, Message):
+    if hasattr(value, "SLOT_TYPES"):
         return message_to_ordereddict(value, **options)
     if isinstance(value, _COLLECTIONS):
-        if no_arr and isinstance(of, AbstractNestedType):
+        if no_arr and of is not None and is_nested(of):
             return _length_of(value, of)
         shown = len(value) if truncate_length is None else truncate_length
         items = [_plain(item, None, **options) for item in value[:shown]]
@@ -104,9 +109,13 @@ def _shortened(value: str | bytes, length: int | None) -> str | bytes:
 
 def _length_of(value: Any, of: SequenceType) -> str:
     """Return what stands in place of a sequence: its type and length."""
-    inner = of.value_type
-    name = "/".join(inner.namespaced_name()) if isinstance(inner, NamespacedType) else str(inner)
-    if isinstance(of, Array):
-        return f"<array type: {name}[{of.size}]>"
-    bound = f"[{of.maximum_size}]" if isinstance(of, BoundedSequence) else ""
+    inner: Any = of.value_type
+    if hasattr(inner, "namespaced_name"):
+        name = "/".join(inner.namespaced_name())
+    else:
+        name = getattr(inner, "typename", "wstring" if "WString" in type(inner).__name__ else "string")
+    size: int | None = getattr(of, "size", None)
+    if size is not None:
+        return f"<array type: {name}[{size}]>"
+    bound = f"[{of.maximum_size}]" if hasattr(of, "maximum_size") else ""
     return f"<sequence type: {name}{bound}, length: {len(value)}>"

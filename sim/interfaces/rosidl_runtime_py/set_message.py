@@ -10,7 +10,8 @@ from typing import Any
 import numpy as np
 
 from sim.interfaces.base import Message
-from sim.interfaces.field_types import AbstractNestedType, NamespacedType
+from sim.interfaces.rosidl_runtime_py.convert import field_types, is_nested
+from sim.interfaces.rosidl_runtime_py.utilities import import_message_from_namespaced_type
 
 SetStamp = Callable[[Message], None]
 """Gives a field the time, a ``builtin_interfaces/msg/Time``."""
@@ -63,19 +64,21 @@ class _Filling:
 
     def _stands_for_time(self, current: Any, value: Any) -> bool:
         return (
-            isinstance(current, Message)
+            hasattr(current, "SLOT_TYPES")
             and isinstance(value, str)
-            and self._words.get(current.__type_name__) == value
+            and self._words.get(_type_name(current)) == value
         )
 
     def _converted(self, msg: Message, name: str, current: Any, value: Any) -> Any:
-        of = msg.__interface__.types[name]
-        if isinstance(of, AbstractNestedType):
-            if isinstance(of.value_type, NamespacedType):
-                cls = msg.__interface__.parts[of.value_type]
+        of = field_types(msg)[name]
+        if is_nested(of):
+            inner: Any = of.value_type
+            if hasattr(inner, "namespaces"):
+                is_own = isinstance(msg, Message)
+                cls = msg.__interface__.parts[inner] if is_own else import_message_from_namespaced_type(inner)
                 return [self._message(cls, item) for item in value]
             return _sequence(current, value)
-        if isinstance(current, Message):
+        if hasattr(current, "SLOT_TYPES"):
             return self._message(type(current), value)
         if isinstance(current, bytes) and isinstance(value, int):
             return bytes([value])
@@ -87,6 +90,10 @@ class _Filling:
         message = cls()
         self._fill(message, value)
         return message
+
+
+def _type_name(message: Any) -> str:
+    return f"{type(message).__module__.partition('.')[0]}/msg/{type(message).__name__}"
 
 
 def _sequence(current: Any, value: Any) -> Any:

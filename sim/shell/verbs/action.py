@@ -13,9 +13,8 @@ from sim.ros.actions.graph import (
     get_action_names_and_types,
     get_action_server_names_and_types_by_node,
 )
-from sim.ros.node.graph import NamesAndTypes
 from sim.ros.node.node import Node
-from sim.shell.graph import known_topics
+from sim.shell.graph import NamesAndTypes, known_topics
 from sim.shell.messages import NO_DICTIONARY, Outgoing, action_class, given_values, prototype_word
 from sim.shell.parser import LineParser, Surroundings
 from sim.shell.session import CommandFailed, CommandInterrupted, ShellSession
@@ -47,7 +46,7 @@ def _types(surroundings: Surroundings) -> list[str]:
 
 
 def _goal_prototype(surroundings: Surroundings) -> list[str]:
-    return [prototype_word(action_class(surroundings.given[1]).Goal)]
+    return [prototype_word(action_class(surroundings.ground, surroundings.given[1]).Goal)]
 
 
 # list, type, info
@@ -147,7 +146,7 @@ def _add_send_goal(parser: LineParser) -> None:
 
 
 def _send_goal(session: ShellSession, arguments: Namespace) -> None:
-    action_type = action_class(arguments.action_type)
+    action_type = action_class(session.ground, arguments.action_type)
     values = given_values(arguments.goal)
     if not isinstance(values, dict):
         raise CommandFailed(NO_DICTIONARY)

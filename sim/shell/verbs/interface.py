@@ -48,12 +48,12 @@ def _known_interfaces(_: Surroundings) -> list[str]:
 
 def message_prototype(surroundings: Surroundings) -> list[str]:
     """The message of the type that was given second, ready for a shell."""
-    return [prototype_word(message_class(surroundings.given[1]))]
+    return [prototype_word(message_class(surroundings.ground, surroundings.given[1]))]
 
 
 def service_prototype(surroundings: Surroundings) -> list[str]:
     """The request of the type that was given second, ready for a shell."""
-    return [prototype_word(service_class(surroundings.given[1]).Request)]
+    return [prototype_word(service_class(surroundings.ground, surroundings.given[1]).Request)]
 
 
 def _add_list(parser: LineParser) -> None:

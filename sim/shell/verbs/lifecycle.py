@@ -5,7 +5,6 @@ from __future__ import annotations
 from argparse import Namespace
 from typing import Any
 
-from sim.interfaces import service
 from sim.shell.graph import absolute, is_hidden, known_nodes
 from sim.shell.parser import LineParser, Surroundings
 from sim.shell.session import CommandFailed, ShellSession
@@ -76,7 +75,7 @@ def _list(session: ShellSession, arguments: Namespace) -> None:
 
 
 def _say_transitions(session: ShellSession, node: str, kind: str) -> None:
-    found = _call(session, node, kind, service("lifecycle_msgs", "GetAvailableTransitions").Request())
+    found = _call(session, node, kind, _service(session, "GetAvailableTransitions").Request())
     for each in found.available_transitions:
         session.say(
             f"- {each.transition.label} [{each.transition.id}]\n"
@@ -96,7 +95,7 @@ def _add_set(parser: LineParser) -> None:
 
 def _set(session: ShellSession, arguments: Namespace) -> None:
     node = _chosen(session, arguments)
-    request_type = service("lifecycle_msgs", "GetAvailableTransitions").Request
+    request_type = _service(session, "GetAvailableTransitions").Request
     found = _call(session, node, "get_available_transitions", request_type())
     known = {each.transition.label: each.transition for each in found.available_transitions}
     by_number = {str(each.id): each for each in known.values()}
@@ -104,9 +103,7 @@ def _set(session: ShellSession, arguments: Namespace) -> None:
     if chosen is None:
         lines = "".join(f"\n- {each.label} [{each.id}]" for each in known.values())
         raise CommandFailed(f"Unknown transition requested, available ones are:{lines}")
-    answer = _call(
-        session, node, "change_state", service("lifecycle_msgs", "ChangeState").Request(transition=chosen)
-    )
+    answer = _call(session, node, "change_state", _service(session, "ChangeState").Request(transition=chosen))
     if not answer.success:
         raise CommandFailed("Transitioning failed")
     session.say("Transitioning successful")
@@ -120,7 +117,7 @@ def _chosen(session: ShellSession, arguments: Namespace) -> str:
 
 
 def _state(session: ShellSession, node: str) -> Any:
-    return _call(session, node, "get_state", service("lifecycle_msgs", "GetState").Request()).current_state
+    return _call(session, node, "get_state", _service(session, "GetState").Request()).current_state
 
 
 def _described(state: Any) -> str:
@@ -135,8 +132,12 @@ _TYPES = {
 }
 
 
+def _service(session: ShellSession, name: str) -> Any:
+    return session.ground.interface("srv", "lifecycle_msgs", name)
+
+
 def _call(session: ShellSession, node: str, name: str, request: Any) -> Any:
-    client = session.node.create_client(service("lifecycle_msgs", _TYPES[name]), f"{node}/{name}")
+    client = session.node.create_client(_service(session, _TYPES[name]), f"{node}/{name}")
     future = client.call_async(request)
     session.spin(future)
     if (error := future.exception()) is not None:

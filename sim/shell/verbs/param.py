@@ -93,8 +93,8 @@ def _reply(session: ShellSession, future: Future[Any]) -> Any:
 
 
 def _ready_in_time(session: ShellSession, client: AsyncParameterClient) -> bool:
-    end = session.host.clock.now() + int(_SERVICES_PATIENCE * 1e9)
-    session.wait_until(lambda: client.services_are_ready() or session.host.clock.now() >= end)
+    end = session.ground.now() + int(_SERVICES_PATIENCE * 1e9)
+    session.wait_until(lambda: client.services_are_ready() or session.ground.now() >= end)
     return client.services_are_ready()
 
 

@@ -48,21 +48,21 @@ def _add_call(parser: LineParser) -> None:
 
 
 def _call(session: ShellSession, arguments: Namespace) -> None:
-    srv_type = service_class(arguments.service_type)
+    srv_type = service_class(session.ground, arguments.service_type)
     values = given_values(arguments.values)
     client = session.node.create_client(srv_type, arguments.service_name)
     outgoing = Outgoing(srv_type.Request, values)
     if not client.service_is_ready():
         session.say("waiting for service to become available...")
         session.wait_until(client.service_is_ready)
-    clock = session.host.clock
+    now = session.ground.now
     while True:
-        began = clock.now()
+        began = now()
         outgoing.stamp(session.node.get_clock().now().to_msg())
         _request(session, client, outgoing.message)
         if arguments.rate is None:
             return
-        session.sleep(1.0 / arguments.rate - (clock.now() - began) / 1e9)
+        session.sleep(1.0 / arguments.rate - (now() - began) / 1e9)
 
 
 def _request(session: ShellSession, client: Client, request: Any) -> None:
@@ -109,7 +109,7 @@ def _list(session: ShellSession, arguments: Namespace) -> None:
 
 def _types_of(session: ShellSession, service: str) -> list[str]:
     full = session.node.resolve_service_name(service)
-    session.want(full)
+    session.ground.want(full)
     types = dict(session.node.get_service_names_and_types()).get(full)
     if types is None:
         raise CommandFailed(f"Unknown service '{service}'")
@@ -168,7 +168,7 @@ def _echo(session: ShellSession, arguments: Namespace) -> None:
         (kind, *_) = _types_of(session, arguments.service_name)
     else:
         kind = arguments.service_type
-    event_type = service_class(kind).Event
+    event_type = service_class(session.ground, kind).Event
 
     def show(event: Any) -> None:
         if arguments.csv:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from argparse import Namespace
 
-from sim.ros.node.graph import NamesAndTypes
-from sim.shell.graph import full_topic_name, known_topics, topic_types, without_hidden
+from sim.shell.graph import NamesAndTypes, full_topic_name, known_topics, topic_types, without_hidden
 from sim.shell.parser import LineParser
 from sim.shell.session import CommandFailed, ShellSession
 from sim.shell.verbs.interface import known_messages

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from argparse import Namespace
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from sim import plain_yaml
-from sim.interfaces import Message
 from sim.interfaces.rosidl_runtime_py import message_to_csv, message_to_yaml
-from sim.ros.entities.message_info import MessageInfo
 from sim.ros.scheduling.task import Future
 from sim.shell.filters import add_filter_option, compiled_filter
 from sim.shell.graph import full_topic_name, known_topics, topic_type, type_of_given
@@ -18,6 +16,9 @@ from sim.shell.parser import LineParser, positive_float, unsigned_int
 from sim.shell.qos_options import add_qos_options, fitting_qos
 from sim.shell.session import CommandFailed, ShellSession
 from sim.shell.verbs.verb import Verb, add_graph_options
+
+if TYPE_CHECKING:
+    from sim.ros.entities.message_info import MessageInfo
 
 _DEFAULT_LENGTH = 128
 
@@ -82,7 +83,7 @@ def _echo(session: ShellSession, arguments: Namespace) -> None:
     if kind is None:
         session.say(f"WARNING: topic [{arguments.topic_name}] does not appear to be published yet")
         raise CommandFailed("Could not determine the type for the passed topic")
-    cls = message_class(kind)
+    cls = message_class(session.ground, kind)
     qos = fitting_qos(session, full_topic_name(session, arguments.topic_name), arguments)
     first: Future[None] = Future()
     listener = _Listener(session, arguments, first)
@@ -125,7 +126,7 @@ class _Listener:
 
     def _text(self, shown: Any, info: MessageInfo) -> str:
         with_info = self._options.include_message_info
-        if not isinstance(shown, Message):
+        if not hasattr(shown, "get_fields_and_field_types"):
             about = (
                 f"---Got new message, message info:---\n{info}\n---Message data:---\n" if with_info else ""
             )

@@ -85,7 +85,7 @@ def _add_arguments(parser: LineParser) -> None:
 
 
 def _pub(session: ShellSession, arguments: Namespace) -> None:
-    cls = message_class(arguments.message_type)
+    cls = message_class(session.ground, arguments.message_type)
     values = given_values(arguments.values)
     if not isinstance(values, dict):
         raise CommandFailed(NO_DICTIONARY)

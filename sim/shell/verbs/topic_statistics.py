@@ -137,7 +137,7 @@ def _class_once_known(session: ShellSession, topic: str) -> type[Message]:
         session.wait_until(lambda: topic_type(session, topic) is not None, _TYPE_POLL)
         kind = topic_type(session, topic)
     assert kind is not None
-    return message_class(kind)
+    return message_class(session.ground, kind)
 
 
 def _add_hz(parser: LineParser) -> None:
@@ -155,7 +155,7 @@ def _hz(session: ShellSession, arguments: Namespace) -> None:
 
     def hear(message: Any) -> None:
         if passes is None or passes(message):
-            rate.message(session.host.clock.now())
+            rate.message(session.ground.now())
             _say(session, rate.report())
 
     session.node.create_subscription(cls, arguments.topic_name, hear, qos_profile_sensor_data)
@@ -167,16 +167,16 @@ def _add_bw(parser: LineParser) -> None:
 
 
 def _bw(session: ShellSession, arguments: Namespace) -> None:
-    clock = session.host.clock
+    now = session.ground.now
     bandwidth = Bandwidth(arguments.window)
     cls = _class_once_known(session, arguments.topic_name)
 
     def hear(message: bytes) -> None:
-        bandwidth.message(clock.now(), len(message))
+        bandwidth.message(now(), len(message))
 
     session.node.create_subscription(cls, arguments.topic_name, hear, qos_profile_sensor_data, raw=True)
     session.say(f"Subscribed to [{arguments.topic_name}]")
-    session.node.create_timer(1.0, lambda: _say(session, bandwidth.report(clock.now())))
+    session.node.create_timer(1.0, lambda: _say(session, bandwidth.report(now())))
     session.spin()
 
 
@@ -185,15 +185,15 @@ def _add_delay(parser: LineParser) -> None:
 
 
 def _delay(session: ShellSession, arguments: Namespace) -> None:
-    clock = session.host.clock
+    clock = session.node.get_clock()
     delay = Delay(arguments.window)
     cls = _class_once_known(session, arguments.topic_name)
-    if "header" not in cls.__interface__.types:
+    if "header" not in cls.get_fields_and_field_types():
         raise CommandFailed("msg does not have header")
 
     def hear(message: Any) -> None:
         stamp = message.header.stamp
-        delay.message(clock.epoch + clock.now(), stamp.sec * SECOND + stamp.nanosec)
+        delay.message(clock.now().nanoseconds, stamp.sec * SECOND + stamp.nanosec)
 
     session.node.create_subscription(cls, arguments.topic_name, hear, qos_profile_sensor_data)
     session.node.create_timer(1.0, lambda: _say(session, delay.report()))
