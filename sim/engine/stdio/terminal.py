@@ -1,18 +1,14 @@
 """The terminal of a run's programs: a pseudo-terminal whose keys are inputs of the run.
 
-The kernel's line discipline does what it does for any terminal: it gathers lines, or hands on each key where
-a program has asked for that. What waits for keys, waits on the run's clock.
+What waits for keys, waits on the run's clock.
 """
 
 import builtins
 import errno
-import fcntl
 import io
 import os
-import re
 import select
 import selectors
-import struct
 import sys
 import termios
 import threading
@@ -23,10 +19,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeVar
 
 from sim.clock import AutoResetEvent, RunClock, VirtualClock
-from sim.engine.commands import END_OF_INPUT, INTERRUPT
 from sim.engine.setup import Keyboard
 from sim.engine.stdio.output import ProcessStream
 from sim.engine.stdio.polling import Polling
+from sim.engine.stdio.pseudo_terminal import PseudoTerminal
 from sim.engine.watchdogs.wait_descriptions import WaitProblem
 from sim.marks import waits_for_keyboard
 from sim.probes.own_code import place_of_caller
@@ -40,14 +36,7 @@ if TYPE_CHECKING:
 # Kept from before a clock, or this module, puts its own in their place.
 _allocate_lock = threading.Lock
 _read = os.read
-_select = select.select
 
-_ROWS, _COLUMNS = 24, 80
-_LINE = re.compile(r"[^\n]*\n|[^\n]+")
-_KEY = re.compile(r"\x1b\[[0-9;]*[A-Za-z~]|\x1bO.|.", re.DOTALL)
-"""What one press of a key sends: a character, or a sequence such as that of an arrow key."""
-_LONGEST = 4000
-"""Characters of a line that the kernel is handed at once; it holds no more than 4,095 bytes."""
 _CONTROLLING = "/dev/tty"
 """What a program opens to read from its terminal whatever its standard input is."""
 FoundT = TypeVar("FoundT")
@@ -66,17 +55,11 @@ class Terminal:
     ) -> None:
         self._clock = clock
         self._record = record
-        self._far, self._near = os.openpty()
-        os.set_blocking(self._far, False)
-        fcntl.ioctl(self._near, termios.TIOCSWINSZ, struct.pack("HHHH", _ROWS, _COLUMNS, 0, 0))
-        self._device = os.fstat(self._near).st_rdev
-        os.dup2(self._near, 0)
+        self._pair = PseudoTerminal()
+        os.dup2(self._pair.near, 0)
         self._keyboard = keyboard
         self._scheduled = scheduled
         self._is_silent = keyboard is Keyboard.NOBODY and not scheduled
-        self._text = ""
-        self._place = 0
-        self._line_begun = False
         self._waiters: list[AutoResetEvent] = []
         self._asked = Reading.NOTHING
         self._warned: set[str] = set()
@@ -106,18 +89,14 @@ class Terminal:
             if ends:
                 self._keyboard = Keyboard.NOBODY
             if text:
-                hidden = self._mode() is Reading.SECRET
-                shown = re.sub(r"[^\n]", "•", text) if hidden else text
-                self._record(Typed(self._clock.now(), shown))
-            self._text = self._text[self._place :] + text
-            self._place = 0
+                self._record(Typed(self._clock.now(), self._pair.type(text)))
             waiters = tuple(self._waiters)
         for waiter in waiters:
             waiter.set()
 
     def interrupts(self, text: str) -> bool:
         """Whether text, typed now, would interrupt the program that has the terminal."""
-        return INTERRUPT in text and bool(termios.tcgetattr(self._near)[3] & termios.ISIG)
+        return self._pair.interrupts(text)
 
     @waits_for_keyboard
     def wait(self, deadline: int | None) -> bool:
@@ -157,62 +136,30 @@ class Terminal:
         while self.wait(self._deadline()):
             with self._lock:
                 if self._feed():
-                    return _read(self._near, size)
+                    return _read(self._pair.near, size)
                 if self._is_over:
                     return b""
-        return b"" if os.get_blocking(self._near) else None
+        return b"" if os.get_blocking(self._pair.near) else None
 
     @property
     def _is_over(self) -> bool:
         """Whether nothing more will come for the calling thread's process than what has been typed."""
-        unread = self._place < len(self._text)
-        nobody = self._keyboard is Keyboard.NOBODY and not self._scheduled and not unread
-        return nobody or not current_process().has_keyboard
+        over = self._nobody_types and not self._pair.has_more
+        return over or not current_process().has_keyboard
+
+    @property
+    def _nobody_types(self) -> bool:
+        return self._keyboard is Keyboard.NOBODY and not self._scheduled
 
     def _feed(self) -> bool:
-        """Hand on the next key or line, unless one has yet to be read; whether there is something to be read.
-
-        Keys that wait are handed on one by one, as nobody presses two at once: a program that reads one, and
-        then forgets what else it was sent, as ``tty.setraw`` does, would lose the others.
-        """
-        if not current_process().has_keyboard:
-            return False
-        while not (readable := bool(_select([self._near], [], [], 0)[0])) and self._place < len(self._text):
-            takes_keys = self._mode().takes_keys
-            found = (_KEY if takes_keys else _LINE).match(self._text, self._place, self._place + _LONGEST)
-            assert found is not None
-            self._place = found.end()
-            self._line_begun = not (takes_keys or found[0].endswith("\n"))
-            self._send(found[0])
-        if self._line_begun and not readable and self._is_over:
-            self._line_begun = False
-            self._send(END_OF_INPUT)
-            readable = bool(_select([self._near], [], [], 0)[0])
-        return readable
-
-    def _send(self, text: str) -> None:
-        os.write(self._far, text.encode(errors="replace"))
-        self._drop_echo()
-
-    def _drop_echo(self) -> None:
-        """Keep the far end from filling up: what it echoes, the trace tells as ``Typed``."""
-        try:
-            while _read(self._far, _LONGEST):
-                pass
-        except BlockingIOError:
-            return
-
-    def _mode(self) -> Reading:
-        local = termios.tcgetattr(self._near)[3]
-        if local & termios.ICANON:
-            return Reading.LINES if local & termios.ECHO else Reading.SECRET
-        return Reading.KEYS if local & termios.ISIG else Reading.RAW
+        """Hand on the next key or line; whether there is something to be read."""
+        return current_process().has_keyboard and self._pair.feed(is_last=self._nobody_types)
 
     def _deadline(self) -> int | None:
         """How long a read waits by the modes of the terminal."""
-        if not os.get_blocking(self._near):
+        if not os.get_blocking(self._pair.near):
             return self._clock.now()
-        modes: list[Any] = termios.tcgetattr(self._near)
+        modes: list[Any] = termios.tcgetattr(self._pair.near)
         local, control = modes[3], modes[6]
         if local & termios.ICANON or control[termios.VMIN]:
             return None
@@ -223,7 +170,7 @@ class Terminal:
         """Tell that the calling thread's program waits, and how, and what is wrong with that."""
         process = current_process()
         if process.has_keyboard:
-            self._note(self._mode())
+            self._note(self._pair.mode())
         entity = (process.probe or process.host.probe).callback_here()
         if entity and without_end:
             problem = f"a callback waits for the keyboard ({place_of_caller()})"
@@ -319,7 +266,7 @@ class Terminal:
         if isinstance(self._clock, VirtualClock) and not self._clock.owns_current_thread():
             return False
         try:
-            return os.fstat(file if isinstance(file, int) else file.fileno()).st_rdev == self._device
+            return os.fstat(file if isinstance(file, int) else file.fileno()).st_rdev == self._pair.device
         except (AttributeError, OSError, ValueError):
             return False  # Python's own function says what is wrong with it
 
