@@ -1,13 +1,14 @@
-"""What takes part in a run's ROS graph beside its programs: the caller of services, and the robot.
+"""What takes part in a run's ROS graph beside its programs: who calls services, ``ros2`` lines, the robot.
 
 Each is a process of its own that tells on standard output, line by line, what a probe would tell of it.
 """
 
-import json
 import subprocess
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from selectors import BaseSelector
+
+import msgspec
 
 from sim.real.probe_link import LineReader
 from sim.real.wire import ProbeLine, decode_lines
@@ -47,12 +48,12 @@ class Companion:
             LineReader(self._selector, self._process.stdout, self._told, self._ended)
 
     def say(self, line: object) -> None:
-        """Have it read a line, as JSON."""
+        """Have it read a line of JSON."""
         self.start()
         assert self._process is not None
         assert self._process.stdin is not None
         with suppress(OSError):
-            self._process.stdin.write(json.dumps(line).encode() + b"\n")
+            self._process.stdin.write(msgspec.json.encode(line) + b"\n")
 
     def stop(self) -> None:
         """End it."""

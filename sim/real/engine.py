@@ -7,9 +7,10 @@ import os
 import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import count
 from multiprocessing.connection import Connection
 from pathlib import Path
 from selectors import EVENT_READ, DefaultSelector
@@ -24,8 +25,10 @@ from sim.engine.setup import RobotUse, RunSetup
 from sim.engine.stdio.descriptors import leave_terminal
 from sim.probes.on_path.cbtui_probe import FOLDER
 from sim.real.companions import Companion
-from sim.real.launched import STOPPED, LaunchedPrograms, Outcome
-from sim.real.programs import claimed_domain, environment, unbootstrapped
+from sim.real.keyboard import RealKeyboard
+from sim.real.launched import LaunchedPrograms
+from sim.real.programs import STOPPED, OnExit, Outcome, claimed_domain, environment, unbootstrapped
+from sim.real.ros2_lines import Ros2Lines
 from sim.real.translation import HOLD, Translation
 from sim.real.watched import WatchedProcesses
 from sim.real.wire import ProbeLine, Sent
@@ -37,10 +40,6 @@ from sim.trace.events import (
     CommandKind,
     EntityAppeared,
     EntityKind,
-    LineCompleted,
-    LineEnded,
-    LineGiven,
-    LineSaid,
     Notice,
     Printed,
     RunEnded,
@@ -88,9 +87,6 @@ class Programs(Protocol):
     def kill(self) -> list[str]:
         """End those by force that the run started; returns the names of those that ran."""
 
-    def type(self, text: str, *, ends: bool) -> None:
-        """Have an only program read a text from its standard input; with ``ends``, no more will come."""
-
 
 class RealEngine:
     """One run of one set-up on real rclpy. ``pipe`` carries events out and commands in."""
@@ -108,22 +104,34 @@ class RealEngine:
         self._python = setup.real.python or sys.executable
         folder = Path(self._folder.name)
         self._programs: Programs
+        self._keyboard: RealKeyboard | None
+        lines: tuple[Mapping[str, str], list[Path], LaunchedPrograms | None]
         if setup.real.is_watched:
             graph = unbootstrapped(self._python)
-            self._programs = WatchedProcesses(self._selector, setup.real, self._take, self._record)
+            self._programs = WatchedProcesses(
+                self._selector, setup.real, self._take, self._record, count(1), lambda _process: False
+            )
+            self._keyboard = None
+            lines = graph, [Path.cwd()], None
         else:
             domain, self._claim = claimed_domain()
             probed = environment(setup, self._python, folder, domain)
             graph = {name: value for name, value in probed.items() if name != FOLDER}
-            self._programs = LaunchedPrograms(
+            self._keyboard = RealKeyboard(self._record, setup.keyboard, len(setup.typed))
+            launched = self._programs = LaunchedPrograms(
                 self._selector,
                 folder,
-                [[self._python, each.path, *each.arguments] for each in setup.programs],
+                setup.programs,
+                self._python,
                 probed,
+                self._keyboard,
                 self._take,
                 self._record,
                 self._print,
+                self._run_launched_line,
             )
+            lines = probed, launched.folders, launched
+        self._lines = Ros2Lines(self._selector, *lines[:2], self._take, self._record, lines[2])
         self._caller = Companion(
             self._selector, [self._python, "-m", "cbtui_probe.caller"], graph, self._take
         )
@@ -151,17 +159,13 @@ class RealEngine:
             self._outbox.close(RunEnded(self._now(), breakdown(error), True))
         finally:
             self._programs.kill()
+            self._lines.stop()
             self._caller.stop()
             self._robot.stop()
             self._folder.cleanup()
             os._exit(0)
 
     def _run(self) -> None:
-        launch_file = next((each.path for each in self._setup.programs if each.is_launch_file), None)
-        if launch_file is not None:
-            text = f"{Path(launch_file).name} is a launch file: start it with cbtui probe -- ros2 launch …"
-            self._outbox.close(RunEnded(0, f"{text}, and watch it with cbtui attach", True))
-            return
         if not self._is_watching:
             self._start_companions()
             while self._robot_is_awaited():
@@ -182,6 +186,8 @@ class RealEngine:
             self._robot.start()
         if self._setup.calls:
             self._caller.start()
+        if self._setup.lines:
+            self._lines.prepare()
 
     def _robot_is_awaited(self) -> bool:
         """Whether there is to be a robot, and it does not drive yet."""
@@ -192,6 +198,13 @@ class RealEngine:
     def _schedule(self) -> None:
         name = None if self._setup.service is None else self._setup.service.name
         self._due += [_Due(call.at, partial(self._call, name, call.data)) for call in self._setup.calls]
+        self._due += [
+            _Due(line.at, partial(self._lines.begin, number, line.text))
+            for number, line in enumerate(self._setup.lines, start=1)
+        ]
+        if self._keyboard is not None:
+            type_scheduled = partial(self._keyboard.type, scheduled=True)
+            self._due += [_Due(text.at, partial(type_scheduled, text.text)) for text in self._setup.typed]
         if self._setup.until is not None:
             self._due.append(_Due(self._setup.until, self._time_is_up))
         self._due.sort(key=lambda due: due.at)
@@ -200,6 +213,7 @@ class RealEngine:
         for key, _ in self._selector.select(_PERIOD):
             key.data()
         self._programs.look()
+        self._lines.look()
         now = time.monotonic_ns()
         if now > self._began_to_wait + _TO_BEGIN and self._due:
             self._translation.begin_at(now)
@@ -285,6 +299,11 @@ class RealEngine:
 
     # commands
 
+    def _run_launched_line(
+        self, words: Sequence[str], show: Callable[[str, bool], None], on_exit: OnExit
+    ) -> Callable[[], None]:
+        return self._lines.begin_launched(words, show, on_exit)
+
     def _obey(self) -> None:
         try:
             command = commands.decode(self._pipe.recv_bytes())
@@ -301,10 +320,12 @@ class RealEngine:
             case commands.TerminalInput(text=text, ends=ends):
                 self._type(text, ends=ends)
             case commands.RunLine(line=line, text=text):
-                self._refuse_line(line, text)
-            case commands.CompleteLine(line=line, cursor=cursor):
-                self._record(LineCompleted(0, line, cursor, ()))
-            case commands.InterruptLine() | commands.KeepContents():
+                self._lines.begin(line, text)
+            case commands.CompleteLine(line=line, text=text, cursor=cursor):
+                self._lines.complete(line, text, cursor)
+            case commands.InterruptLine(line=line):
+                self._lines.interrupt(line)
+            case commands.KeepContents():
                 pass
             case _:
                 self._tell(
@@ -320,16 +341,12 @@ class RealEngine:
         self._caller.say(["std_srvs/srv/SetBool", names, {"data": data}])
 
     def _type(self, text: str, *, ends: bool) -> None:
-        if text == commands.INTERRUPT:
+        if self._keyboard is None:
+            return
+        if self._keyboard.interrupts(text):
             self._stop("it was interrupted from the keyboard")
         else:
-            self._programs.type(text, ends=ends)
-
-    def _refuse_line(self, line: int, text: str) -> None:
-        self._record(LineGiven(0, line, text))
-        said = "ros2 lines act on the model; on real ROS 2, type them in a terminal of their own"
-        self._record(LineSaid(0, line, said, True))
-        self._record(LineEnded(0, line, 1))
+            self._keyboard.type(text, ends=ends)
 
 
 def _name(line: ProbeLine) -> str:

@@ -1,84 +1,248 @@
 """The programs that a run starts on real rclpy: from their start until all have ended."""
 
-import signal
+import heapq
+import os
+import shutil
+import time
 from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
+from itertools import count
 from pathlib import Path
 from selectors import BaseSelector
-from typing import NamedTuple
+from typing import TYPE_CHECKING
 
-from sim.real.programs import Program
-from sim.real.wire import Uncaught
+from sim.engine.setup import ProgramSetup, RealRos
+from sim.real.keyboard import RealKeyboard
+from sim.real.programs import ON_PATH, STOPPED, OnExit, Outcome, Program, Start
+from sim.real.watched import WatchedProcesses
 from sim.trace.events import AnyEvent, ProcessAppeared, ProcessEnded
 
-STOPPED = "it was stopped"
-"""What is said of a program that ended because somebody wanted that."""
-
-
-class Outcome(NamedTuple):
-    """How programs ended, as a sentence, whether they failed, and the exception that ended one."""
-
-    reason: str
-    failed: bool
-    error: str = ""
+if TYPE_CHECKING:
+    from sim.packages import Executable, Packages
+    from sim.real.launching import Launching, RunLaunchedLine
 
 
 class LaunchedPrograms:
     """Starts programs, each with a command of its own, and knows which of them run.
 
-    Their probes listen in ``folder``. ``take`` gets what they tell, ``record`` the events of their beginnings
-    and ends, ``show`` what they print.
+    Their probes, and those of what they start themselves, listen in ``folder``. ``take`` gets what they tell,
+    ``record`` the events of their beginnings and ends, ``show`` what they print. ``run_line`` carries out the
+    ``ros2`` lines of launch files.
     """
 
     def __init__(
         self,
         selector: BaseSelector,
         folder: Path,
-        commands: Sequence[Sequence[str]],
+        programs: Sequence[ProgramSetup],
+        python: str,
         environment: Mapping[str, str],
+        keyboard: RealKeyboard,
         take: Callable[..., None],
         record: Callable[[AnyEvent], None],
         show: Callable[[str, bool, int], None],
+        run_line: "RunLaunchedLine",
     ) -> None:
         self._selector = selector
         self._folder = folder
-        self._commands = commands
+        self._setup = programs
+        self._python = python
         self._environment = environment
+        self._keyboard = keyboard
         self._take = take
-        self._record = record
-        self._show = show
+        self.record = record
+        self.show = show
+        self.run_line = run_line
         self._programs: list[Program] = []
-        self._running: list[Program] = []
+        self._running: dict[Program, OnExit] = {}
+        self._launches: list[Launching] = []
+        self._due: list[tuple[float, int, Callable[[], None]]] = []
+        self._numbers = count(1)
+        self._order = count()
         self._failure: Outcome | None = None
+        self._children = WatchedProcesses(
+            selector, RealRos(watched=str(folder)), take, record, self._numbers, self._is_own
+        )
 
     def start(self) -> None:
-        """Start the programs, each in a process of its own."""
-        several = len(self._commands) > 1
-        for place, command in enumerate(self._commands, start=1):
-            number = place if several else 0
-            if several:
-                self._record(ProcessAppeared(0, number, f"{Path(command[1]).stem}-{place}"))
-            self._programs.append(
-                Program(self._selector, command, self._environment, number, self._take, self._show)
-            )
-        self._running = list(self._programs)
+        """Start the programs and launch files that the run was set up with."""
+        first = self._setup[0]
+        if len(self._setup) == 1 and not first.is_launch_file:
+            command = [self._python, first.path, *first.arguments]
+            name, terminal = Path(first.path).name, self._keyboard.near
+            start = Start(command, self.environment(), terminal=terminal, owns_terminal=True)
+            self._begin(Program(self._selector, start, name, 0, self._take, self.show), _ignore)
+            return
+        for place, program in enumerate(self._setup, start=1):
+            path = Path(program.path)
+            if program.is_launch_file:
+                self._launch_or_fail(path, program.arguments)
+            else:
+                command = [self._python, program.path, *program.arguments]
+                start = Start(command, self.environment(), terminal=self._keyboard.near)
+                self.begin(start, f"{path.stem}-{place}", _ignore)
+
+    def begin(
+        self,
+        start: Start,
+        label: str,
+        on_exit: OnExit,
+        *,
+        shows_stdout: bool = True,
+        is_launched: bool = False,
+    ) -> Program:
+        """Start one more program, as a process of its own on the trace.
+
+        One that a launch file started is ended by its launch.
+        """
+        number = self.announce(label)
+
+        def show(text: str, error: bool, process: int) -> None:
+            if error or shows_stdout:
+                self.show(text, error, process)
+
+        program = Program(self._selector, start, label, number, self._take, show)
+        program.is_launched = is_launched
+        return self._begin(program, on_exit)
+
+    def _begin(self, program: Program, on_exit: OnExit) -> Program:
+        self._programs.append(program)
+        self._running[program] = on_exit
+        return program
+
+    def announce(self, label: str) -> int:
+        """Have a process on the trace; returns its number."""
+        number = next(self._numbers)
+        self.record(ProcessAppeared(0, number, label))
+        return number
+
+    # What launch files and ros2 lines start
+
+    @cached_property
+    def packages(self) -> "Packages":
+        """The packages around the programs."""
+        from sim.packages import find_packages, use_packages
+
+        found = find_packages(self.folders)
+        use_packages(found)
+        return found
+
+    @property
+    def folders(self) -> list[Path]:
+        """Where packages are looked for."""
+        return [Path(each.path) for each in self._setup] or [Path.cwd()]
+
+    def environment(self, changes: Mapping[str, str] | None = None, *folders: Path) -> dict[str, str]:
+        """The environment of a program, with changes of its own, and folders that imports look in first."""
+        changed = {**self._environment, **(changes or {})}
+        path = [str(ON_PATH), *map(str, folders), *filter(None, [changed.get("PYTHONPATH")])]
+        return {**changed, "PYTHONPATH": os.pathsep.join(path)}
+
+    def command_of(self, executable: "Executable", arguments: Sequence[str]) -> list[str]:
+        """How an executable of a package is run, without being installed."""
+        if not executable.module:
+            return [self._python, str(executable.path), *arguments]
+        begin = f"import sys; sys.argv[0] = {str(executable.path)!r}; from {executable.module} import "
+        function = executable.function
+        return [
+            self._python,
+            "-c",
+            f"{begin}{function.partition('.')[0]}; sys.exit({function}())",
+            *arguments,
+        ]
+
+    def start_executable(
+        self, package: str, executable: str, arguments: Sequence[str], on_exit: OnExit
+    ) -> Program:
+        """Start a program of a package; raises PackageError."""
+        found = self.packages.package(package).executable(executable)
+        environment = self.environment(None, found.folder)
+        start = Start(self.command_of(found, arguments), environment, terminal=self._keyboard.near)
+        return self.begin(start, f"{executable}-{next(self._order) + 1}", on_exit)
+
+    def launch(self, path: Path, arguments: Sequence[str], on_exit: OnExit) -> "Program | Launching":
+        """Start a launch file: with ROS's own launch where a ``ros2`` can be found, else with cbtui's.
+
+        Raises:
+            LaunchError: the launch file cannot be carried out.
+        """
+        ros2 = ros2_command(self._environment)
+        if ros2 is not None:
+            start = Start([ros2, "launch", str(path), *arguments], self.environment())
+            return self.begin(start, path.name, on_exit)
+        from sim.launch import LaunchError
+        from sim.real.launching import Launching
+
+        launching = Launching(self, path, arguments, self.packages, on_exit)
+        self._launches.append(launching)
+        try:
+            launching.start()
+        except LaunchError:
+            self._launches.remove(launching)
+            raise
+        return launching
+
+    def launch_of(
+        self, package: str, launch_file: str, arguments: Sequence[str], on_exit: OnExit
+    ) -> "Program | Launching":
+        """Start a launch file of a package, or by its path; raises LaunchError and PackageError."""
+        known = self.packages
+        path = known.package(package).launch_file(launch_file) if package else Path(launch_file)
+        return self.launch(path, arguments, on_exit)
+
+    def _launch_or_fail(self, path: Path, arguments: Sequence[str]) -> None:
+        from sim.launch import LaunchError
+
+        try:
+            self.launch(path, arguments, _ignore)
+        except LaunchError as error:
+            self._fail(Outcome(str(error), failed=True))
+
+    def call_at(self, seconds_from_now: float, action: Callable[[], None]) -> None:
+        """Call ``action`` that many seconds from now."""
+        heapq.heappush(self._due, (time.monotonic() + seconds_from_now, next(self._order), action))
+
+    # Meanwhile
 
     def look(self) -> None:
         """Listen to the probes that can be listened to, and take note of the programs that have ended."""
+        while self._due and self._due[0][0] <= time.monotonic():
+            heapq.heappop(self._due)[2]()
         for program in self._running:
             program.look(self._folder)
+        self._children.look()
         for program in [each for each in self._running if each.has_ended]:
-            self._running.remove(program)
-            outcome = _outcome(program)
-            if program.number:
-                self._record(ProcessEnded(0, program.number, outcome.reason, program.status))
-            if outcome.failed and self._failure is None:
-                reason = f"{program.name}: {outcome.reason}" if program.number else outcome.reason
-                self._failure = outcome._replace(reason=reason)
+            self._end(program)
+        for launching in [each for each in self._launches if each.is_over]:
+            self._launches.remove(launching)
+            if launching.error:
+                self._fail(Outcome(launching.error, failed=True))
+        readers = {each.process: each.name for each in self._running if each.reads}
+        waiting = self._keyboard.look(readers)
+        for program in self._running:
+            if program.process == waiting:
+                program.show_rest()
+
+    def _end(self, program: Program) -> None:
+        on_exit = self._running.pop(program)
+        outcome = program.outcome()
+        if program.number:
+            self.record(ProcessEnded(0, program.number, outcome.reason, program.status))
+        if outcome.failed:
+            named = f"{program.name}: {outcome.reason}" if program.number else outcome.reason
+            self._fail(outcome._replace(reason=named))
+        on_exit(program.status)
+
+    def _fail(self, outcome: Outcome) -> None:
+        self._failure = self._failure or outcome
+
+    def _is_own(self, process: int) -> bool:
+        return any(each.process == process for each in self._programs)
 
     @property
     def any_run(self) -> bool:
         """Whether one of them has not ended."""
-        return bool(self._running)
+        return bool(self._running or self._launches)
 
     def outcome(self) -> Outcome:
         """How they ended, taken together."""
@@ -87,39 +251,28 @@ class LaunchedPrograms:
         if not self._programs:
             return Outcome(STOPPED, failed=False)
         if len(self._programs) == 1:
-            return _outcome(self._programs[0])
+            return self._programs[0].outcome()
         return Outcome("every program returned", failed=False)
 
     def interrupt(self) -> None:
         """Have all end as Ctrl-C would."""
+        for launching in self._launches:
+            launching.interrupt()
         for program in self._running:
-            program.signal(signal.SIGINT)
+            if not program.is_launched:
+                program.interrupt()
 
     def kill(self) -> list[str]:
         """End all that run by force; returns their names."""
         for program in self._running:
-            program.signal(signal.SIGKILL)
+            program.kill()
         return [program.name for program in self._running]
 
-    def type(self, text: str, *, ends: bool) -> None:
-        """Have an only program read a text from its standard input; with ``ends``, no more will come."""
-        if len(self._running) == 1:
-            self._running[0].type(text, ends=ends)
+
+def ros2_command(environment: Mapping[str, str]) -> str | None:
+    """The ``ros2`` command of a ROS that is sourced, if there is one."""
+    return shutil.which("ros2", path=environment.get("PATH"))
 
 
-def _outcome(program: Program) -> Outcome:
-    uncaught, status = program.link.uncaught, program.status
-    if uncaught is not None:
-        return Outcome(f"{place_of(uncaught)}: the program raised {uncaught.error}", True, uncaught.error)
-    if status == -signal.SIGINT or program.was_ended:
-        return Outcome(STOPPED, failed=False)
-    if status < 0:
-        return Outcome(f"the program crashed by {signal.Signals(-status).name}", failed=True)
-    reason = "the program returned" if status == 0 else f"the program ended with exit code {status}"
-    return Outcome(reason, failed=status != 0)
-
-
-def place_of(uncaught: Uncaught) -> str:
-    """File and line at which the exception was raised that ended a program."""
-    name = Path(uncaught.file).name
-    return f"{name}:{uncaught.line}" if uncaught.line else name
+def _ignore(_status: int) -> None:
+    """Take an end that nobody waits for."""

@@ -57,9 +57,14 @@ class LineReader:
         if not data:
             self._selector.unregister(self._source)
             self._source.close()
-            if self._rest:
-                self._take(self._rest)
+            self.take_rest()
             self._closed()
+
+    def take_rest(self) -> None:
+        """Hand on what has come of a line that is not whole."""
+        rest, self._rest = self._rest, b""
+        if rest:
+            self._take(rest)
 
 
 class ProbeLink:

@@ -1,6 +1,7 @@
 """The programs of a run on real rclpy: processes of their own, each with the probe on its path."""
 
 import errno
+import fcntl
 import json
 import os
 import random
@@ -8,18 +9,24 @@ import signal
 import socket
 import subprocess
 import sys
+import termios
+import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from selectors import BaseSelector
+from typing import NamedTuple
 
 from sim.engine.setup import RunSetup
 from sim.probes.on_path.cbtui_probe import CHANGES, FOLDER
 from sim.real.probe_link import LineReader, ProbeLink
+from sim.real.wire import Uncaught
 
 ON_PATH = Path(__file__).parents[1] / "probes" / "on_path"
 """The folder that a probed program has on its path."""
+_LAST_WORDS = 0.5
+"""Seconds for which the output of a program that has ended is waited for."""
 _BOOTSTRAPPED = "_ROS_WHEELS_BOOTSTRAP_COMPLETE"
 """The environment variable by which ROS's wheels know that they have found their libraries."""
 _DOMAINS = range(1, 102)
@@ -83,73 +90,134 @@ def environment(setup: RunSetup, python: str, folder: Path, domain: int) -> dict
     }
 
 
+STOPPED = "it was stopped"
+"""What is said of a program that ended because somebody wanted that."""
+
+OnExit = Callable[[int], None]
+"""Takes an exit status, once."""
+
+
+class Outcome(NamedTuple):
+    """How programs ended, as a sentence, whether they failed, and the exception that ended one."""
+
+    reason: str
+    failed: bool
+    error: str = ""
+
+
+class Start(NamedTuple):
+    """How a program is started."""
+
+    command: Sequence[str]
+    environment: Mapping[str, str]
+    folder: Path | None = None
+    """Where it works; None: where the run does."""
+    terminal: int | None = None
+    """The terminal that it reads from; None: its input is empty."""
+    owns_terminal: bool = False
+    """Whether the terminal is its ``/dev/tty``, too."""
+
+
 class Program:
     """One program that was started. ``take`` gets what its probe sends, ``show`` the lines that it prints.
 
-    ``number`` tells it from the others of the run, 0 for an only one.
+    ``number`` tells it from the others of the run, 0 for an only one; ``name`` is what people call it.
     """
 
     def __init__(
         self,
         selector: BaseSelector,
-        command: Sequence[str],
-        environment: Mapping[str, str],
+        start: Start,
+        name: str,
         number: int,
         take: Callable[..., None],
         show: Callable[[str, bool, int], None],
     ) -> None:
         self.number = number
-        self.name = Path(command[1]).name
+        self.name = name
         self.link = ProbeLink(selector, partial(take, process=number))
         self._show = show
         self._open = 2
-        self._signal: signal.Signals | None = None
+        self.is_launched = False
+        """Whether a launch file started it, and ends it."""
+        self.reads = start.terminal is not None
+        """Whether it has the keyboard."""
+        self._ended_at = 0.0
+        self._sent: signal.Signals | None = None
+        """The last signal that it was sent."""
         self._process = subprocess.Popen(
-            command,
-            env=environment,
-            stdin=subprocess.PIPE,
+            start.command,
+            env=start.environment,
+            cwd=start.folder,
+            stdin=subprocess.DEVNULL if start.terminal is None else start.terminal,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             start_new_session=True,
+            preexec_fn=_own_terminal if start.owns_terminal else None,  # noqa: PLW1509 -- one system call
             bufsize=0,
         )
-        for stream, error in ((self._process.stdout, False), (self._process.stderr, True)):
-            assert stream is not None
+        self.process = self._process.pid
+        """Its number in the operating system."""
+        self._readers = [
             LineReader(selector, stream, partial(self._printed, error=error), self._one_less)
+            for stream, error in ((self._process.stdout, False), (self._process.stderr, True))
+            if stream is not None
+        ]
 
     def look(self, folder: Path) -> None:
         """Listen to its probe as soon as that listens in a folder."""
-        self.link.connect(folder / f"{self._process.pid}.sock")
+        self.link.connect(folder / f"{self.process}.sock")
 
     @property
     def has_ended(self) -> bool:
-        """Whether it is over, and all that it said has been taken."""
-        return self._open == 0 and not self.link.is_open and self._process.poll() is not None
+        """Whether it is over, and what it said has been taken.
+
+        What it started may hold its output open, and is waited for no longer than a moment.
+        """
+        if self._process.poll() is None:
+            return False
+        self._ended_at = self._ended_at or time.monotonic()
+        is_late = time.monotonic() > self._ended_at + _LAST_WORDS
+        return is_late or (self._open == 0 and not self.link.is_open)
 
     @property
     def status(self) -> int:
         """Its exit code once it has ended; negative for the signal that killed it."""
         return self._process.returncode
 
-    @property
-    def was_ended(self) -> bool:
-        """Whether it ended by the signal that it was sent."""
-        return self._signal is not None and self.status == -self._signal
+    def outcome(self) -> Outcome:
+        """How it ended."""
+        uncaught, status = self.link.uncaught, self.status
+        if uncaught is not None:
+            return Outcome(f"{place_of(uncaught)}: the program raised {uncaught.error}", True, uncaught.error)
+        if status == -signal.SIGINT or (self._sent is not None and status == -self._sent):
+            return Outcome(STOPPED, failed=False)
+        if status < 0:
+            return Outcome(f"the program crashed by {signal.Signals(-status).name}", failed=True)
+        reason = "the program returned" if status == 0 else f"the program ended with exit code {status}"
+        return Outcome(reason, failed=status != 0)
 
-    def type(self, text: str, *, ends: bool) -> None:
-        """Have it read a text from its standard input; with ``ends``, no more will come."""
-        stdin = self._process.stdin
-        assert stdin is not None
-        with suppress(OSError, ValueError):
-            stdin.write(text.encode())
-            if ends:
-                stdin.close()
+    def show_rest(self) -> None:
+        """Show what it has written of a line: it waits for an answer."""
+        for reader in self._readers:
+            reader.take_rest()
 
-    def signal(self, number: signal.Signals) -> None:
-        """Send it, and what it started, a signal."""
-        self._signal = number
+    def interrupt(self) -> None:
+        """Have it, and what it started, end as Ctrl-C would."""
+        self._signal(signal.SIGINT)
+
+    def terminate(self) -> None:
+        """Have it, and what it started, end as SIGTERM would."""
+        self._signal(signal.SIGTERM)
+
+    def kill(self) -> None:
+        """End it, and what it started, whatever they do."""
+        self._signal(signal.SIGKILL)
+
+    def _signal(self, number: signal.Signals) -> None:
+        self._sent = number
         with suppress(ProcessLookupError):
-            os.killpg(self._process.pid, number)
+            os.killpg(self.process, number)
 
     def _one_less(self) -> None:
         self._open -= 1
@@ -160,6 +228,16 @@ class Program:
             text = _without_log(text)
         for line in text.replace(_LOG_BEGINS, "").replace(_LOG_ENDS, "").splitlines():
             self._show(line, error, self.number)
+
+
+def place_of(uncaught: Uncaught) -> str:
+    """File and line at which the exception was raised that ended a program."""
+    name = Path(uncaught.file).name
+    return f"{name}:{uncaught.line}" if uncaught.line else name
+
+
+def _own_terminal() -> None:
+    fcntl.ioctl(0, termios.TIOCSCTTY, 0)
 
 
 def _without_log(text: str) -> str:

@@ -15,8 +15,7 @@ import rclpy
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 
-from sim.probes.on_path.cbtui_probe.recorder import Recorder
-from sim.real.wire import Sent, finite
+from sim.real import telling
 from sim.robot.driver import Driver
 from sim.robot.world import World
 from sim.trace.events import AnyEvent
@@ -27,7 +26,6 @@ class RealPort:
 
     def __init__(self) -> None:
         self.node: Any = rclpy.create_node("robot_driver")
-        self._ids = Recorder()
         self._begun = time.monotonic_ns()
 
     def now(self) -> int:
@@ -57,19 +55,11 @@ class RealPort:
 
     def publish(self, publisher: Any, message: Any) -> int:
         """Publish a message, and tell of it; returns its id on the trace."""
-        number, t, before = self._ids.new_id(), time.monotonic_ns(), time.time_ns()
-        publisher.publish(message)
-        _tell(Sent(t, number, publisher.topic_name, 0, 0, before, time.time_ns()))
-        return number
+        return telling.publish(publisher, publisher.publish, message)
 
     def record(self, event: AnyEvent) -> None:
         """Tell something of the robot."""
-        _tell(finite(msgspec.structs.replace(event, t=event.t + self._begun)))
-
-
-def _tell(line: AnyEvent | Sent) -> None:
-    sys.stdout.buffer.write(msgspec.json.encode([line]) + b"\n")
-    sys.stdout.buffer.flush()
+        telling.tell(msgspec.structs.replace(event, t=event.t + self._begun))
 
 
 def main() -> None:

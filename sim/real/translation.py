@@ -7,7 +7,19 @@ from itertools import count
 import msgspec
 
 from sim.real.arrivals import Arrivals, Sending
-from sim.real.wire import Called, Hello, Left, ProbeLine, Replied, Sent, Taken, Uncaught, infinite
+from sim.real.wire import (
+    Called,
+    Hello,
+    Interrupted,
+    Left,
+    ProbeLine,
+    ProgramWanted,
+    Replied,
+    Sent,
+    Taken,
+    Uncaught,
+    infinite,
+)
 from sim.trace.events import (
     AnyEvent,
     CallbackStarted,
@@ -67,7 +79,7 @@ class Translation:
         """Take what a program's probe sent; ``process`` is its number on the trace, 0 for an only one."""
         for line in lines:
             match line:
-                case Hello() | Uncaught() | Left():
+                case Hello() | Uncaught() | Left() | ProgramWanted() | Interrupted():
                     continue
                 case NodeAppeared(t=t):
                     self.begin_at(t)

@@ -6,8 +6,8 @@ from pathlib import Path
 from selectors import BaseSelector
 
 from sim.engine.setup import RealRos
-from sim.real.launched import Outcome, place_of
 from sim.real.probe_link import Place, ProbeLink, sockets_in
+from sim.real.programs import Outcome, place_of
 from sim.real.wire import Hello, ProbeLine
 from sim.trace.events import AnyEvent, ProcessAppeared, ProcessEnded
 
@@ -15,7 +15,8 @@ from sim.trace.events import AnyEvent, ProcessAppeared, ProcessEnded
 class WatchedProcesses:
     """Listens to the probes that ``wanted`` names, and to those that come later.
 
-    ``take`` gets what they tell, ``record`` the events of their coming and going.
+    ``take`` gets what they tell, ``record`` the events of their coming and going; ``numbers`` are those that
+    they get on the trace. Those that are known already, by their numbers in the system, are left to others.
     """
 
     def __init__(
@@ -24,12 +25,16 @@ class WatchedProcesses:
         wanted: RealRos,
         take: Callable[..., None],
         record: Callable[[AnyEvent], None],
+        numbers: Iterator[int],
+        is_known: Callable[[int], bool],
     ) -> None:
         self._selector = selector
         self._wanted = wanted
         self._take = take
         self._record = record
-        self._links: dict[Place, ProbeLink] = {}
+        self._numbers = numbers
+        self._is_known = is_known
+        self._links: dict[Place, tuple[int, ProbeLink]] = {}
         self._outcomes: dict[Place, Outcome] = {}
         self._left = False
 
@@ -43,7 +48,7 @@ class WatchedProcesses:
         for path in self._new_sockets():
             if not self._listen_to(path):
                 path.unlink(missing_ok=True)  # its process was killed
-        for number, (place, link) in enumerate(self._links.items(), start=1):
+        for place, (number, link) in self._links.items():
             if not link.is_open and place not in self._outcomes:
                 outcome = self._outcomes[place] = _outcome(link)
                 self._record(ProcessEnded(0, number, outcome.reason, int(outcome.failed)))
@@ -52,13 +57,16 @@ class WatchedProcesses:
         chosen = self._wanted.processes
         if self._wanted.watched:
             for path in sockets_in(Path(self._wanted.watched)):
-                if path not in self._links and (not chosen or int(path.stem) in chosen):
+                process = int(path.stem)
+                is_wanted = not chosen or process in chosen
+                if is_wanted and path not in self._links and not self._is_known(process):
                     yield path
 
     def _listen_to(self, place: Place) -> bool:
-        link = ProbeLink(self._selector, partial(self._told, len(self._links) + 1))
+        number = next(self._numbers)
+        link = ProbeLink(self._selector, partial(self._told, number))
         if link.connect(place):
-            self._links[place] = link
+            self._links[place] = number, link
         return link.is_open
 
     @property
@@ -78,9 +86,6 @@ class WatchedProcesses:
     def kill(self) -> list[str]:
         """Leave them as they are: they are not this run's."""
         return []
-
-    def type(self, text: str, *, ends: bool) -> None:
-        """Type nothing: they have terminals of their own."""
 
     def _told(self, number: int, lines: list[ProbeLine]) -> None:
         for line in lines:

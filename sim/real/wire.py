@@ -5,12 +5,14 @@ Times are nanoseconds of the machine's monotonic clock; ids differ between all p
 
 import math
 import sys
+from collections.abc import Callable
 from functools import cache, reduce
 from operator import or_
 from typing import Any, TypeAlias
 
 import msgspec
 
+from sim.engine import commands
 from sim.trace.events import AnyEvent, RobotMoved
 from sim.trace.events.event import kinds
 
@@ -98,12 +100,33 @@ class Left(msgspec.Struct, frozen=True, array_like=True, tag="left"):
     t: int
 
 
-ProbeLine: TypeAlias = Hello | Sent | Called | Taken | Replied | Uncaught | Left | AnyEvent
+class ProgramWanted(msgspec.Struct, frozen=True, array_like=True, tag="start"):
+    """A ``ros2`` line asks the run to start a program of a package, or a launch file, which may have none."""
+
+    t: int
+    line: int
+    package: str
+    file: str
+    """The executable, or the launch file."""
+    arguments: tuple[str, ...]
+    is_launch: bool
+
+
+class Interrupted(msgspec.Struct, frozen=True, array_like=True, tag="interrupt"):
+    """A ``ros2`` line asks the run to end what it started for it."""
+
+    t: int
+    line: int
+
+
+_Own: TypeAlias = Hello | Sent | Called | Taken | Replied | Uncaught | Left | ProgramWanted | Interrupted
+
+ProbeLine: TypeAlias = _Own | AnyEvent
 
 
 @cache
 def _decoder() -> msgspec.json.Decoder[list[ProbeLine]]:
-    line: Any = reduce(or_, kinds(), Hello | Sent | Called | Taken | Replied | Uncaught | Left)
+    line: Any = reduce(or_, kinds(), _Own)
     return msgspec.json.Decoder(list[line])
 
 
@@ -117,6 +140,19 @@ def decode_lines(data: bytes) -> list[ProbeLine]:
         return [told for line in _decoder().decode_lines(data) for told in line]
     except (UnicodeDecodeError, RecursionError) as error:
         raise msgspec.DecodeError(str(error)) from None
+
+
+class ProgramEnded(msgspec.Struct, frozen=True, tag="program_ended"):
+    """What was started for a ``ros2`` line has ended."""
+
+    line: int
+    status: int
+
+
+LineRequest: TypeAlias = commands.RunLine | commands.InterruptLine | commands.CompleteLine | ProgramEnded
+"""What a run asks of the process that carries out ``ros2`` lines."""
+
+decode_request: Callable[[bytes], LineRequest] = msgspec.json.Decoder(LineRequest).decode
 
 
 def finite(event: AnyEvent) -> AnyEvent:

@@ -114,7 +114,7 @@ class TypingKeys(ScreenPart):
         """Offer the prompt while the engine lives, and typing while a program reads."""
         run = self.runs.run
         if action == "prompt":
-            return run.alive and run.setup.real is None
+            return run.alive
         return run.asked is not None
 
     def action_prompt(self) -> None:

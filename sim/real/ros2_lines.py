@@ -1,0 +1,218 @@
+"""The ``ros2`` lines of a run on real rclpy: carried out by ROS's own command, or by cbtui's on real rclpy.
+
+ROS's own is used where ``ros2`` can be found, as in a terminal where ROS is sourced. Else a process of
+cbtui's Python does it, which needs rclpy there.
+"""
+
+import shlex
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from itertools import count
+from pathlib import Path
+from selectors import BaseSelector
+from typing import NamedTuple, Protocol
+
+from sim.engine import commands
+from sim.probes.on_path.cbtui_probe import FOLDER
+from sim.real.companions import Companion
+from sim.real.launched import ros2_command
+from sim.real.programs import OnExit, Program, Start
+from sim.real.wire import Interrupted, ProbeLine, ProgramEnded, ProgramWanted
+from sim.trace.events import AnyEvent, LineCompleted, LineEnded, LineGiven, LineSaid
+
+_STARTING = ("run", "launch")
+"""Commands whose programs are watched."""
+_FIRST_LAUNCHED = 1 << 40
+"""The first number of lines that launch files start, which are not told of on the trace."""
+
+
+class Starter(Protocol):
+    """Starts programs of packages, and launch files; raises PackageError and LaunchError."""
+
+    def start_executable(
+        self, package: str, executable: str, arguments: Sequence[str], on_exit: OnExit
+    ) -> "Startable":
+        """Start a program."""
+
+    def launch_of(
+        self, package: str, launch_file: str, arguments: Sequence[str], on_exit: OnExit
+    ) -> "Startable":
+        """Start a launch file of a package, or by its path."""
+
+
+class Startable(Protocol):
+    """Programs that were started."""
+
+    def interrupt(self) -> None:
+        """Have them end as Ctrl-C would."""
+
+
+class _Line(NamedTuple):
+    """What gets the output and the end of a line."""
+
+    show: Callable[[str, bool], None]
+    end: OnExit
+
+
+class Ros2Lines:
+    """Every line that was given. ``take`` gets what lines send, ``record`` the events of the lines."""
+
+    def __init__(
+        self,
+        selector: BaseSelector,
+        environment: Mapping[str, str],
+        folders: Sequence[Path],
+        take: Callable[[list[ProbeLine]], None],
+        record: Callable[[AnyEvent], None],
+        starter: Starter | None,
+    ) -> None:
+        self._selector = selector
+        self._environment = environment
+        self._take = take
+        self._record = record
+        self._starter = starter
+        self._ros2 = ros2_command(environment)
+        command = [sys.executable, "-m", "sim.real.line_process", *map(str, folders)]
+        quiet = {name: value for name, value in environment.items() if name != FOLDER}
+        self._companion = Companion(selector, command, quiet, self._told)
+        self._lines: dict[int, _Line] = {}
+        self._processes: dict[int, Program] = {}
+        self._started: dict[int, Startable] = {}
+        self._launched = count(_FIRST_LAUNCHED)
+
+    def prepare(self) -> None:
+        """Have what carries lines out know the graph before the first."""
+        if self._ros2 is None:
+            self._companion.start()
+
+    def begin(self, number: int, text: str) -> None:
+        """Carry out a line."""
+
+        def show(said: str, error: bool) -> None:
+            self._record(LineSaid(0, number, said, error))
+
+        def end(status: int) -> None:
+            self._record(LineEnded(0, number, status))
+
+        self._record(LineGiven(0, number, text))
+        self._begin(number, text, _Line(show, end))
+
+    def begin_launched(
+        self, words: Sequence[str], show: Callable[[str, bool], None], on_exit: OnExit
+    ) -> Callable[[], None]:
+        """Carry out a line of a launch file; returns what interrupts it."""
+        number = next(self._launched)
+        self._begin(number, shlex.join(words), _Line(show, on_exit))
+        return lambda: self.interrupt(number)
+
+    def _begin(self, number: int, text: str, line: _Line) -> None:
+        self._lines[number] = line
+        if self._ros2 is None:
+            self._companion.say(commands.RunLine(number, text))
+            return
+        from sim.shell.splitting import LineError, split
+
+        try:
+            words = split(text)
+        except LineError as error:
+            self._say_and_end(number, str(error), error.status)
+            return
+        environment = dict(self._environment)
+        if words[:1] not in ([each] for each in _STARTING):
+            environment.pop(FOLDER, None)
+
+        def show(said: str, error: bool, _process: int) -> None:
+            line.show(said, error)
+
+        start = Start([self._ros2, *words], environment)
+        self._processes[number] = Program(self._selector, start, "ros2", 0, _ignore, show)
+
+    def interrupt(self, number: int) -> None:
+        """Have a line end as Ctrl-C would; nothing happens to one that has."""
+        if number in self._processes:
+            self._processes[number].interrupt()
+        elif number in self._lines:
+            self._companion.say(commands.InterruptLine(number))
+
+    def complete(self, number: int, text: str, cursor: int) -> None:
+        """Tell what could stand at ``cursor``; ROS's own command is not asked, as it takes too long."""
+        if self._ros2 is not None or self._companion.is_over:
+            self._record(LineCompleted(0, number, cursor, ()))
+        else:
+            self._companion.say(commands.CompleteLine(number, text, cursor))
+
+    def look(self) -> None:
+        """Take note of lines that have ended, and of the end of what carries them out."""
+        for number, process in [*self._processes.items()]:
+            if process.has_ended:
+                del self._processes[number]
+                self._end(number, process.status)
+        if self._companion.is_over:
+            for number in [each for each in self._lines if each not in self._processes]:
+                self._say_and_end(number, self._why_not(), 1)
+
+    def stop(self) -> None:
+        """End all lines by force."""
+        for process in self._processes.values():
+            process.kill()
+        self._companion.stop()
+
+    def _why_not(self) -> str:
+        if self._companion.has_spoken:
+            return "the process that carries out ros2 lines has ended; run again to give more of them"
+        needs = f"ros2 lines need rclpy beside cbtui ({sys.executable}), or the command ros2 of a sourced ROS"
+        return f"{needs}: pip install 'cbtui[ros]' there, or source ROS before cbtui starts"
+
+    def _say_and_end(self, number: int, text: str, status: int) -> None:
+        self._lines[number].show(text, True)
+        self._end(number, status)
+
+    def _end(self, number: int, status: int) -> None:
+        self._started.pop(number, None)
+        self._lines.pop(number).end(status)
+
+    def _told(self, told: list[ProbeLine]) -> None:
+        rest: list[ProbeLine] = []
+        for each in told:
+            match each:
+                case LineSaid(line=number) if number in self._lines:
+                    self._lines[number].show(each.text, each.error)
+                case LineEnded(line=number) if number in self._lines:
+                    self._end(number, each.status)
+                case ProgramWanted():
+                    self._start(each)
+                case Interrupted(line=number) if number in self._started:
+                    self._started[number].interrupt()
+                case LineSaid() | LineEnded() | Interrupted():
+                    pass
+                case _:
+                    rest.append(each)
+        self._take(rest)
+
+    def _start(self, wanted: ProgramWanted) -> None:
+        """Start what a line wants, and tell the line how that ends."""
+        from sim.launch import LaunchError
+        from sim.packages import PackageError
+
+        def ended(status: int) -> None:
+            self._companion.say(ProgramEnded(wanted.line, status))
+
+        if self._starter is None:
+            self._lines[wanted.line].show(_WATCHED, True)
+            ended(1)
+            return
+        start = self._starter.launch_of if wanted.is_launch else self._starter.start_executable
+        try:
+            started = start(wanted.package, wanted.file, wanted.arguments, ended)
+        except (LaunchError, PackageError) as error:
+            self._lines[wanted.line].show(str(error), True)
+            ended(1)
+        else:
+            self._started[wanted.line] = started
+
+
+_WATCHED = "programs that others started are watched here: start more with cbtui probe -- COMMAND"
+
+
+def _ignore(_lines: object, process: int = 0) -> None:
+    """Take what a probe tells that nobody listens to."""

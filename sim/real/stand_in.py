@@ -1,0 +1,30 @@
+"""Has ``sim.shell`` find real rclpy where it imports the model: the reverse of ``sim.ros.importing``."""
+
+import importlib
+import sys
+
+_MODULES = {
+    "actions": "action",
+    "actions.graph": "action.graph",
+    "context.context": "context",
+    "entities.client": "client",
+    "entities.publisher": "publisher",
+    "entities.topic_endpoint_info": "topic_endpoint_info",
+    "exceptions": "exceptions",
+    "naming.expand_topic_name": "expand_topic_name",
+    "naming.validate_full_topic_name": "validate_full_topic_name",
+    "node.node": "node",
+    "node.parameter_client": "parameter_client",
+    "parameters.parameter": "parameter",
+    "qos.qos": "qos",
+    "scheduling.executors": "executors",
+    "scheduling.task": "task",
+    "time.duration": "duration",
+}
+"""The modules of ``sim.ros`` that ``sim.shell`` uses, and those of rclpy that offer the same."""
+
+
+def install() -> None:
+    """Put rclpy's modules in the place of the model's, before ``sim.shell`` is imported."""
+    for model, real in _MODULES.items():
+        sys.modules[f"sim.ros.{model}"] = importlib.import_module(f"rclpy.{real}")
