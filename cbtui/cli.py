@@ -26,6 +26,7 @@ from cbtui.commands import (
     new_lesson,
     probe,
     reset,
+    robot,
     run,
     serve,
     start,
@@ -246,6 +247,16 @@ def _add_watching(commands: "argparse._SubParsersAction[CommandParser]") -> None
         "whether they are watched or not.",
     )
     probing.set_defaults(action=probe.probe)
+
+    driving = commands.add_parser(
+        "robot",
+        help="the lessons' robot as a real ROS 2 node",
+        description="Drive the lessons' robot on your ROS graph, as your ROS_DOMAIN_ID and discovery say: "
+        "/odom, /scan, /cmd_vel, /reset_world, /motor_power and, where tf2_msgs is installed, /tf. "
+        "Any node on the network can drive it. Ctrl-C ends it.",
+    )
+    robot.add_options(driving)
+    driving.set_defaults(action=robot.robot)
 
     attaching = commands.add_parser("attach", help="watch processes that cbtui probe has started")
     probe.add_attach_options(attaching)

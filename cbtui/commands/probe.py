@@ -36,7 +36,7 @@ def probe(options: argparse.Namespace) -> NoReturn:
         refuse(f"there is no program {command[0]}")
     from sim.real.programs import watched_environment
 
-    folder = _folder()
+    folder = probes_folder()
     complain("watch this with: cbtui attach")
     os.execve(program, command, watched_environment(program, folder))
 
@@ -47,7 +47,7 @@ def attach(options: argparse.Namespace) -> int:
     from sim.real.probe_link import processes_in
     from sim.real.watched import label_of
 
-    folder = _folder()
+    folder = probes_folder()
     found = processes_in(folder)
     unknown = [str(each) for each in options.processes if each not in {hello.process for hello in found}]
     if unknown:
@@ -66,7 +66,7 @@ def attach(options: argparse.Namespace) -> int:
     return app.return_code or 0
 
 
-def _folder() -> "Path":
+def probes_folder() -> "Path":
     """The folder in which probes listen; one that cannot be used ends the program with one line and 2."""
     from cbtui.engines.control_socket import UnusableFolderError, runtime_folder
 

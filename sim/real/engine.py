@@ -141,7 +141,6 @@ class RealEngine:
         self._robot_is_used = setup.robot is RobotUse.ALWAYS
         self._of_the_robot: list[ProbeLine] = []
         """What the robot told of itself before something used it."""
-        self._is_watching = setup.real.is_watched
         self._services: list[str] = []
         self._cause: Outcome | None = None
         self._time_was_up = False
@@ -166,13 +165,14 @@ class RealEngine:
             os._exit(0)
 
     def _run(self) -> None:
-        if not self._is_watching:
-            self._start_companions()
-            while self._robot_is_awaited():
-                self._turn()
-            if self._robot.is_over:
-                text = f"there is no robot: cbtui's own Python has no rclpy ({sys.executable})"
-                self._tell(Severity.WARN, f"{text}; install cbtui[ros] there, or give --no-robot")
+        self._start_companions()
+        while self._robot_is_awaited():
+            self._turn()
+        if self._robot.is_over:
+            text = f"there is no robot: cbtui's own Python has no rclpy ({sys.executable})"
+            self._tell(Severity.WARN, f"{text}; install cbtui[ros] there, or give --no-robot")
+        if self._robot.has_spoken and self._keyboard is None:  # who only watches may wait for long
+            self._translation.begin_at(time.monotonic_ns())
         if self._cause is None:
             self._programs.start()
         self._began_to_wait = time.monotonic_ns()

@@ -60,7 +60,7 @@ class _LineNode(Node):  # type: ignore[misc] # rclpy's classes are not typed
         """Make a publisher that tells what it publishes."""
         publisher = super().create_publisher(*args, **kwargs)
         if publisher.topic_name != "/parameter_events":
-            publisher.publish = partial(telling.publish, publisher, publisher.publish)
+            publisher.publish = partial(_publish, publisher, publisher.publish)
         return publisher
 
     def create_client(self, *args: Any, **kwargs: Any) -> Any:
@@ -68,6 +68,10 @@ class _LineNode(Node):  # type: ignore[misc] # rclpy's classes are not typed
         client = super().create_client(*args, **kwargs)
         client.call_async = partial(telling.call, client, client.call_async)
         return client
+
+
+def _publish(publisher: Any, send: Callable[[Any], None], message: Any) -> None:
+    telling.tell(telling.publish(publisher, send, message)[1])
 
 
 class _Process:

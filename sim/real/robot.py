@@ -1,7 +1,7 @@
-"""The lessons' robot as a real ROS 2 node: ``python -m sim.real.robot [RATE]``.
+"""The lessons' robot as a real ROS 2 node: ``python -m sim.real.robot [RATE]``, or ``cbtui robot``.
 
-What it publishes, and where it is, it tells on standard output as a probe tells what a program does. Its time
-is the machine's monotonic clock.
+As a part of a run it tells on standard output what it publishes and where it is, as a probe tells what a
+program does. Its time is the machine's monotonic clock.
 """
 
 import importlib
@@ -16,16 +16,25 @@ from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 
 from sim.real import telling
+from sim.real.wire import ProbeLine
 from sim.robot.driver import Driver
 from sim.robot.world import World
 from sim.trace.events import AnyEvent
 
+Tell = Callable[[ProbeLine], None]
+
 
 class RealPort:
-    """What the driver needs of real rclpy."""
+    """What the driver needs of real rclpy. ``tell`` gets what there is to know of the robot.
 
-    def __init__(self) -> None:
+    With ``transforms`` odometry goes to ``/tf``, too.
+    """
+
+    def __init__(self, tell: Tell, transforms: type | None = None) -> None:
         self.node: Any = rclpy.create_node("robot_driver")
+        self._tell = tell
+        self._transforms = transforms
+        self._tf = None if transforms is None else self.node.create_publisher(transforms, "/tf", 100)
         self._begun = time.monotonic_ns()
 
     def now(self) -> int:
@@ -55,18 +64,43 @@ class RealPort:
 
     def publish(self, publisher: Any, message: Any) -> int:
         """Publish a message, and tell of it; returns its id on the trace."""
-        return telling.publish(publisher, publisher.publish, message)
+        if self._tf is not None and hasattr(message, "child_frame_id"):
+            self._tf.publish(self._transforms_of(message))
+        number, sent = telling.publish(publisher, publisher.publish, message)
+        self._tell(sent)
+        return number
+
+    def _transforms_of(self, odometry: Any) -> Any:
+        """From the odometry's frame to the robot, and from there to the laser, which is at its centre."""
+        transform = self.message("geometry_msgs", "TransformStamped")
+        robot = transform(header=odometry.header, child_frame_id=odometry.child_frame_id)
+        position, where = odometry.pose.pose.position, robot.transform.translation
+        where.x, where.y, where.z = position.x, position.y, position.z
+        robot.transform.rotation = odometry.pose.pose.orientation
+        laser = transform(child_frame_id="base_scan")
+        laser.header.stamp, laser.header.frame_id = odometry.header.stamp, odometry.child_frame_id
+        assert self._transforms is not None
+        return self._transforms(transforms=[robot, laser])
 
     def record(self, event: AnyEvent) -> None:
         """Tell something of the robot."""
-        telling.tell(msgspec.structs.replace(event, t=event.t + self._begun))
+        self._tell(msgspec.structs.replace(event, t=event.t + self._begun))
 
 
-def main() -> None:
-    """Drive until this process is ended."""
+def transforms() -> type | None:
+    """The message class of ``/tf``, if it is installed."""
+    try:
+        found: type = importlib.import_module("tf2_msgs.msg").TFMessage
+    except ImportError:
+        return None
+    return found
+
+
+def drive(tell: Tell, rate: float | None, transforms: type | None) -> None:
+    """Drive until Ctrl-C; ``rate`` (Hz) is that of the sensors, None the usual one."""
     rclpy.init()
-    port = RealPort()
-    driver = Driver(port, float(sys.argv[1]) if len(sys.argv) > 1 else None)
+    port = RealPort(tell, transforms)
+    driver = Driver(port, rate)
     driver.offer()
     driver.begin(World())
     executor = SingleThreadedExecutor()
@@ -78,4 +112,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    drive(telling.tell, float(sys.argv[1]) if len(sys.argv) > 1 else None, None)

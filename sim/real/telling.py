@@ -21,12 +21,11 @@ def tell(line: ProbeLine) -> None:
     sys.stdout.buffer.flush()
 
 
-def publish(publisher: Any, send: Callable[[Any], None], message: Any) -> int:
-    """Have ``send`` publish a message, and tell of it; returns its id on the trace."""
+def publish(publisher: Any, send: Callable[[Any], None], message: Any) -> tuple[int, Sent]:
+    """Have ``send`` publish a message; returns its id on the trace, and what is to be told of it."""
     number, t, before = _ids.new_id(), time.monotonic_ns(), time.time_ns()
     send(message)
-    tell(Sent(t, number, publisher.topic_name, 0, 0, before, time.time_ns()))
-    return number
+    return number, Sent(t, number, publisher.topic_name, 0, 0, before, time.time_ns())
 
 
 def call(client: Any, send: Callable[[Any], Any], request: Any) -> Any:

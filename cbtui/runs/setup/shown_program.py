@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, TypeAlias
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.lesson_setup import RunRequest, request_to_judge, setup_for
 from lessons.lesson import Lesson
-from sim.engine.setup import RealRos, RobotUse, RunSetup
+from sim.engine.setup import RealRos, RobotUse, RunSetup, ServiceChoice
 from sim.plural import counted
 
 if TYPE_CHECKING:
@@ -40,6 +40,15 @@ Nothing is changed about the processes: they go on when you leave.
 
 - `s` calls the first SetBool service that they offer, `S` the same with false.
 - `R` records what happens from now on, `d` tells what is wrong.
+"""
+
+_ROBOT_GUIDE = """# A robot on your ROS graph
+
+Any node of your ROS domain can drive it: `/odom`, `/scan`, `/cmd_vel`, `/reset_world`, `/motor_power`. What
+you start with `cbtui probe -- COMMAND` shows here, too.
+
+- `:` types a `ros2` line: `ros2 topic pub -r 10 /cmd_vel geometry_msgs/msg/Twist "{linear: {x: 0.2}}"`.
+- `s` calls `/motor_power` with true, `S` with false; `r` puts the robot back.
 """
 
 
@@ -110,6 +119,30 @@ def of_file(path: Path, arguments: Sequence[str], clock: str) -> ShownProgram:
         service="",
         executor="as the file says",
         set_up=set_up,
+    )
+
+
+def of_robot(folder: Path, rate: float | None) -> ShownProgram:
+    """Return the robot on real ROS 2, and with it the processes whose probes listen in a folder.
+
+    ``rate`` (Hz) is that of its sensors, None the usual one.
+    """
+    setup = RunSetup(
+        title="robot",
+        programs=(),
+        clock="real",
+        service=ServiceChoice("/motor_power", "std_srvs/srv/SetBool"),
+        robot=RobotUse.ALWAYS,
+        sensor_rate=rate,
+        real=RealRos(watched=str(folder)),
+    )
+    return ShownProgram(
+        heading="a robot on your ROS graph",
+        guide=_ROBOT_GUIDE,
+        node_path=Path(),
+        service="/motor_power",
+        executor="as the programs say",
+        set_up=lambda _threads, _speed: setup,
     )
 
 
