@@ -47,6 +47,11 @@ class Companion:
             assert self._process.stdout is not None
             LineReader(self._selector, self._process.stdout, self._told, self._ended)
 
+    @property
+    def is_running(self) -> bool:
+        """Whether it was started, and has not ended."""
+        return self._process is not None and not self.is_over
+
     def say(self, line: object) -> None:
         """Have it read a line of JSON."""
         self.start()

@@ -117,7 +117,7 @@ class RealEngine:
             domain, self._claim = claimed_domain()
             probed = environment(setup, self._python, folder, domain)
             graph = {name: value for name, value in probed.items() if name != FOLDER}
-            self._keyboard = RealKeyboard(self._record, setup.keyboard, len(setup.typed))
+            self._keyboard = RealKeyboard(self._record_keys, setup.keyboard, len(setup.typed))
             launched = self._programs = LaunchedPrograms(
                 self._selector,
                 folder,
@@ -177,7 +177,7 @@ class RealEngine:
             self._programs.start()
         self._began_to_wait = time.monotonic_ns()
         self._schedule()
-        while self._programs.any_run:
+        while self._programs.any_run or self._robot_is_all():
             self._turn()
         self._finish()
 
@@ -194,6 +194,10 @@ class RealEngine:
         is_late = time.monotonic_ns() > self._began_to_wait + _TO_BEGIN
         is_settled = self._setup.robot is RobotUse.NEVER or self._robot.has_spoken or self._robot.is_over
         return not (is_settled or is_late or self._cause is not None)
+
+    def _robot_is_all(self) -> bool:
+        """Whether the run is there for its robot, who drives whoever else comes and goes."""
+        return self._keyboard is None and self._robot.is_running and self._cause is None
 
     def _schedule(self) -> None:
         name = None if self._setup.service is None else self._setup.service.name
@@ -253,6 +257,11 @@ class RealEngine:
     def _record(self, event: AnyEvent) -> None:
         """Put an event of the run's own among those of the probes, at the moment that it is."""
         self._translation.take([msgspec.structs.replace(event, t=time.monotonic_ns())])
+
+    def _record_keys(self, event: AnyEvent) -> None:
+        """Record what is about the keyboard; who reads before there is a node has the run begin."""
+        self._record(event)
+        self._translation.begin_at(time.monotonic_ns())
 
     def _tell(self, severity: Severity, text: str) -> None:
         self._record(Notice(0, severity, text))
