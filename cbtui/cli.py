@@ -271,8 +271,8 @@ def _add_exercises(commands: "argparse._SubParsersAction[CommandParser]") -> Non
     checking = commands.add_parser(
         "check",
         help="check your file for an exercise",
-        description="Run your file on virtual time, and look whether it does what the exercise asks. "
-        "Ends with 0 if it does, with 1 if not.",
+        description="Run your file on virtual time, or with --on ros2 on real ROS 2, and look whether it "
+        "does what the exercise asks. Ends with 0 if it does, with 1 if not.",
     )
     check.add_options(checking)
     checking.set_defaults(action=check.check)

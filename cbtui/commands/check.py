@@ -4,7 +4,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cbtui.commands.options import more_lessons, values
+from cbtui.commands.options import changes, more_lessons, values
 from cbtui.commands.options.seeds import add_seed, check_seed
 from cbtui.commands.options.targets import file_of, lesson_of, refuse
 from cbtui.text.output import complain, say
@@ -21,6 +21,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
     add_limit(parser, 60)
     add_seed(parser)
+    changes.add_on(parser)
     more_lessons.add_option(parser)
 
 
@@ -31,20 +32,21 @@ def add_limit(parser: argparse.ArgumentParser, usual: float) -> None:
         metavar="SECONDS",
         type=values.duration,
         default=usual,
-        help="real time that a run may take (%(default)g)",
+        help="real time that a run may take; on the real clock, beyond its own length (%(default)g)",
     )
 
 
 def check(options: argparse.Namespace) -> int:
     """Check a file; returns the exit code: 0 it passes every check, 1 it does not."""
     lesson = exercise_of(options.lesson)
+    real = changes.real_ros_of(options)
     check_seed(options.seed, lesson.setup.clock)
     file = _file(lesson, options.file)
     from cbtui.runs.judged.check_text import checked_text
     from cbtui.runs.judged.checking import check as run_and_judge
     from lessons.judge import Judge
 
-    checked = run_and_judge(lesson, Judge(lesson), file, options.limit, options.seed)
+    checked = run_and_judge(lesson, Judge(lesson), file, options.limit, seed=options.seed, real=real)
     say(checked_text(checked))
     if checked.run.trouble is not None:
         complain(checked.run.trouble)

@@ -53,18 +53,23 @@ def add_options(parser: argparse.ArgumentParser) -> None:
     )
 
 
-def add_on(parser: argparse.ArgumentParser) -> None:
-    """Give a command that can run programs on real ROS 2 the options on that."""
+def add_on(parser: argparse.ArgumentParser, side: str = "") -> None:
+    """Give a command that can run programs on real ROS 2 the options on that.
+
+    ``side`` ends their names where two programs are run: ``-a`` or ``-b``.
+    """
+    what = f"{side[1:].upper()}" if side else "the program"
     parser.add_argument(
-        "--on",
+        f"--on{side}",
         choices=("model", "ros2"),
         default="model",
-        help="what runs the program: cbtui's model of rclpy, or real ROS 2, on the real clock (model)",
+        help=f"what runs {what}: cbtui's model of rclpy, or real ROS 2, on the real clock (model)",
     )
     parser.add_argument(
-        "--python",
+        f"--python{side}",
         metavar="EXE",
-        help="with --on ros2: the Python that has it, as /usr/bin/python3 once ROS is sourced (cbtui's own)",
+        help=f"with --on{side} ros2: the Python that has it, as /usr/bin/python3 once ROS is sourced "
+        "(cbtui's own)",
     )
 
 
@@ -86,26 +91,27 @@ def changes_of(options: argparse.Namespace) -> "Changes":
     )
 
 
-def real_ros_of(options: argparse.Namespace) -> "RealRos | None":
+def real_ros_of(options: argparse.Namespace, side: str = "") -> "RealRos | None":
     """The real ROS 2 to run on; what contradicts that ends the program with one line and 2."""
     from sim.engine.setup import RealRos
 
-    if options.on == "model":
-        if options.python is not None:
-            refuse("--python names the Python of a real ROS 2: give --on ros2 with it")
+    ground, chosen = (getattr(options, f"{name}{side.replace('-', '_')}") for name in ("on", "python"))
+    if ground == "model":
+        if chosen is not None:
+            refuse(f"--python{side} names the Python of a real ROS 2: give --on{side} ros2 with it")
         return None
     if getattr(options, "clock", None) == "virtual" or getattr(options, "seed", None) is not None:
         refuse("real ROS 2 runs on the real clock and in its own order: leave out --clock virtual and --seed")
-    python = options.python or sys.executable
+    python = chosen or sys.executable
     found = shutil.which(python)
     if found is None:
-        refuse(f"--python {python}: there is no such program")
+        refuse(f"--python{side} {python}: there is no such program")
     if not _has_rclpy(found):
         refuse(
-            f"{python} has no rclpy; name a Python that has it with --python, where ROS is sourced, or give "
-            f"cbtui's own one: {install_command('cbtui[ros]')}"
+            f"{python} has no rclpy; name a Python that has it with --python{side}, where ROS is sourced, or "
+            f"give cbtui's own one: {install_command('cbtui[ros]')}"
         )
-    return RealRos(options.python or "")
+    return RealRos(chosen or "")
 
 
 def _has_rclpy(python: str) -> bool:

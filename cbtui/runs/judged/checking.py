@@ -4,23 +4,23 @@ A run is limited in real time and in the amount of text that it writes.
 """
 
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from threading import Event
 
 from cbtui.engines.follow import EngineLostError, FollowedRun, GivenUpError, RunTimeoutError
 from cbtui.engines.session import OpenSession, ProcessSession
-from cbtui.runs.setup.changes import Changes
-from cbtui.runs.setup.lesson_setup import request_to_judge
+from cbtui.runs.setup.lesson_setup import setup_to_judge
 from lessons.judge import Judge, JudgedCheck
 from lessons.lesson import Lesson
 from sim.durations import timestamp
-from sim.engine.setup import RunSetup
+from sim.engine.setup import RealRos, RunSetup
 from sim.trace.events import AnyEvent, Logged, Printed
 from sim.trace.timeline import Timeline
+from sim.units import SECOND
 
 LIMIT = 60.0
-"""Default limit in real seconds; the lessons' own runs take one, on the real clock a few."""
+"""Default limit in real seconds; the lessons' own runs take one on virtual time."""
 MOST_TEXT = 32_000_000
 """Limit of a run's log and output in characters."""
 
@@ -56,15 +56,25 @@ class CheckedFile:
         return self.run.trouble is None and self.passed == self.total
 
 
-def check(
-    lesson: Lesson, judge: Judge, file: Path, limit: float = LIMIT, seed: int | None = None
-) -> CheckedFile:
-    """Run a learner's file and judge it by a lesson's checks; takes about a second, at most ``limit``.
+def real_limit(setup: RunSetup, limit: float) -> float:
+    """The real seconds that a run may take: on the real clock ``limit`` beyond its own length."""
+    return limit if setup.clock == "virtual" else limit + (setup.until or 0) / SECOND
 
-    ``seed`` chooses the thread schedule, None the default one.
+
+def check(
+    lesson: Lesson,
+    judge: Judge,
+    file: Path,
+    limit: float = LIMIT,
+    *,
+    seed: int | None = None,
+    real: RealRos | None = None,
+) -> CheckedFile:
+    """Run a learner's file and judge it by a lesson's checks; takes about a second on virtual time.
+
+    ``limit`` is that of ``real_limit``; ``seed`` and ``real`` are those of ``request_to_judge``.
     """
-    setup = replace(request_to_judge(lesson, file), changes=Changes(seed=seed)).setup()
-    run = observe(setup, file.name, limit)
+    run = observe(setup_to_judge(lesson, file, seed=seed, real=real), file.name, limit)
     judged = () if run.trouble is not None else tuple(judge.verdicts(run.timeline))
     return CheckedFile(judged, len(judge.checks), run)
 
@@ -78,10 +88,11 @@ def observe(
 ) -> ObservedRun:
     """Run a set-up to its end on the caller's thread; ``name`` stands for the program in sentences.
 
-    Setting ``given_up``, from any thread, aborts the run. ``open_session`` creates the session.
+    ``limit`` is that of ``real_limit``. Setting ``given_up``, from any thread, aborts the run.
+    ``open_session`` creates the session.
     """
     timeline = Timeline(until_ending=True)
-    text = 0
+    text, limit = 0, real_limit(setup, limit)
     with FollowedRun(setup, open_session, given_up) as run:
         try:
             run.start()

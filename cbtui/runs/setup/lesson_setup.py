@@ -11,6 +11,7 @@ from lessons.lesson import Lesson
 from sim.engine.setup import (
     Keyboard,
     ProgramSetup,
+    RealRos,
     RobotUse,
     RunSetup,
     ServiceChoice,
@@ -116,22 +117,29 @@ def setup_for_line(text: str, folder: Path) -> RunSetup:
     )
 
 
-def request_to_judge(lesson: Lesson, file: Path | None = None) -> RunRequest:
-    """Return the run that the lesson's predictions and checks are about, of its node or of another file."""
+def request_to_judge(
+    lesson: Lesson, file: Path | None = None, *, seed: int | None = None, real: RealRos | None = None
+) -> RunRequest:
+    """Return the run that the lesson's predictions and checks are about, of its node or of another file.
+
+    ``seed`` chooses the thread schedule, None the default one; with ``real`` it runs on that ROS 2.
+    """
     terms = lesson.run
     return RunRequest(
         lesson=lesson,
         files=() if file is None else (file,),
-        changes=Changes(terms.threads if file is None else None),
+        changes=Changes(terms.threads if file is None else None, seed=seed, real=real),
         seconds=terms.seconds,
         calls=terms.calls,
         lines=sorted(terms.lines),
     )
 
 
-def setup_to_judge(lesson: Lesson, file: Path | None = None) -> RunSetup:
+def setup_to_judge(
+    lesson: Lesson, file: Path | None = None, *, seed: int | None = None, real: RealRos | None = None
+) -> RunSetup:
     """Return the set-up of ``request_to_judge``."""
-    return request_to_judge(lesson, file).setup()
+    return request_to_judge(lesson, file, seed=seed, real=real).setup()
 
 
 def _in_order(timed: Iterable[tuple[float, str]]) -> list[tuple[float, str]]:

@@ -1,0 +1,65 @@
+"""Exercises are judged on real ROS 2 as on the model."""
+
+from pathlib import Path
+
+import pytest
+
+from cbtui import cli
+from cbtui.commands.options import changes
+from cbtui.runs.judged.checking import real_limit
+from cbtui.runs.setup.lesson_setup import setup_to_judge
+from lessons.catalogue import find
+from sim.engine.setup import RealRos
+from tests.real.programs import needs_ros
+
+
+@pytest.fixture
+def lesson(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A lesson of a few seconds, in the current folder."""
+    monkeypatch.chdir(tmp_path)
+    assert cli.main(["new-lesson", "blinker"]) == 0
+    description = tmp_path / "blinker" / "lesson.toml"
+    description.write_text(description.read_text().replace("seconds = 10", "seconds = 5.5"))
+    monkeypatch.setenv("CBTUI_LESSONS", str(tmp_path))
+    return tmp_path / "blinker"
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["--on", "ros2", "--seed", "3"], "real ROS 2 runs on the real clock and in its own order"),
+        (["--on", "ros2"], "has no rclpy; name a Python that has it with --python"),
+        (["--on", "ros2", "--python", "no-such"], "--python no-such: there is no such program"),
+        (["--python", "python3"], "--python names the Python of a real ROS 2: give --on ros2 with it"),
+        (["--on", "ros1"], "argument --on: invalid choice: 'ros1'"),
+    ],
+)
+def test_what_cannot_be_checked_on_real_ros_is_refused_in_a_sentence(
+    words: list[str], said: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(changes, "find_spec", lambda _: None)
+    with pytest.raises(SystemExit) as ended:
+        cli.main(["check", "split-groups", __file__, *words])
+    told = capsys.readouterr()
+    assert (ended.value.code, told.out) == (2, "")
+    assert said in told.err
+    assert len(told.err.splitlines()) == 1
+
+
+def test_on_the_real_clock_a_run_may_take_its_length_and_the_limit() -> None:
+    lesson = find("split-groups")
+    assert real_limit(setup_to_judge(lesson), 20) == 20
+    assert real_limit(setup_to_judge(lesson, real=RealRos()), 20) == 20 + lesson.run.seconds
+
+
+@needs_ros
+@pytest.mark.slow
+@pytest.mark.parametrize(("file", "code"), [("solution.py", 0), ("starter.py", 1)])
+def test_a_file_is_checked_on_real_ros(
+    lesson: Path, file: str, code: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    capsys.readouterr()
+    assert cli.main(["check", "blinker", str(lesson / file), "--on", "ros2"]) == code
+    told = capsys.readouterr()
+    assert ("1 of 1 checks passed" in told.out) is (code == 0)
+    assert told.err == ""
