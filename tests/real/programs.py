@@ -75,6 +75,27 @@ class Tried(Node):
         response.success = True
         return response
 """
+WANTS_ONE_MORE = """
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        groups = [MutuallyExclusiveCallbackGroup() for _ in range(4)]
+        self.create_service(SetBool, "switch", self.serve, callback_group=groups[0])
+        self.client = self.create_client(SetBool, "switch", callback_group=groups[1])
+        self.create_timer(0.5, self.one, callback_group=groups[2])
+        self.create_timer(0.5, self.other, callback_group=groups[3])
+
+    def one(self):
+        time.sleep(0.4)
+        self.client.call(SetBool.Request(data=True))
+
+    def other(self):
+        time.sleep(0.2)
+        self.client.call(SetBool.Request(data=True))
+
+    def serve(self, request, response):
+        return response
+"""
 AWAITS = """
 class Tried(Node):
     def __init__(self):
@@ -92,6 +113,19 @@ class Tried(Node):
         time.sleep(0.1)
         response.message = "well"
         return response
+"""
+MISSES_TICKS = """
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.create_timer(0.2, self.tick)
+        self.create_timer(1.1, self.work)
+
+    def tick(self):
+        pass
+
+    def work(self):
+        time.sleep(0.75)
 """
 RAISES = """
 class Tried(Node):

@@ -76,17 +76,33 @@ def test_the_run_ends_when_its_time_is_up_and_nothing_had_to_be_forced(starved: 
     assert starved.loss is None
 
 
-@pytest.mark.parametrize("executor", ["SingleThreadedExecutor()", "MultiThreadedExecutor(num_threads=2)"])
-def test_a_deadlock_is_the_same_on_both_grounds(tmp_path: Path, executor: str) -> None:
+@pytest.mark.parametrize(
+    ("body", "executor", "rule"),
+    [
+        (programs.CALLS_ITSELF, "SingleThreadedExecutor()", "self-made-deadlock"),
+        (programs.CALLS_ITSELF, "MultiThreadedExecutor(num_threads=2)", "self-made-deadlock"),
+        (programs.WANTS_ONE_MORE, "MultiThreadedExecutor(num_threads=2)", "needs-one-more-worker"),
+    ],
+    ids=["one thread", "two threads", "no thread left"],
+)
+def test_a_deadlock_is_the_same_on_both_grounds(tmp_path: Path, body: str, executor: str, rule: str) -> None:
     found = {}
     for ground in ("ros2", "model"):
-        timeline = programs.run(
-            tmp_path, programs.CALLS_ITSELF, executor, ground=ground, seconds=2.0
-        ).timeline
-        told = [each for each in diagnose(timeline) if each.rule.id == "self-made-deadlock"]
+        timeline = programs.run(tmp_path, body, executor, ground=ground, seconds=2.0).timeline
+        told = [each for each in diagnose(timeline) if each.rule.id == rule]
         found[ground] = [each.rule.explain(each, timeline).what for each in told]
     assert found["ros2"] == found["model"]
     assert len(found["ros2"]) == 1
+
+
+def test_a_tick_that_missed_others_is_as_late_as_the_first_of_them(tmp_path: Path) -> None:
+    timeline = programs.run(tmp_path, programs.MISSES_TICKS, seconds=2.1).timeline
+    [work], ticks = (
+        timeline.calls_begun(entity_named(name, timeline), whole(timeline)) for name in ("work", "tick")
+    )
+    assert work.end is not None
+    late = next(tick for tick in ticks if tick.start > work.end)
+    assert late.start - late.age == pytest.approx(1.2 * SECOND, abs=0.05 * SECOND)
 
 
 def test_a_coroutine_leaves_its_thread_and_comes_back(tmp_path: Path) -> None:

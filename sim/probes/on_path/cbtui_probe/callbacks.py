@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from .entities import Entity
     from .recorder import Recorder
 
+_SHIFT = 1_000_000
+"""Nanoseconds by which a timer's rhythm may seem shifted: asking for it takes time, too."""
 _WITH_INFO = inspect.Signature(
     [inspect.Parameter(name, inspect.Parameter.POSITIONAL_ONLY) for name in ("data", "info")]
 )
@@ -109,11 +111,22 @@ class Calls:
         self.begin_with(sent) if sent else self.begin()
 
     def begin_timer(self, *_args: Any) -> None:
-        """Tell that a timer's callback starts: its next call is one period after the one it was due at."""
+        """Tell that a timer's callback starts, and how late."""
         recorder, start = self._recorder, now()
         timer = self._entity.made()
-        late = 0 if timer is None else max(0, timer.timer_period_ns - timer.time_until_next_call())
+        late = 0 if timer is None else self._lateness(timer.timer_period_ns, timer.time_until_next_call())
         recorder.put("callback_start", start, self._entity.number, recorder.thread(), 0, late, 0)
+
+    def _lateness(self, period: int, left: int) -> int:
+        """How long ago a timer was due that is being called and has so much ``left`` to its next call.
+
+        Periods that it missed shift its next call by as many, so that only the time tells at which it was to
+        be called; not if it was reset since, which shows by its coming in another rhythm.
+        """
+        entity, late, start = self._entity, max(0, period - left), now()
+        due, entity.due = entity.due, start + left
+        off = (start - due - late + _SHIFT) % period
+        return max(late, start - due) if due and off < 2 * _SHIFT else late
 
     def _begin_message(self, _message: Any, info: Any = None) -> None:
         """Tell that the callback starts with a message; an executor made of C++ hands over no information."""

@@ -30,6 +30,8 @@ class Entity:
     def __init__(self, kind: str) -> None:
         self.kind = kind
         self.number = 0
+        self.due = 0
+        """When a timer is to be called next, in nanoseconds of the monotonic clock; 0: not known."""
         self.wait: tuple[str, int, bool] | None = None
         """Why it waits, by whom it is held up, and whether no worker was free; None: it does not."""
         self._since = 0
@@ -143,6 +145,8 @@ class Entities:
             0 if entity.kind == "timer" else depth,
             period,
         )
+        if entity.kind == "timer" and not made.is_canceled():
+            entity.due = now() + made.time_until_next_call()
         setattr(made, STATE, entity)
         entity.made = weakref.ref(made)
 
