@@ -185,8 +185,8 @@ def _parser() -> argparse.ArgumentParser:
         usage="%(prog)s [options] A B [-- ARGUMENTS of a file]",
         description="Put the same window of two runs side by side: in the console, one above the other on a "
         "common time axis, with what differs; as text with --text or where there is no terminal. Lessons and "
-        "files are run for that, headless on virtual time. A lesson can be compared with itself, with other "
-        "numbers of threads.",
+        "files are run for that, headless on virtual time, or on real ROS 2. A lesson can be compared with "
+        "itself, with other numbers of threads, or on the model and on real ROS 2.",
     )
     compare.add_options(comparing)
     comparing.set_defaults(action=compare.compare)

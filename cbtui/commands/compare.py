@@ -5,13 +5,13 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from cbtui.commands.options import appearance, inputs, values
+from cbtui.commands.options import appearance, changes, inputs, values
 from cbtui.commands.options.targets import file_of, is_file_name, lesson_of, refuse
 from cbtui.commands.run import DEFAULT_SECONDS
-from sim.plural import counted
 
 if TYPE_CHECKING:
     from cbtui.runs.compared_runs import ComparedRun, ComparisonTerms
+    from cbtui.runs.setup.changes import Changes
 
 _RECORDING = ".mcap"
 
@@ -46,6 +46,7 @@ def add_options(parser: argparse.ArgumentParser) -> None:
             type=values.threads,
             help=f"number of threads of {letter.upper()}'s executor, instead of its own",
         )
+        changes.add_on(parser, f"-{letter}")
     inputs.add_options(parser)
     parser.add_argument(
         "--inputs",
@@ -56,11 +57,10 @@ def add_options(parser: argparse.ArgumentParser) -> None:
 
 def compare(options: argparse.Namespace) -> int:
     """Put two runs side by side, in the console or as text; returns the exit code."""
-    names = [options.A, options.B]
-    threads = [options.threads_a, options.threads_b]
-    _check(options, names, threads)
+    _check(options)
     first, second = (
-        _compared_run(name, number, options.arguments) for name, number in zip(names, threads, strict=True)
+        _compared_run(name, changed, options.arguments)
+        for name, changed in ((options.A, _changes(options, "a")), (options.B, _changes(options, "b")))
     )
     terms = _terms(options)
     if options.text or not (sys.stdin.isatty() and sys.stdout.isatty()):
@@ -73,11 +73,16 @@ def compare(options: argparse.Namespace) -> int:
     return app.return_code or 0
 
 
-def _check(options: argparse.Namespace, names: list[str], threads: list[int | None]) -> None:
+def _check(options: argparse.Namespace) -> None:
     """Refuse options that contradict each other."""
-    for letter, name, number in zip("ab", names, threads, strict=True):
-        if number is not None and _is_recording(name):
-            refuse(f"{name} is a recording and has the threads it had; leave out --threads-{letter}")
+    names = [options.A, options.B]
+    for letter, name in zip("ab", names, strict=True):
+        is_real = getattr(options, f"on_{letter}") != "model"
+        if is_real and options.inputs is not None:
+            refuse(f"a run on real ROS 2 cannot be repeated; leave out --inputs, or --on-{letter}")
+        for option, given in (("threads", getattr(options, f"threads_{letter}")), ("on", is_real)):
+            if given and _is_recording(name):
+                refuse(f"{name} is a recording and stays as it is; leave out --{option}-{letter}")
     if all(map(_is_recording, names)):
         for option, given in (
             ("--call", options.calls),
@@ -96,19 +101,24 @@ def _is_recording(name: str) -> bool:
     return name.endswith(_RECORDING)
 
 
-def _compared_run(name: str, threads: int | None, arguments: list[str]) -> "ComparedRun":
-    from cbtui.runs.compared_runs import ComparedRun
+def _changes(options: argparse.Namespace, letter: str) -> "Changes":
     from cbtui.runs.setup.changes import Changes
+
+    return Changes(getattr(options, f"threads_{letter}"), real=changes.real_ros_of(options, f"-{letter}"))
+
+
+def _compared_run(name: str, changed: "Changes", arguments: list[str]) -> "ComparedRun":
+    from cbtui.runs.compared_runs import ComparedRun
     from cbtui.runs.setup.lesson_setup import RunRequest
 
     if _is_recording(name):
         return ComparedRun(name, _readable(Path(name)))
-    called = name if threads is None else f"{name}, {counted(threads, 'thread')}"
+    called = ", ".join(filter(None, (name, changed.words)))
     if is_file_name(name):
         file = file_of(name)
-        request = RunRequest(files=[file], arguments=arguments, changes=Changes(threads), clock="virtual")
+        request = RunRequest(files=[file], arguments=arguments, changes=changed, clock="virtual")
         return ComparedRun(called, request)
-    return ComparedRun(called, RunRequest(lesson=lesson_of(name), changes=Changes(threads)))
+    return ComparedRun(called, RunRequest(lesson=lesson_of(name), changes=changed))
 
 
 def _readable(path: Path) -> Path:

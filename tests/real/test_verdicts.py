@@ -54,6 +54,17 @@ def test_on_the_real_clock_a_run_may_take_its_length_and_the_limit() -> None:
 
 @needs_ros
 @pytest.mark.slow
+def test_a_lesson_is_compared_with_itself_on_real_ros(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["reentrant-2-threads"] * 2 + ["--text", "--on-b", "ros2", "--to", "4.5", "--call", "1.2"]
+    assert cli.main(["compare", *words]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[:2] == ["run A  reentrant-2-threads", "run B  reentrant-2-threads, on real ROS 2"]
+    rows = lines[lines.index("timer_callback") + 1 :]
+    assert rows[0].split() == ["calls", "4", "4", "same"]
+
+
+@needs_ros
+@pytest.mark.slow
 @pytest.mark.parametrize(("file", "code"), [("solution.py", 0), ("starter.py", 1)])
 def test_a_file_is_checked_on_real_ros(
     lesson: Path, file: str, code: int, capsys: pytest.CaptureFixture[str]
