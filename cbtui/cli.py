@@ -25,6 +25,7 @@ from cbtui.commands import (
     listing,
     new_lesson,
     probe,
+    prove,
     reset,
     robot,
     run,
@@ -168,7 +169,7 @@ def _parser() -> argparse.ArgumentParser:
     explore.add_options(exploring)
     exploring.set_defaults(action=explore.explore)
 
-    _add_watching(commands)
+    _add_real_ros(commands)
     _add_exercises(commands)
 
     replaying = commands.add_parser("replay", help="show a recording in the console")
@@ -237,7 +238,7 @@ def _parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _add_watching(commands: "argparse._SubParsersAction[CommandParser]") -> None:
+def _add_real_ros(commands: "argparse._SubParsersAction[CommandParser]") -> None:
     probing = commands.add_parser(
         "probe",
         help="run a command on real ROS 2 so that attach can watch it",
@@ -261,6 +262,15 @@ def _add_watching(commands: "argparse._SubParsersAction[CommandParser]") -> None
     attaching = commands.add_parser("attach", help="watch processes that cbtui probe has started")
     probe.add_attach_options(attaching)
     attaching.set_defaults(action=probe.attach)
+
+    proving = commands.add_parser(
+        "prove",
+        help="look whether a program does the same on the model and on real ROS 2",
+        usage="%(prog)s [options] LESSON|FILE.py … [-- ARGUMENTS of the files]",
+        description=prove.DESCRIPTION,
+    )
+    prove.add_options(proving)
+    proving.set_defaults(action=prove.prove)
 
 
 def _add_exercises(commands: "argparse._SubParsersAction[CommandParser]") -> None:

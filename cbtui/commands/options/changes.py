@@ -65,11 +65,15 @@ def add_on(parser: argparse.ArgumentParser, side: str = "") -> None:
         default="model",
         help=f"what runs {what}: cbtui's model of rclpy, or real ROS 2, on the real clock (model)",
     )
+    add_python(parser, f"with --on{side} ros2: the Python that has it", side)
+
+
+def add_python(parser: argparse.ArgumentParser, what: str, side: str = "") -> None:
+    """Add ``--python``, which ``what`` describes."""
     parser.add_argument(
         f"--python{side}",
         metavar="EXE",
-        help=f"with --on{side} ros2: the Python that has it, as /usr/bin/python3 once ROS is sourced "
-        "(cbtui's own)",
+        help=f"{what}, as /usr/bin/python3 once ROS is sourced (cbtui's own)",
     )
 
 
@@ -92,9 +96,7 @@ def changes_of(options: argparse.Namespace) -> "Changes":
 
 
 def real_ros_of(options: argparse.Namespace, side: str = "") -> "RealRos | None":
-    """The real ROS 2 to run on; what contradicts that ends the program with one line and 2."""
-    from sim.engine.setup import RealRos
-
+    """The real ROS 2 that ``--on`` asks for; what contradicts that ends the program with one line and 2."""
     ground, chosen = (getattr(options, f"{name}{side.replace('-', '_')}") for name in ("on", "python"))
     if ground == "model":
         if chosen is not None:
@@ -102,6 +104,13 @@ def real_ros_of(options: argparse.Namespace, side: str = "") -> "RealRos | None"
         return None
     if getattr(options, "clock", None) == "virtual" or getattr(options, "seed", None) is not None:
         refuse("real ROS 2 runs on the real clock and in its own order: leave out --clock virtual and --seed")
+    return real_ros(chosen, side)
+
+
+def real_ros(chosen: str | None, side: str = "") -> "RealRos":
+    """The ROS 2 of a Python, None for cbtui's own; ends the program with one line and 2 if it has none."""
+    from sim.engine.setup import RealRos
+
     python = chosen or sys.executable
     found = shutil.which(python)
     if found is None:
