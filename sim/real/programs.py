@@ -221,8 +221,6 @@ class Program:
 
     def _one_less(self) -> None:
         self._open -= 1
-        if self._open == 0:
-            self.type("", ends=True)
 
     def _printed(self, data: bytes, error: bool) -> None:
         text = data.decode(errors="replace")

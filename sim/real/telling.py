@@ -9,14 +9,14 @@ import msgspec
 
 from sim.probes.on_path.cbtui_probe.recorder import Recorder
 from sim.real.wire import Called, ProbeLine, Sent, finite
-from sim.trace.events import Event, ServiceReplied
+from sim.trace.events import ServiceReplied, TraceEvent
 
 _ids = Recorder()
 
 
 def tell(line: ProbeLine) -> None:
     """Tell one thing. Thread-safe."""
-    told = finite(line) if isinstance(line, Event) else line
+    told = finite(line) if isinstance(line, TraceEvent) else line
     sys.stdout.buffer.write(msgspec.json.encode([told]) + b"\n")
     sys.stdout.buffer.flush()
 

@@ -25,6 +25,7 @@ from sim.ros.middleware.host import Host
 from sim.ros.node.node import Node
 from sim.shell import LineError, complete, split, word_start
 from sim.shell.commands import parse, verb_parser
+from sim.shell.model_ground import ModelGround
 from sim.shell.parser import HelpAsked, UsageError
 from sim.trace.events import Logged, Severity
 from tests.soak.fuzz_target import Target, text_of
@@ -81,7 +82,7 @@ def _complete(data: bytes, _: Path) -> None:
     text = text_of(data)
     for cursor in (len(text), len(text) // 2):
         word_start(text, cursor)
-        for each in complete(_some_nodes(), Packages(), text, cursor):
+        for each in complete(ModelGround(_some_nodes()), Packages(), text, cursor):
             assert each.strip()
 
 
