@@ -20,7 +20,7 @@ from sim.plural import counted
 from sim.trace.descriptions import why_waiting
 from sim.trace.events import EntityKind
 from sim.trace.figures.comparison import CallbackInRun, CallbackPair, compare
-from sim.trace.model import Entity, Nanoseconds, Span, Wait, Window
+from sim.trace.model import EntityInfo, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 from sim.units import SECOND
 
@@ -131,7 +131,7 @@ def differences(model: Timeline, real: Timeline, window: Window) -> list[Differe
     return sorted(found)
 
 
-def _is_own(entity: Entity) -> bool:
+def _is_own(entity: EntityInfo) -> bool:
     """Whether a callback is the model's own, as the timer of a Rate is."""
     return Path(entity.file).is_relative_to(_OWN)
 
