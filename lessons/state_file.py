@@ -12,8 +12,8 @@ from typing import Generic, NamedTuple, TypeVar
 
 import msgspec
 
+from sim.atomic_file import write_atomically
 from sim.foreign_file import MOST_OF_A_PROGRAM, read_bytes
-from sim.whole_file import write_whole
 
 EntryT = TypeVar("EntryT", bound=msgspec.Struct)
 
@@ -77,7 +77,7 @@ class StateFile(Generic[EntryT]):
         text = "".join(f"{line}\n" for line in lines)
         try:
             self._known_path().parent.mkdir(parents=True, exist_ok=True)
-            write_whole(self.path, text.encode("ascii"), mode=0o600)
+            write_atomically(self.path, text.encode("ascii"), mode=0o600)
         except OSError as error:
             self._tell("written", f"{self._words.loss}: {self.path}: {error.strerror}")
 

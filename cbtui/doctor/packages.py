@@ -31,7 +31,7 @@ def dependencies(importing: ProbeProcess) -> Iterator[Examination]:
             "packages", "cbtui is not installed", "install it with pip install . to have them looked at"
         )
         return
-    broken = _broken(importing)
+    broken = _wrapped(importing)
     found = [verdict for each in needed if (verdict := _package(each, broken)) is not None]
     yield from found
     if not found:
@@ -55,7 +55,7 @@ def _package(needed: Requirement, broken: Mapping[str, str]) -> Examination | No
     return None
 
 
-def _broken(importing: ProbeProcess) -> dict[str, str]:
+def _wrapped(importing: ProbeProcess) -> dict[str, str]:
     """The modules that cannot be imported, with the reason."""
     outcome = importing.outcome()
     broken, begun = {}, ""

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from cbtui.eject.ament_package import AmentPackage, LessonProgram, imported_modules
 from lessons.lesson import Lesson
+from sim.atomic_file import write_atomically
 from sim.packages import Package, PackageError
-from sim.whole_file import write_whole
 
 _NUMBERED = re.compile(r"(?P<number>\d[\w.]*)\s+(?P<title>.*)", re.DOTALL)
 
@@ -93,7 +93,7 @@ def write_files(files: Mapping[Path, bytes]) -> int:
     missing = {path: content for path, content in files.items() if not _holds(path, content)}
     for path, content in missing.items():
         path.parent.mkdir(parents=True, exist_ok=True)
-        write_whole(path, content, follow=False)
+        write_atomically(path, content, follow=False)
     return len(missing)
 
 

@@ -134,7 +134,7 @@ def _marks(assignment: MarkingJob) -> Marks:
     run = observe(
         setup, program.name, assignment.limit, open_session=partial(ProcessSession, unpack=audit.unpack)
     )
-    doubts = audit.doubts(whole=run.trouble is None)
+    doubts = audit.doubts(ended_normally=run.trouble is None)
     if doubts or run.trouble is not None:
         return Marks(trouble=run.trouble or "", doubts=doubts)
     judged = judge.verdicts(run.timeline)

@@ -59,10 +59,10 @@ class TraceAudit:
                 self._look_at_origin(event)
         return events
 
-    def doubts(self, *, whole: bool) -> tuple[str, ...]:
-        """Return the signs of a forgery after the run; ``whole`` tells that it ended normally."""
+    def doubts(self, *, ended_normally: bool) -> tuple[str, ...]:
+        """Return the signs of a forgery after the run."""
         if self._plausibility is not None:
-            if whole:
+            if ended_normally:
                 self._plausibility.finish()
             self._doubt(*self._plausibility.faults)
         for name, source in self._submission.files.items():

@@ -5,8 +5,8 @@ from enum import Enum
 from pathlib import Path
 
 from lessons.lesson import Lesson
+from sim.atomic_file import write_atomically
 from sim.foreign_file import read_bytes
-from sim.whole_file import write_whole
 
 
 class StarterPlacement(Enum):
@@ -67,7 +67,7 @@ def place_starter(lesson: Lesson, folder: Path) -> StarterPlacement:
     try:
         if not folder.is_dir():
             raise CannotPlaceError(f"there is no folder {folder}")
-        write_whole(path, content, replace=False)
+        write_atomically(path, content, replace=False)
     except FileExistsError:
         return _there(path, content)
     except OSError as error:

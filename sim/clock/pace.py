@@ -1,4 +1,4 @@
-"""How fast virtual time passes on the wall, whether it stands, and where it is to stand next."""
+"""The pace of virtual time on the wall clock: its speed, its pauses, and the next goal."""
 
 import time
 from collections.abc import Callable
@@ -7,21 +7,21 @@ from collections.abc import Callable
 _monotonic_ns = time.monotonic_ns
 
 _LAG_FORGIVEN = 250_000_000
-"""Nanoseconds that a paced run may fall behind the wall before it gives up catching up."""
+"""Nanoseconds that a paced run may fall behind the wall clock before it stops catching up."""
 
 
 class Pace:
-    """The pace of a virtual clock; it belongs to whichever thread has the baton.
+    """The pace of a virtual clock. Guarded by the clock's baton.
 
-    ``speed`` is virtual seconds per real second, None for as fast as it can. A run that hurries to a goal
-    (its next step, a moment) does not wait for its speed. ``on_halt`` is called each time a goal is reached.
+    ``speed`` is virtual seconds per real second, None for as fast as possible. A run that hurries to a goal
+    (its next step, or a moment) ignores its speed. ``on_halt`` is called each time a goal is reached.
     """
 
     def __init__(self, speed: float | None) -> None:
         self.stands = False
-        """Whether time stands."""
+        """Whether time is paused."""
         self.awaits = 0
-        """How many wait for somebody outside, for whom a run that goes as fast as it can waits too."""
+        """How many threads wait for somebody outside; a run as fast as possible waits for them too."""
         self.on_halt: Callable[[], None] = _nothing
         self._speed = speed
         self._is_real = False
@@ -33,37 +33,37 @@ class Pace:
 
     @property
     def steps(self) -> bool:
-        """Whether time is to stand again once it has passed, however little."""
+        """Whether time pauses again after its next advance, however small."""
         return self._steps > 0
 
     def set_speed(self, speed: float | None, now: int) -> None:
-        """Have time pass at another speed from ``now`` on."""
+        """Change the speed, from ``now`` on."""
         self._anchor_at(now)
         self._speed = speed
 
     def keep_real(self, wanted: bool, now: int) -> None:
-        """Have time pass as on the wall from ``now`` on, whatever speed or goal it has, or no longer."""
+        """Keep to the wall clock's pace from ``now`` on, whatever the speed or goal, or stop doing so."""
         if wanted is not self._is_real:
             self._anchor_at(now)
             self._is_real = wanted
 
     def lag(self, now: int) -> int:
-        """Nanoseconds that the wall is ahead of a run that keeps to it; 0 for one that need not."""
+        """Nanoseconds by which a run at the wall clock's pace is behind it; 0 for any other."""
         return self.reached(now, None) - now if self._is_real else 0
 
     def stand(self) -> None:
-        """Let time stand; a goal is given up."""
+        """Pause; a goal is dropped."""
         self._give_up_goal()
         self.stands = True
 
     def go_on(self, now: int) -> None:
-        """Let time pass from ``now`` on; a goal is given up."""
+        """Resume at ``now``; a goal is dropped."""
         self._give_up_goal()
         self._anchor_at(now)
         self.stands = False
 
     def step(self) -> None:
-        """Hurry until ``halt`` is called; steps that are asked for at once are taken one after another."""
+        """Hurry until ``halt`` is called; steps requested at once are taken one after another."""
         self._hurry(None)
         self._steps += 1
 
@@ -73,14 +73,14 @@ class Pace:
         self._hurry(until)
 
     def halt(self) -> None:
-        """The goal is reached: time stands, unless another step is to be taken."""
+        """The goal is reached: pause, unless another step is due."""
         self._steps = max(0, self._steps - 1)
         if not self.steps:
             self.stand()
         self.on_halt()
 
     def goal_before(self, stop: int | None) -> int | None:
-        """The moment to stand at before time comes to ``stop`` (None: it never comes to anything)."""
+        """The moment at which to pause before time advances to ``stop`` (None: it never does)."""
         return self._until if self._until is not None and (stop is None or self._until < stop) else None
 
     def delay_until(self, target: int | None) -> float | None:
@@ -96,7 +96,7 @@ class Pace:
         return delay
 
     def reached(self, now: int, limit: int | None) -> int:
-        """Where the pace has brought a run that jumped to ``now`` last, at most to ``limit``."""
+        """The time reached, at most ``limit``, by a run that last advanced to ``now``."""
         rate = self._rate()
         if rate is None or self.stands:
             return now
@@ -104,7 +104,7 @@ class Pace:
         return max(now, paced if limit is None else min(paced, limit))
 
     def _rate(self) -> float | None:
-        """Virtual seconds per real second; None: as fast as it can."""
+        """Virtual seconds per real second; None: as fast as possible."""
         if self._is_real:
             return 1.0
         return None if self._hurries else self._speed
@@ -125,4 +125,4 @@ class Pace:
 
 
 def _nothing() -> None:
-    """Stand in for a listener that nobody set."""
+    """The default listener, which does nothing."""

@@ -1,4 +1,4 @@
-"""Wall time that can be stopped, slowed down and sped up: threads run as they do, their waits are scaled."""
+"""Wall time that can be paused, slowed down and sped up: threads run freely, their waits are scaled."""
 
 import ctypes
 import math
@@ -17,11 +17,11 @@ _allocate_lock = threading.Lock
 _Thread = threading.Thread
 
 _ASIDE = 20e-6
-"""Seconds for which a thread stands aside that asks for the time while the pace is being changed."""
+"""Seconds for which a thread that asks for the time yields while the pace is being changed."""
 
 
 class PacedAutoResetEvent:
-    """A signal on the machine's own locks, whose deadline is a moment of a paced clock."""
+    """An auto-reset event on the machine's own locks, whose deadline is a moment of a paced clock."""
 
     __slots__ = ("_bell", "_clock", "_is_set")
 
@@ -58,7 +58,7 @@ class PacedAutoResetEvent:
             clock._sleepers.discard(self)
 
     def set(self) -> None:
-        """Set the flag; setting it twice is setting it once."""
+        """Set the flag; setting it twice has the effect of once."""
         self._is_set = True
         bell = self._bell
         if bell.locked():
@@ -68,13 +68,13 @@ class PacedAutoResetEvent:
                 return
 
     def ring(self) -> None:
-        """Have whoever waits look at the clock again."""
+        """Have a waiting thread look at the clock again."""
         with suppress(RuntimeError):  # it rings already
             self._bell.release()
 
 
 class _Rate(NamedTuple):
-    """From wall time ``wall`` on, when the clock shows ``run``, it shows ``speed`` seconds more a second."""
+    """From wall time ``wall`` on, when the clock shows ``run``, it advances ``speed`` seconds per second."""
 
     run: int
     wall: int
@@ -82,9 +82,9 @@ class _Rate(NamedTuple):
 
 
 class PacedClock:
-    """The machine's monotonic clock, counted from the moment of making, at a speed. Thread-safe.
+    """The machine's monotonic clock, counted from its creation, at a speed. Thread-safe.
 
-    A thread that computes cannot be held up: it goes on while the clock stands, and sees the time stand.
+    A thread that computes cannot be stopped: it goes on while the clock is paused, and sees no time pass.
     """
 
     def __init__(self, speed: float = 1.0) -> None:
@@ -97,10 +97,11 @@ class PacedClock:
         self._speed = speed
         self._rate: _Rate | None = _Rate(0, self.origin, speed)
         self._began: Any = self.origin if speed == 1 else None
-        """As ``origin`` while the clock has always gone like the machine's; None from the first change on."""
+        """Equal to ``origin`` while the clock has always had the machine's pace; None after the first change.
+        """
 
     def now(self) -> int:
-        """Nanoseconds since this clock was made, as many as the pace has let pass."""
+        """Nanoseconds of this clock since its creation."""
         try:
             now: int = _monotonic_ns() - self._began
         except TypeError:  # there is no quicker way to ask, and this is asked several times a callback
@@ -118,7 +119,7 @@ class PacedClock:
                 return now
 
     def wall_seconds_until(self, moment: int) -> float:
-        """Real seconds until the clock shows ``moment`` if its pace stays; infinite while it stands."""
+        """Real seconds until the clock shows ``moment`` at its present pace; infinite while it is paused."""
         left = moment - self.now()
         if self._began is not None or left <= 0:
             return left / 1e9
@@ -133,11 +134,11 @@ class PacedClock:
             _sleep(0)
 
     def auto_reset_event(self) -> PacedAutoResetEvent:
-        """A new signal, not set."""
+        """A new event, not set."""
         return PacedAutoResetEvent(self)
 
     def choose(self, number: int) -> int:
-        """The first of some equals."""
+        """The first."""
         return 0
 
     def start_thread(self, target: Callable[[], None], name: str) -> None:
@@ -145,23 +146,23 @@ class PacedClock:
         _Thread(target=target, name=name, daemon=True).start()
 
     def switch_point(self) -> None:
-        """Nothing: the machine switches where it likes."""
+        """Nothing: the machine switches at will."""
 
     def poll(self) -> None:
         """Nothing: asking takes time."""
 
     def end_thread(self) -> None:
-        """Nothing: whoever joins a thread waits while it ends."""
+        """Nothing: a join waits until the thread has ended."""
 
     def interrupt(self, thread: int) -> None:
-        """Have the interpreter raise it there; a wait without deadline is finished first."""
+        """Have the interpreter raise it there; a wait without deadline is ended first."""
         ctypes.pythonapi.PyThreadState_SetAsyncExc(
             ctypes.c_ulong(thread), ctypes.py_object(KeyboardInterrupt)
         )
         self._wake_sleepers()
 
     def call_at(self, time: int, action: Callable[[], None]) -> None:
-        """Run ``action`` on a thread of its own once ``time`` has come."""
+        """Run ``action`` on a thread of its own at ``time``."""
 
         def wait() -> None:
             PacedAutoResetEvent(self).wait(time)
@@ -170,19 +171,19 @@ class PacedClock:
         self.start_thread(wait, "timer")
 
     def pause(self) -> None:
-        """Stop the clock."""
+        """Pause the clock."""
         with self._changing:
             self._paused = True
             self._change_rate()
 
     def resume(self) -> None:
-        """Let the clock go on from where it stands."""
+        """Resume the clock."""
         with self._changing:
             self._paused = False
             self._change_rate()
 
     def set_speed(self, speed: float) -> None:
-        """Show ``speed`` seconds more each second; while the clock stands, once it goes on."""
+        """Advance ``speed`` seconds per second; a paused clock does so once it is resumed."""
         with self._changing:
             self._speed = speed
             self._change_rate()
@@ -203,5 +204,5 @@ class PacedClock:
 
 
 def _at(rate: _Rate, wall: int) -> int:
-    """What the clock shows at a wall time."""
+    """The clock's reading at a wall time."""
     return rate.run + int((wall - rate.wall) * rate.speed)

@@ -1,7 +1,7 @@
-"""Which thread goes on where a real machine could choose any: first come, first served, or as a seed says.
+"""Chooses the thread that goes on where a real machine could choose any: by arrival, or by a seed.
 
-All choices that a run on virtual time leaves open are made here, and nowhere else; nothing here waits or
-knows a clock. Threads are told apart by what the caller hands in for them.
+All choices that a run on virtual time leaves open are made here; nothing here waits or knows a clock. The
+caller decides what identifies a thread.
 """
 
 from collections.abc import Hashable, Sequence
@@ -14,16 +14,16 @@ class Schedule(Protocol):
     """Makes the choices of one run. Used by one thread at a time, the one that has the baton."""
 
     explores: bool
-    """Whether it ever chooses anything but the first; if not, nobody has to ask where to switch."""
+    """Whether it may choose anything but the first; if not, nobody has to offer it a switch."""
 
     def next(self, ready: Sequence[Hashable]) -> int:
-        """Which of the threads that can run goes on: a place in ``ready``, oldest first."""
+        """The index in ``ready``, oldest first, of the thread that goes on."""
 
     def leaves(self, running: Hashable, ready: Sequence[Hashable]) -> bool:
-        """Whether a thread that could go on lets one of those in ``ready`` go first."""
+        """Whether a thread that could go on lets one of ``ready`` go first."""
 
     def choose(self, number: int) -> int:
-        """Which of ``number`` equals is taken, from 0: the first is the one that came first."""
+        """The index of the chosen one of ``number`` equals; 0 came first."""
 
     def forget(self, thread: Hashable) -> None:
         """A thread has ended."""
@@ -35,7 +35,7 @@ class FirstCome:
     explores = False
 
     def next(self, ready: Sequence[Hashable]) -> int:
-        """The one that has waited longest."""
+        """The thread that has waited longest."""
         return 0
 
     def leaves(self, running: Hashable, ready: Sequence[Hashable]) -> bool:
@@ -47,19 +47,19 @@ class FirstCome:
         return 0
 
     def forget(self, thread: Hashable) -> None:
-        """Nothing is known of it."""
+        """Nothing to do."""
 
 
 class Seeded:
-    """The choices that a seed makes: the same seed, asked the same, always makes the same.
+    """The choices of a seed: the same seed and the same questions give the same answers.
 
     Every thread gets a random priority when it is first seen, and the highest goes on. At each decision, with
     a probability that the seed draws once, the thread that would go on falls below all others. So some seeds
     keep a thread slow for long, as no series of independent draws would, and others switch all the time.
 
     This is probabilistic concurrency testing (Burckhardt, Kothari, Musuvathi and Nagarakatte: A Randomized
-    Scheduler with Probabilistic Guarantees of Finding Bugs, ASPLOS 2010), with change points that come again
-    and again, since nodes run for ever, in place of a fixed number of them.
+    Scheduler with Probabilistic Guarantees of Finding Bugs, ASPLOS 2010), with recurring change points, since
+    nodes run for ever, in place of a fixed number of them.
     """
 
     explores = True
@@ -72,7 +72,7 @@ class Seeded:
         self._lowest = count(-1, -1)
 
     def next(self, ready: Sequence[Hashable]) -> int:
-        """The one of the highest priority, or, where a change comes, of the second highest."""
+        """The thread of the highest priority, or, at a change point, of the second highest."""
         place = self._highest(ready)
         if len(ready) > 1 and self._random.random() < self._rate:
             self._lower(ready[place])
@@ -80,7 +80,7 @@ class Seeded:
         return place
 
     def leaves(self, running: Hashable, ready: Sequence[Hashable]) -> bool:
-        """Whether one of a higher priority could run, perhaps because of a change here."""
+        """Whether a thread of a higher priority could run, perhaps because of a change point here."""
         if self._random.random() < self._rate:
             self._lower(running)
         mine = self._priority(running)
@@ -91,7 +91,7 @@ class Seeded:
         return self._random.randrange(number) if number > 1 else 0
 
     def forget(self, thread: Hashable) -> None:
-        """Its priority is not needed any more."""
+        """Drop its priority."""
         self._priorities.pop(thread, None)
 
     def _highest(self, ready: Sequence[Hashable]) -> int:
@@ -108,5 +108,5 @@ class Seeded:
 
 
 def schedule_of(seed: int | None) -> Schedule:
-    """The schedule that a seed stands for; None and 0 stand for first come, first served."""
+    """The schedule of a seed; None and 0 mean first come, first served."""
     return Seeded(seed) if seed else FirstCome()

@@ -41,10 +41,10 @@ Number = TypeVar("Number", int, float)
 
 
 class VirtualLock:
-    """``threading.Lock`` on virtual time: handed over in the order in which threads came for it.
+    """``threading.Lock`` on virtual time: handed over in the order in which threads asked for it.
 
-    Where orders are explored, any of those that wait may get it, or it is left to whoever comes first, and
-    threads switch in front of it and behind. Threads outside the clock may share it; they wait in real time.
+    With a seed, any waiting thread may get it, or it is left free for the first to ask, and threads switch
+    before and after it. Threads outside the clock may share it; they wait in real time.
     """
 
     _clock: VirtualClock
@@ -58,7 +58,7 @@ class VirtualLock:
         self.taken_at: tuple[CodeType, int] | None = None
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Take the lock; False if it is not to be had at once (or within ``timeout`` seconds)."""
+        """Take the lock; False if it is not available at once (or within ``timeout`` seconds)."""
         limit = None if timeout == -1 else self._limit(blocking, timeout)
         self._clock.switch_point()
         if self._real.acquire(blocking=False):
@@ -108,7 +108,7 @@ class VirtualLock:
         return taken
 
     def _give_up_place(self, me: VirtualThread) -> None:
-        """A thread in line takes the lock no more, even if it was handed to it."""
+        """Remove a thread from the queue, even if the lock was handed to it."""
         if self._granted is me:
             self._granted = self.holder = None
             self._real.release()
@@ -117,7 +117,7 @@ class VirtualLock:
         self._serve_waiters()
 
     def release(self) -> None:
-        """Let go of the lock, or hand it to the thread that has waited longest."""
+        """Release the lock, or hand it to the thread that has waited longest."""
         if not self._real.locked():
             raise RuntimeError("release unlocked lock")
         self.holder = None
@@ -136,7 +136,7 @@ class VirtualLock:
             self._pass_on()
 
     def _pass_on(self) -> None:
-        """Hand the lock, which is held, to one that waits, or wake that one and let it try."""
+        """Hand the held lock to a waiting thread, or wake one and let it try."""
         following = self._waiters[self._clock.choose(len(self._waiters))]
         if self._clock.choose(2) == 0:
             self._waiters.remove(following)
@@ -146,7 +146,7 @@ class VirtualLock:
         self._clock.unpark(following)
 
     def _note_taking(self, frame: FrameType) -> None:
-        """Note who has taken the lock, and the line behind the library's own: ``frame`` is what took it."""
+        """Record which thread has the lock; ``frame`` is the call that took it, below the library's own."""
         self.holder = self._clock.current
         code = frame.f_code
         self.guards = code is _ENTERS or code is _RLOCK_TAKES or code is _RLOCK_TAKES_AGAIN
@@ -156,12 +156,12 @@ class VirtualLock:
         self.taken_at = code, frame.f_lasti
 
     def _is_owned(self) -> bool:
-        """Asked by conditions, which try to take a lock to learn whether they have it: no poll."""
+        """Whether the calling thread has it, as conditions ask; not a poll."""
         self._clock.switch_point()
         return self._real.locked()
 
     def locked(self) -> bool:
-        """Whether somebody holds it."""
+        """Whether a thread holds it."""
         return self._real.locked()
 
     def __enter__(self) -> bool:
@@ -179,7 +179,7 @@ class VirtualLock:
 
 
 def _tell_nobody(_what: str) -> None:
-    """Take what nobody wants to hear."""
+    """Ignore a report."""
 
 
 _ENTERS = VirtualLock.__enter__.__code__
@@ -187,10 +187,10 @@ _LIBRARY = {__file__, _RLOCK_TAKES.co_filename, queue.Queue.get.__code__.co_file
 
 
 def live_on(clock: VirtualClock, tell: Callable[[str], None] = _tell_nobody) -> None:
-    """Replace Python's ways to wait, to tell the time and to draw at random, for this process and for good.
+    """Replace Python's waits, its clocks and its random numbers for this process, for good.
 
-    Call it on the clock's main thread. ``tell`` is called on a program's thread with what it does that
-    cannot be the same in each run, as a clause of a sentence.
+    Call it on the clock's main thread. ``tell`` is called on a program's thread with a clause about each
+    thing it does that is not reproducible.
     """
     VirtualLock._clock = clock
     replacements = Replacements(clock)
@@ -282,7 +282,7 @@ def _replace_threads(clock: VirtualClock) -> None:
 
 
 class _End:
-    """When a thread ended in virtual time; any number of others may wait for it."""
+    """The end of a thread on virtual time; any number of threads may wait for it."""
 
     guards: bool = True
     taken_at: tuple[CodeType, int] | None = None

@@ -9,10 +9,10 @@ from sim.trace.events import CallId, EntityId
 
 
 class Flows:
-    """The flows that have begun and not ended; every one that is begun here is ended once.
+    """Open flows; each is ended once.
 
-    Towards an entity's queue a flow is on its way until it arrives, and then waits in order of arrival.
-    Numbers are of messages, or of calls for the entities of services and clients.
+    A flow to an entity's queue is on its way until it arrives, and then waits in order of arrival. Numbers
+    are of messages, or of calls for the entities of services and clients.
     """
 
     def __init__(self) -> None:
@@ -22,12 +22,12 @@ class Flows:
         self._calls: dict[CallId, FlowId] = {}
 
     def send(self, number: int, receivers: Sequence[EntityId]) -> tuple[FlowId, ...]:
-        """Begin a flow to each receiver of a message, request or reply that has none with that number."""
+        """Open a flow to each receiver of a message, request or reply that has none with that number."""
         fresh = dict.fromkeys(entity for entity in receivers if not self._has(number, entity))
         return tuple(self._begin(number, entity) for entity in fresh)
 
     def arrive(self, number: int, entity: EntityId, depth: int) -> Iterator[FlowId]:
-        """Something arrives at a queue that now has ``depth``; ends the flows of what has left it unseen."""
+        """A message arrives at a queue, now of ``depth``; ends the flows of messages that left unseen."""
         flow = self._on_the_way[entity].pop(number, None)
         queued = self._queued[entity]
         if flow is not None:
@@ -53,7 +53,7 @@ class Flows:
         return tuple({**self._queued, **self._on_the_way})
 
     def call(self, call: CallId) -> tuple[FlowId, ...]:
-        """Begin the flow from a call to its reply; none for a call that has one."""
+        """Open the flow from a call to its reply, unless it is open."""
         if call in self._calls:
             return ()
         self._calls[call] = next(self._ids)

@@ -71,7 +71,7 @@ def _rank(field: JsonField) -> int:
 
 
 class RunNames:
-    """What the ids of a run stand for in its lines; see ``Names``."""
+    """The names behind a run's ids; see ``IdNames``."""
 
     def __init__(self) -> None:
         self._participants = Participants()
@@ -87,7 +87,7 @@ class RunNames:
         }
 
     def take(self, event: AnyEvent) -> None:
-        """Learn the names that an event tells."""
+        """Learn the names in an event."""
         add = self._take.get(event.__class__)
         if add is not None:
             add(event)

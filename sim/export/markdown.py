@@ -1,4 +1,4 @@
-"""Writes a report of a run in Markdown: set-up, diagnosis, statistics, waits, what was said, a picture."""
+"""Writes a report of a run in Markdown: set-up, diagnosis, statistics, waits, output, a picture."""
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
@@ -16,7 +16,7 @@ from sim.trace.model import AxisMark, Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 _MARKS = 200
-"""Commands and errors that a report lists; there may be thousands."""
+"""Commands and errors that a report lists at most."""
 
 _HEADS = (
     "callback",
@@ -40,9 +40,9 @@ _HEADS = (
 
 
 def report(timeline: Timeline, picture: str | None = None) -> str:
-    """The report of all that a timeline knows; ``picture`` is where its picture is, as a link would say it.
+    """The report on a timeline; ``picture`` is the link to its picture.
 
-    Texts of the learner's program stand in it as they are, without effect on the page.
+    Text from the learner's program is shown literally.
     """
     summary, figures = summarise(timeline), statistics(timeline)
     parts = (
@@ -165,7 +165,7 @@ def _waits(summary: Summary, timeline: Timeline) -> Iterator[str]:
 
 
 def _reasons(each: CallbackFigures, timeline: Timeline) -> Iterator[Sequence[str]]:
-    """For each reason for which a callback waited, how long, the weightiest first."""
+    """The total wait for each reason, the longest first."""
     total: defaultdict[str, Nanoseconds] = defaultdict(int)
     longest: defaultdict[str, Nanoseconds] = defaultdict(int)
     for wait in timeline.waits_of(each.entity.id, Window(0, timeline.end + 1)):

@@ -1,6 +1,6 @@
-"""What a picture on paper is drawn with: colours, textures and small pieces of SVG.
+"""Elements of an SVG picture for paper: colours, textures and shapes.
 
-Colour is never the only sign: groups have a texture and their letter too, reasons of waits a hatching each.
+Colour is never the only sign: groups also have a texture and their letter, reasons of waits a hatching each.
 """
 
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ WARN = "#B3200B"
 FONT = "DejaVu Sans, Verdana, sans-serif"
 FONT_SIZE = 11
 CHARACTER = 6.7
-"""How wide a character is at that size, in pixels, on average and a little more."""
+"""The average width of a character at that size, in pixels, rounded up."""
 
 _TEXTURES = (
     "",
@@ -47,12 +47,12 @@ class Box:
 
 
 def colour(number: int) -> str:
-    """The colour of a group by its place in the order of letters."""
+    """The colour of a group, by its place in the order of letters."""
     return GROUP_COLOURS[number] if 0 <= number < len(GROUP_COLOURS) else OTHER_COLOUR
 
 
 def definitions(groups: int) -> str:
-    """The patterns of so many groups and of all reasons."""
+    """The patterns of all groups and reasons."""
     patterns = [_group_pattern(number) for number in range(groups)]
     patterns += [
         f'<pattern id="{name}" width="7" height="7" patternUnits="userSpaceOnUse">'
@@ -82,7 +82,7 @@ def hatched(box: Box, reason: Reason, about: str) -> str:
 
 
 def ground(box: Box) -> str:
-    """What lies under a lane."""
+    """The background of a lane."""
     return f'<rect {_place(box)} fill="#F6F7F8"/>'
 
 
@@ -104,7 +104,7 @@ def words(x: float, y: float, text: str, ink: str = TEXT, anchor: str = "start",
 
 
 def fitting(texts: tuple[str, ...], room: float) -> str:
-    """The first of the texts that fits into so many pixels; nothing if none does."""
+    """The first of the texts that fits into so many pixels; empty if none does."""
     return next((text for text in texts if len(text) * CHARACTER <= room), "")
 
 

@@ -1,4 +1,4 @@
-"""Makes texts of a learner's program safe to put into files of various kinds."""
+"""Makes text from a learner's program safe for files of various kinds."""
 
 import re
 
@@ -6,16 +6,16 @@ from sim.trace.model import Nanoseconds
 from sim.units import SECOND
 
 _CONTROLS = "\x00-\x08\x0b-\x1f\x7f-\x9f"
-_DECEIVERS = "\u200b\u200e\u200f\u202a-\u202e\u2060\u2066-\u2069\ufeff"
-"""What turns other text round, or stands in it unseen."""
+_DECEPTIVE = "\u200b\u200e\u200f\u202a-\u202e\u2060\u2066-\u2069\ufeff"
+"""Characters that reverse other text, or are invisible in it."""
 _NO_TEXT = "\ud800-\udfff\ufffe\uffff"
-_UNPRINTABLE = re.compile(f"[{_CONTROLS}{_DECEIVERS}{_NO_TEXT}]")
+_UNPRINTABLE = re.compile(f"[{_CONTROLS}{_DECEPTIVE}{_NO_TEXT}]")
 _FORMULA_STARTS = ("=", "+", "-", "@", "\t", "\r", "\n")
 _MARKDOWN = re.compile(r"([\\`*\[\]#|~<>&$]|(?<![^\W_])_|_(?![^\W_]))")
 
 
 def printable(text: str) -> str:
-    """The text with what XML or UTF-8 cannot hold, a terminal obeys or a reader is deceived by as ``�``."""
+    """Replace what XML or UTF-8 cannot hold, a terminal executes or a reader is deceived by with ``�``."""
     return _UNPRINTABLE.sub("\N{REPLACEMENT CHARACTER}", text)
 
 
@@ -26,7 +26,7 @@ def xml(text: str) -> str:
 
 
 def cell(text: str) -> str:
-    """The text as a spreadsheet's cell: one that a spreadsheet would reckon with begins with ``'``.
+    """The text as a spreadsheet's cell: one that a spreadsheet would take for a formula begins with ``'``.
 
     Source: OWASP, "CSV Injection".
     """

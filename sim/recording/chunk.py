@@ -26,7 +26,7 @@ _FEW = 100_000_000
 
 
 def unpacked_most(size: int) -> int:
-    """Bytes that a recording may unpack to at most: the highest compression ratio of lz4 times its size."""
+    """Bytes that a recording may unpack to at most: its size times the highest compression ratio of lz4."""
     return max(_FEW, _MOST_LZ4 * size)
 
 

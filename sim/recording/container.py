@@ -1,7 +1,7 @@
-"""The records of an MCAP file, read so that damage costs no more than the damaged records.
+"""Reads the records of an MCAP file; damage costs no more than the damaged records.
 
-The mcap library's readers stop at the first error. This one skips to the next chunk.
-Source: the MCAP specification, https://mcap.dev/spec.
+The mcap library's readers stop at the first error. This one skips to the next chunk. Source: the MCAP
+specification, https://mcap.dev/spec.
 """
 
 import re
@@ -21,7 +21,7 @@ _CHUNK_FIELDS = struct.Struct("<QQQI")
 """First and last time of a chunk, uncompressed size and checksum."""
 _COMPRESSIONS = re.compile(rb"\x03\0\0\0lz4|\x04\0\0\0zstd|\0\0\0\0")
 _NAMED = re.compile(rb"\x03\0\0\0lz4|\x04\0\0\0zstd")
-"""The name of the compression that follows; chunks that are not compressed cannot be searched for."""
+"""The name of the compression that follows; uncompressed chunks cannot be found by it."""
 _TO_NAME = HEAD.size + _CHUNK_FIELDS.size
 _WINDOW = 1_000_000
 _FIRST_WINDOWS = 4_000_000
@@ -46,8 +46,8 @@ class Container:
     size: int = 0
     gaps: list[int] = field(default_factory=list)
     """Offsets at which records are damaged and others follow."""
-    whole: bool = False
-    """Whether the file ends with all its data."""
+    complete: bool = False
+    """Whether the data section is complete."""
     indexed: bool = False
     """Whether it ends with its index."""
 
@@ -73,7 +73,7 @@ class Container:
                 continue
             last = place
             yield record
-            self.whole = self.whole or record.opcode == Opcode.DATA_END
+            self.complete = self.complete or record.opcode == Opcode.DATA_END
             if record.opcode == Opcode.FOOTER:
                 self.indexed = True
                 return

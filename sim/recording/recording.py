@@ -58,7 +58,7 @@ class RecordedMessage:
 
 
 def read(path: Path) -> "Recording":
-    """Open a recording: its outline is read at once, the rest when it is asked for.
+    """Open a recording: its outline is read at once, the rest on demand.
 
     Raises:
         RecordingError: it is not a recording, nothing in it is readable, or a later version wrote it.
@@ -83,7 +83,7 @@ class Recording:
         self.path = path
         self.about = RecordingMetadata()
         self.sources: dict[str, str] = {}
-        """The text of the programs' files, by their paths."""
+        """The source files of the programs, by path."""
         self._library = ""
         self._participants: list[AnyEvent] = []
         self.share = 0.0
@@ -100,7 +100,7 @@ class Recording:
                 self._outline(container, record)
         self._size = container.size
         self._gaps = container.gaps
-        self._whole = container.whole
+        self._complete = container.complete
         self._indexed = container.indexed
 
     def _outline(self, container: Container, record: Record) -> None:
@@ -277,7 +277,7 @@ class Recording:
                 f"it unpacks to more than {unpacked_most(self._size) // 1_000_000:,} MB, which no recording "
                 "of its size does, and the rest is left out"
             )
-        if not self._whole:
+        if not self._complete:
             troubles.append(f"it breaks off at byte {self._size:,}, since it was cut or its recorder killed")
         elif not self._indexed:
             troubles.append("all of it is there but its index, which only other programs need")

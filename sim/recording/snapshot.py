@@ -1,4 +1,4 @@
-"""A snapshot of a running run, with which a recording that starts later begins."""
+"""A snapshot of a running run, from which a recording can start later."""
 
 from collections import Counter, defaultdict, deque
 from collections.abc import Callable, Hashable, Iterable
@@ -11,9 +11,9 @@ from sim.trace import events as ev
 from sim.trace.events import AnyEvent, EntityId, MessageId, ThreadId
 
 _MOST_QUEUED = 1000
-"""Messages that are kept for each queue: the depth of the deepest usual queue."""
+"""Messages kept for each queue: the depth of the deepest usual queue."""
 _MOST_IN_TRANSIT = 100
-"""Published messages that are kept because they may not have arrived yet."""
+"""Published messages kept because they may not have arrived yet."""
 
 _Placed: TypeAlias = tuple[int, Any]
 """The sequence number of an event in the run, and the event."""
@@ -21,7 +21,7 @@ _Placed: TypeAlias = tuple[int, Any]
 
 @dataclass
 class _Call:
-    """A call of a callback in progress: its start, its last suspension and resumption."""
+    """An unfinished call of a callback: its start, its last suspension and resumption."""
 
     start: _Placed
     thread: ThreadId
@@ -30,7 +30,7 @@ class _Call:
 
     @property
     def is_suspended(self) -> bool:
-        """Whether it is suspended now."""
+        """Whether it is suspended."""
         return self.suspended is not None and self.resumed is None
 
     def events(self) -> list[_Placed]:
@@ -49,8 +49,8 @@ class RunSnapshot:
     """Follows a run, and returns at any time those of its events on which later ones depend.
 
     These are its participants, the callbacks that run, wait or are suspended, the queues, the pending service
-    calls, the last state of the robot, and all inputs, which a repetition needs. Finished calls, log lines
-    and the like are left out. Not thread-safe.
+    calls, the last state of the robot, and all inputs, which a repetition needs. Finished calls and log lines
+    are left out. Not thread-safe.
     """
 
     def __init__(self) -> None:
@@ -149,7 +149,7 @@ class RunSnapshot:
             self._leave_queue(event)
 
     def _leave_queue(self, event: ev.CallbackStarted | ev.MessageDropped) -> None:
-        """Remove a message: mostly the oldest, but a newer one may expire first."""
+        """Remove a message: usually the oldest, but a newer one may expire first."""
         queue = self._queued[event.entity]
         gone = next((each for each in queue if each[1].message == event.message), None)
         if gone is not None:
@@ -186,7 +186,7 @@ def _is_same_wait(known: list[_Placed], event: ev.WaitStarted) -> bool:
 
 
 def _with_depths(events: Iterable[Any]) -> list[AnyEvent]:
-    """The events with the queue depths that result from these messages alone."""
+    """The events, with queue depths that follow from these messages alone."""
     counts: Counter[EntityId] = Counter()
     numbered: list[AnyEvent] = []
     for event in events:

@@ -8,7 +8,7 @@ from cbtui.widgets.code.marks import marks_at
 from cbtui.widgets.code.source_files import SourceFiles
 from cbtui.widgets.diagnosis import diagnosis_at
 from cbtui.widgets.factory.painter import FactoryPainter
-from cbtui.widgets.lanes import LOOKS_PER_FRAME, LanePainter
+from cbtui.widgets.lanes import INTERVALS_PER_FRAME, LanePainter
 from sim.trace import events as ev
 from sim.trace.figures.concurrency import Concurrency
 from sim.trace.model import Window
@@ -51,7 +51,7 @@ class Drawn:
     def __init__(self, number: int, in_groups: bool) -> None:
         self._timeline = Timeline()
         self._timeline.extend(timers(number, in_groups))
-        self._lanes = LanePainter(looks=LOOKS_PER_FRAME)
+        self._lanes = LanePainter(looks=INTERVALS_PER_FRAME)
         self._factory = FactoryPainter()
         self._watch = FindingsMonitor(self._timeline)
         self._concurrency = Concurrency(self._timeline)

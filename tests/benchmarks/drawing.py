@@ -4,7 +4,7 @@ import time
 from functools import lru_cache
 from statistics import median
 
-from cbtui.widgets.lanes import LOOKS_PER_FRAME, LanePainter
+from cbtui.widgets.lanes import INTERVALS_PER_FRAME, LanePainter
 from sim.trace import events as ev
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
@@ -42,7 +42,7 @@ def following_frame(seconds: int) -> float:
 
 
 def _frames(seconds: int, counted: range) -> list[float]:
-    timeline, painter = long_run(seconds), LanePainter(looks=LOOKS_PER_FRAME)
+    timeline, painter = long_run(seconds), LanePainter(looks=INTERVALS_PER_FRAME)
     length = ns(min(600, seconds / 2))
     took = []
     for number in range(counted.stop):

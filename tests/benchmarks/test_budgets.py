@@ -13,7 +13,7 @@ from types import FrameType
 import pytest
 
 from cbtui.runs.live.live_run import LiveRun
-from cbtui.widgets.lanes import LOOKS_PER_FRAME, LanePainter
+from cbtui.widgets.lanes import INTERVALS_PER_FRAME, LanePainter
 from sim.engine.setup import RunSetup
 from sim.trace.model import Window
 from sim.trace.roster import MOST_LANES
@@ -70,7 +70,7 @@ def test_the_first_frame_after_zooming_out_looks_at_a_part_of_what_there_is() ->
     def paint(painter: LanePainter) -> int:
         return calls_of(lambda: painter.paint(timeline, Window(0, end), end, 140, 20))
 
-    assert paint(LanePainter(looks=LOOKS_PER_FRAME)) < 0.5 * paint(LanePainter())
+    assert paint(LanePainter(looks=INTERVALS_PER_FRAME)) < 0.5 * paint(LanePainter())
 
 
 def test_a_callback_costs_the_same_among_five_hundred_entities_as_alone() -> None:

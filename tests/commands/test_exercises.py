@@ -114,7 +114,7 @@ def test_start_says_when_a_folder_takes_no_files(
     def refuse(*_: object, **__: object) -> None:
         raise PermissionError(13, "Permission denied")
 
-    monkeypatch.setattr(exercise_files, "write_whole", refuse)
+    monkeypatch.setattr(exercise_files, "write_atomically", refuse)
     assert cli.main(["start", "split-groups"]) == 1
     assert capsys.readouterr().err == "cbtui: split_groups.py cannot be written: Permission denied\n"
 

@@ -98,7 +98,7 @@ def doubts(tmp_path: Path) -> Callable[..., tuple[str, ...]]:
         submission.write_to(tmp_path)
         audit = TraceAudit(KEY, submission, tmp_path, [Path(os.__file__).parent], virtual=True)
         audit.unpack(tamper(Seal(KEY).close(encode([*BEGIN, *events, END]))))
-        return audit.doubts(whole=True)
+        return audit.doubts(ended_normally=True)
 
     return look
 
@@ -135,7 +135,7 @@ def test_a_callback_from_elsewhere_gives_a_run_away(
     audit = TraceAudit(KEY, submission, copy, [], virtual=True)
     moved = msgspec.structs.replace(event, file=event.file.format(tmp_path))
     audit.unpack(Seal(KEY).close(encode([*BEGIN, moved, END])))
-    (found,) = audit.doubts(whole=True)
+    (found,) = audit.doubts(ended_normally=True)
     assert found.startswith(doubt.format(tmp_path))
 
 

@@ -1,1 +1,1 @@
-"""Recordings: written, summarised, repeated and exported."""
+"""Recordings: writing, summaries, repetitions and exports."""

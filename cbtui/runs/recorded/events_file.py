@@ -10,11 +10,10 @@ from sim.trace.events import AnyEvent
 
 
 class EventsFile:
-    """Takes events as they come. Where it cannot, it keeps the whole lines it has, and ``failure`` says why.
+    """Writes events. After a failed write the file keeps its complete lines, and ``failure`` says why.
 
-    A file that is there keeps its content until ``begin``.
-
-    Raises OSError if it cannot be opened, BrokenPipeError if it is a pipe and who read it has read enough.
+    An existing file keeps its content until ``begin``. Raises OSError if it cannot be opened, BrokenPipeError
+    if it is a pipe whose reader has closed it.
     """
 
     def __init__(self, path: Path) -> None:
@@ -33,7 +32,7 @@ class EventsFile:
             self._try(lambda: self._file.write(b"".join(self._lines.lines(events))))
 
     def close(self) -> None:
-        """Write what is left, once. A new file that got nothing is not left behind."""
+        """Write buffered events and close, once. A new file without events is removed."""
         self._try(self._file.close)
         if self._new is not None and self._file.tell() == 0:
             with suppress(OSError):

@@ -1,4 +1,4 @@
-"""Takes the events of a run to trace viewers, spreadsheets and paper: files in the formats that there are."""
+"""Exports the events of a run to trace viewers, spreadsheets and paper, in several formats."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -10,8 +10,8 @@ from pathlib import Path
 from types import TracebackType
 from typing import TYPE_CHECKING, Protocol, Self
 
+from sim.atomic_file import atomic_file
 from sim.units import SECOND, nearest_ns
-from sim.whole_file import whole_file
 
 if TYPE_CHECKING:
     from sim.export import CallTable, TraceExporter
@@ -30,21 +30,21 @@ WIDTH = 1100
 
 
 class EventSource(Protocol):
-    """Where events come from: an open recording, or the event store of a live run."""
+    """A source of events: an open recording, or the event store of a live run."""
 
     def batches(self) -> "Iterator[list[AnyEvent]]":
-        """The events, batch after batch."""
+        """The events, in batches."""
 
 
 class ExportError(Exception):
-    """What stands in the way of an export, in one sentence for the person."""
+    """An export failed; the text is one sentence for the person."""
 
 
 @dataclass(frozen=True)
 class ExportRequest:
-    """What is to be written: paths by format, and the part (seconds) and width (pixels) of the picture.
+    """The wanted files: paths by format, and the part (seconds) and width (pixels) of the picture.
 
-    Files that exist are only replaced with ``replace``, and each when it is whole.
+    Existing files are only replaced with ``replace``, each when the new one is complete.
     """
 
     outputs: dict[str, Path]
@@ -55,13 +55,13 @@ class ExportRequest:
 
 
 def _go_on(_: "Nanoseconds") -> None:
-    """Know how far an export has come, and do nothing about it."""
+    """Ignore the progress of an export."""
 
 
 def export(
     source: EventSource, wish: ExportRequest, reached: "Callable[[Nanoseconds], None]" = _go_on
 ) -> None:
-    """Write what is wished for, in one pass over the events; ``reached`` is told how far that has come.
+    """Write the wanted files in one pass over the events; ``reached`` gets the progress.
 
     What ``reached`` raises ends the export.
 
@@ -100,9 +100,9 @@ class _ExportFile:
         self._name = name
         self._path = path
         self._writer: TraceExporter | CallTable | None = None
-        self._whole = whole_file(path, replace=replace)
+        self._atomic = atomic_file(path, replace=replace)
         with self._trouble():
-            self._file = self._whole.__enter__()
+            self._file = self._atomic.__enter__()
         self._text = TextIOWrapper(self._file, "utf-8", newline="", write_through=True)
 
     def __enter__(self) -> Self:
@@ -112,10 +112,10 @@ class _ExportFile:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         with self._trouble():
-            self._whole.__exit__(kind, error, trace)
+            self._atomic.__exit__(kind, error, trace)
 
     def begin(self) -> None:
-        """Write what comes before any event, if the format is written as events go by."""
+        """Write the head of a format that is written event by event."""
         from sim.export import CallTable, ChromeFile, PerfettoFile, TraceExporter
 
         with self._trouble():
@@ -127,13 +127,13 @@ class _ExportFile:
                 self._writer = CallTable(self._text)
 
     def take(self, batch: "list[AnyEvent]") -> None:
-        """Write a batch, if the format is one that is written as events go by."""
+        """Write a batch, for a format that is written event by event."""
         if self._writer is not None:
             with self._trouble():
                 self._writer.take(batch)
 
     def finish(self, timeline: "Timeline | None", wish: ExportRequest) -> None:
-        """Write the rest, or the page that is made of the whole run."""
+        """Write the rest, or a page of the complete run."""
         page = _page(self._name, timeline, wish) if timeline is not None else ""
         with self._trouble():
             if self._writer is not None:
@@ -150,7 +150,7 @@ class _ExportFile:
 
 
 def _page(name: str, timeline: "Timeline", wish: ExportRequest) -> str:
-    """The text of a picture or a report; nothing for other formats."""
+    """The text of a picture or a report; empty for other formats."""
     from sim.export import report, svg
 
     if name == "markdown":
@@ -171,7 +171,7 @@ def _window(timeline: "Timeline", wish: ExportRequest) -> "Window":
 
 
 def _picture_beside(wish: ExportRequest) -> str | None:
-    """Where the picture is, seen from the report."""
+    """The picture's path relative to the report."""
     picture = wish.outputs.get("svg")
     if picture is None:
         return None

@@ -8,7 +8,7 @@ from sim.recording import Recording
 from sim.trace.events import AnyEvent
 
 _QUIET_TIME = 1.0
-"""Seconds that nobody minds to wait without a word."""
+"""Seconds before progress is shown."""
 _PERIOD = 0.2
 
 
@@ -19,7 +19,7 @@ class ReadingProgress:
         self._recording = recording
 
     def batches(self) -> Iterator[list[AnyEvent]]:
-        """The events, batch after batch. Raises what the recording's own do."""
+        """The events, in batches. Raises what the recording raises."""
         due = time.monotonic() + _QUIET_TIME
         shown = False
         try:

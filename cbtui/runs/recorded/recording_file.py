@@ -1,4 +1,4 @@
-"""Recordings of runs: where one is written, and what it tells of its run."""
+"""Recordings of runs: where one is written, and its metadata."""
 
 import time
 from datetime import UTC, datetime
@@ -13,11 +13,11 @@ from sim.units import SECOND
 
 
 class CannotRecordError(Exception):
-    """A recording that cannot be begun; the text is a sentence that says why and what to do."""
+    """A recording cannot be started; the text says why and what to do."""
 
 
 class NameTakenError(CannotRecordError):
-    """A recording that would have to replace a file."""
+    """The recording would replace a file."""
 
 
 def start_recording(path: Path, setup: RunSetup, *, replace: bool = False) -> RecordingWriter:
@@ -46,7 +46,7 @@ def start_recording(path: Path, setup: RunSetup, *, replace: bool = False) -> Re
 
 
 def about(setup: RunSetup) -> RecordingMetadata:
-    """What a recording tells of the run."""
+    """The metadata of a run's recording."""
     return RecordingMetadata(
         title=setup.title,
         clock=setup.clock,
@@ -60,7 +60,7 @@ def about(setup: RunSetup) -> RecordingMetadata:
 
 
 def setup_of(recorded: RecordingMetadata) -> RunSetup | None:
-    """The set-up that a recording was made with; None if it holds none that this version knows."""
+    """The set-up in a recording; None if it holds none that this version knows."""
     try:
         return msgspec.json.decode(recorded.setup.encode(), type=RunSetup)
     except (msgspec.DecodeError, RecursionError, UnicodeEncodeError):
@@ -68,7 +68,7 @@ def setup_of(recorded: RecordingMetadata) -> RunSetup | None:
 
 
 def date_text(nanoseconds: int) -> str:
-    """Return the date and time of so many nanoseconds since 1970, as recordings have it."""
+    """Return nanoseconds since 1970 as date and time, in the form of recordings."""
     try:
         return f"{datetime.fromtimestamp(nanoseconds // SECOND, UTC):%Y-%m-%d %H:%M:%S} UTC"
     except (ValueError, OverflowError, OSError):

@@ -1,4 +1,4 @@
-"""What is in a recording, as plain text."""
+"""The content of a recording, as plain text."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -37,7 +37,7 @@ def tell(path: Path) -> int:
 
 @dataclass
 class _Tally:
-    """What is counted in one pass over the events."""
+    """Counts of one pass over the events."""
 
     events: int = 0
     last: int = 0
@@ -49,7 +49,7 @@ class _Tally:
 
     @property
     def length(self) -> int:
-        """Nanoseconds that the run lasted, less what the program did after it was told to end."""
+        """Nanoseconds of the run, without its program's own ending."""
         return self.last if self.told_to_end is None else self.told_to_end.t
 
     def take(self, events: list[AnyEvent]) -> None:
@@ -103,7 +103,7 @@ def _lines(recording: Recording, tally: _Tally, topics: list[Topic], size: int) 
 
 
 def _changed(recording: Recording) -> str:
-    """What a person changed about the program, beside its arguments."""
+    """The person's changes to the program, except its arguments."""
     setup = setup_of(recording.about)
     return "" if setup is None else changes_in(setup).words
 

@@ -1,4 +1,4 @@
-"""Repeating a recorded run: its set-up, or another program's, with the inputs that the recording holds."""
+"""Repeats a recorded run: its set-up, or another program's, with the recorded inputs."""
 
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
@@ -19,12 +19,14 @@ from sim.units import nearest_ns
 
 
 def why_unrepeatable(events: Iterable[AnyEvent]) -> str | None:
-    """What a run did that no other will do exactly so, in the engine's words; None: nothing is known."""
+    """Return why no other run will be exactly the same, in the engine's words; None if there is no known
+    reason.
+    """
     return next((each.text for each in events if isinstance(each, Notice) and each.unrepeatable), None)
 
 
 class CannotRepeatError(Exception):
-    """A recording that cannot be repeated; the text is a sentence that says why."""
+    """A recording cannot be repeated; the text is a sentence that says why."""
 
 
 def repeated_setup(
@@ -81,24 +83,24 @@ def repeated_setup(
 
 
 def _again(recorded: RunSetup, request: RunRequest) -> RunSetup:
-    """The recorded program, run as is asked for."""
+    """The recorded program, run as requested."""
     robot = recorded.robot if request.robot else RobotUse.NEVER
     return msgspec.structs.replace(request.changes.applied(recorded), speed=request.speed, robot=robot)
 
 
 @dataclass
 class _RecordedFacts:
-    """What its events tell of a recorded run."""
+    """Facts about a recorded run, collected from its events."""
 
     last: int = 0
-    """Nanoseconds of the run that are on record."""
+    """The latest time of the recording, in nanoseconds."""
     ended: bool = False
-    """Whether it came to its end by then."""
+    """Whether the run ended by then."""
     unrepeatable: str | None = None
-    """What no other run of its program will do exactly so."""
+    """Why no other run will be exactly the same."""
 
     def seen(self, event: AnyEvent) -> AnyEvent:
-        """Take note of an event."""
+        """Collect the facts of an event."""
         self.last = max(self.last, event.t)
         self.ended = self.ended or isinstance(event, RunEnded)
         self.unrepeatable = self.unrepeatable or why_unrepeatable([event])

@@ -1,1 +1,1 @@
-"""What a run is set up with: a lesson or files, and what a person changed."""
+"""The set-up of a run: a lesson or files, and a person's changes."""

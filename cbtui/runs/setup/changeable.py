@@ -1,4 +1,4 @@
-"""What of a run can be changed from the keyboard: its callbacks' groups and periods, and its numbers."""
+"""What can be changed about a run from the keyboard: callbacks' groups and periods, and numbers."""
 
 from dataclasses import dataclass
 
@@ -17,7 +17,9 @@ from sim.trace.timeline import Timeline
 
 @dataclass(frozen=True, slots=True)
 class ChangeableCallback:
-    """A callback as the run has it; ``group`` tells of its group in words, ``period`` is 0 for no timer."""
+    """A callback with its current settings; ``group`` describes its group, ``period`` is 0 if it has no
+    timer.
+    """
 
     place: CallbackPlace
     kind: EntityKind
@@ -26,13 +28,13 @@ class ChangeableCallback:
 
     @property
     def name(self) -> str:
-        """Its name, or its service's where it has none."""
+        """Its name, or its service's if it has none."""
         return self.place[1]
 
 
 @dataclass(frozen=True, slots=True)
 class ChangeableArgument:
-    """A number that an argument of the program carries, and what it is now."""
+    """A number that a program takes as an argument, and its current value."""
 
     name: str
     quantity: Quantity
@@ -41,10 +43,10 @@ class ChangeableArgument:
 
 @dataclass(frozen=True)
 class ChangeableSetup:
-    """All of it.
+    """Everything that can be changed.
 
-    ``executor`` is the program's own, ``executor_now`` the run's; ``threads_argument`` carries the number of
-    threads where the program takes one. ``sensor_rate`` is in Hz, None where there is no robot.
+    ``executor`` is the program's own, ``executor_now`` the run's. ``threads_argument`` is the argument for
+    the number of threads, if the program has one. ``sensor_rate`` is in Hz, None without a robot.
     """
 
     executor: str
@@ -56,7 +58,7 @@ class ChangeableSetup:
 
 
 def changeable(subject: ShownProgram, setup: RunSetup, timeline: Timeline) -> ChangeableSetup:
-    """Return what can be changed about a subject's run, as far as it shows."""
+    """Return what can be changed about a run, as far as its trace tells."""
     lesson = subject.lesson
     words = setup.programs[0].arguments if setup.programs else ()
     arguments = [
@@ -75,7 +77,7 @@ def changeable(subject: ShownProgram, setup: RunSetup, timeline: Timeline) -> Ch
 
 
 def callbacks_of(timeline: Timeline) -> dict[CallbackPlace, ChangeableCallback]:
-    """Return the callbacks of the programs' own, in the order in which they were made."""
+    """Return the callbacks of the programs' own code, in order of creation."""
     found: dict[CallbackPlace, ChangeableCallback] = {}
     for entity in timeline.entities.values():
         if _is_programs_own(entity):
@@ -87,7 +89,7 @@ def callbacks_of(timeline: Timeline) -> dict[CallbackPlace, ChangeableCallback]:
 
 
 def place_of(entity: EntityInfo, timeline: Timeline) -> CallbackPlace:
-    """Return the names by which a change names an entity's callback."""
+    """Return the names by which a change identifies an entity's callback."""
     return timeline.nodes.get(entity.node, ""), entity.callback or entity.name
 
 

@@ -1,4 +1,4 @@
-"""What a person changed about a program without touching its file, and the set-up of a run with it."""
+"""A person's changes to a program without editing its file, and the set-up of a run with them."""
 
 from __future__ import annotations
 
@@ -31,8 +31,8 @@ class Changes:
 
     ``groups`` holds values of ``GROUP_CHOICES``, ``periods`` nanoseconds, ``settings`` numbers by the name of
     their command-line argument. ``sensor_rate`` is in Hz; ``seed`` chooses the order of threads. ``real`` is
-    the ROS 2 on which the program runs instead of the model, and with that on the real clock.
-    ``whole_tracebacks`` affects only how exceptions are printed.
+    the ROS 2 that replaces the model, always on the real clock. ``whole_tracebacks`` affects only how
+    exceptions are printed.
     """
 
     threads: int | None = None
@@ -66,7 +66,7 @@ class Changes:
         return self.periods.get(place, self.periods.get(("", place[1])))
 
     def beyond(self, others: Changes) -> Changes:
-        """Those that are not among others."""
+        """The changes that are not among others."""
         return Changes(
             None if self.threads == others.threads else self.threads,
             _beyond(self.groups, others.groups),
@@ -78,7 +78,7 @@ class Changes:
         )
 
     def applied(self, setup: RunSetup) -> RunSetup:
-        """The set-up of a run with the changes made; those that it has stay where these say nothing."""
+        """The set-up with these changes applied; its own changes stay unless these replace them."""
         return msgspec.structs.replace(
             setup,
             threads=setup.threads if self.threads is None else self.threads,
@@ -106,7 +106,7 @@ class Changes:
 
     @property
     def words(self) -> str:
-        """What is changed, as short as it can be said: ``odom own group, 4 threads``; "" for nothing."""
+        """A short description such as ``odom own group, 4 threads``; "" for no change."""
         said = [f"{short_name(callback)} {wish} group" for (_, callback), wish in self.groups.items()]
         said += [
             f"{short_name(callback)} every {period / SECOND:g} s"
@@ -125,7 +125,7 @@ class Changes:
 
 
 def changes_in(setup: RunSetup) -> Changes:
-    """The changes that a set-up tells of: all but the numbers that the program's arguments carry."""
+    """The changes in a set-up, except the numbers in the program's arguments."""
     return Changes(
         setup.threads,
         {(each.node, each.callback): each.wish for each in setup.groups},
@@ -143,6 +143,6 @@ def _beyond(ours: Mapping[Key, Value], theirs: Mapping[Key, Value]) -> dict[Key,
 def _changed(
     all_places: Mapping[CallbackPlace, Value], place: CallbackPlace, value: Value | None
 ) -> dict[CallbackPlace, Value]:
-    """The same with another value at a place; what was said of any node's callback of that name goes."""
+    """A copy with another value for a place; a change for the same callback of any node is removed."""
     left = {key: kept for key, kept in all_places.items() if key not in (place, ("", place[1]))}
     return left if value is None else left | {place: value}

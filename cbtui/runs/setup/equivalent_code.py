@@ -1,4 +1,4 @@
-"""The lines of a program that would change it as a person did at the keyboard."""
+"""Source code that is equivalent to a person's changes at the keyboard."""
 
 from collections.abc import Iterator
 
@@ -49,17 +49,17 @@ def code_of_period(callback: str, period: int) -> str:
 
 
 def code_of_argument(argument: str, number: float) -> str:
-    """Return the command line that gives a program a number."""
+    """Return the command line that passes a number to a program."""
     return f"node.py … {argument} {number:g}"
 
 
 def code_of_sensor_rate(rate: float) -> str:
-    """Return what there is instead of a line: the sensors are no part of the program."""
+    """Return a comment instead of code: the sensors are not part of the program."""
     return f"# no line of the node: the robot's sensors measure {rate:g} times a second"
 
 
 def code_of_group(callback: str, kind: EntityKind, wish: str) -> list[str]:
-    """Return the statements that put a callback into a group; a waitable stands for what nobody knows."""
+    """Return the statements that put a callback into a group; a waitable's are generic."""
     what = f'"{callback}"' if kind is EntityKind.CLIENT else _method(callback)
     making = _MAKERS.get(kind, _SOME_MAKER).format(what)
     match wish:
@@ -83,7 +83,7 @@ def _command_line(changes: Changes, about: ChangeableSetup) -> Iterator[str]:
 
 
 def _kind(place: CallbackPlace, kinds: dict[CallbackPlace, EntityKind]) -> EntityKind:
-    """What makes a callback: of a node, or of the first that has one of that name."""
+    """The kind of a callback's entity: of a node, or of the first node with such a callback."""
     node, name = place
     fitting = (kind for (owner, callback), kind in kinds.items() if callback == name and node in {"", owner})
     return next(fitting, EntityKind.WAITABLE)

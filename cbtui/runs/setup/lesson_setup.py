@@ -1,4 +1,4 @@
-"""From what somebody asks to run to the set-up of the run: a lesson, or files of a learner's own."""
+"""Makes the set-up of a run from a request: a lesson, or a learner's own files."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
@@ -22,18 +22,19 @@ from sim.engine.setup import (
 from sim.units import nearest_ns
 
 _LESSON_PACKAGES = tuple(str(path) for path in sorted(ROOT.glob("unit*")))
-"""Folders in which the packages of the lessons lie."""
+"""Folders of the lessons' packages."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RunRequest:
-    """What somebody asks to run, and how; ``setup()`` makes the engine's set-up of it.
+    """A request for a run; ``setup()`` makes the engine's set-up.
 
     A ``lesson`` runs its own node, or one of ``files`` in its place; without a lesson the ``files`` run, each
     with the ``arguments``. Times are seconds of the run's own time. ``clock`` None is the lesson's, for files
-    the real one. ``speed`` is seconds of the run per real second, None for as fast as it can: on the real
-    clock that is 1. On a lesson's real clock the robot is only made when it is used, as its physics would
-    compute beside the node.
+    the real one. ``speed`` is seconds of the run per real second, None for as fast as possible: on the real
+    clock that is 1.
+
+    On a lesson's real clock the robot is only created when it is used: its physics computes beside the node.
     """
 
     lesson: Lesson | None = None
@@ -44,24 +45,24 @@ class RunRequest:
     speed: float | None = None
     robot: bool = True
     seconds: float | None = None
-    """How long the run lasts; None for no end."""
+    """The length of the run; None for no end."""
     calls: Iterable[float] = ()
-    """When its SetBool service is called, with ``call_data``."""
+    """When the lesson's SetBool service is called, with ``call_data``."""
     call_data: bool = True
     lines: Iterable[tuple[float, str]] = ()
-    """``ros2`` lines, each with the time at which it is carried out."""
+    """``ros2`` lines, each with its time."""
     typed: Iterable[tuple[float, str]] = ()
-    """What is typed at the programs' terminal, and when."""
+    """Text for the programs' terminal, each with its time."""
     keyboard: Keyboard = Keyboard.NOBODY
     contents: bool = False
 
     @property
     def names_program(self) -> bool:
-        """Whether there is a lesson, or a file, to run."""
+        """Whether there is a lesson or a file to run."""
         return self.lesson is not None or bool(self.files)
 
     def setup(self) -> RunSetup:
-        """Return the set-up of the run, with the changes made."""
+        """Return the set-up of the run, with the changes applied."""
         lesson = self.lesson
         setup = RunSetup(
             title=" ".join(path.name for path in self.files) if lesson is None else lesson.id,
@@ -97,14 +98,14 @@ class RunRequest:
 
 
 def setup_for(lesson: Lesson, *, threads: int | None = None, speed: float | None = 1.0) -> RunSetup:
-    """Return the set-up of a lesson's run; ``threads`` None leaves the lesson's own number."""
+    """Return the set-up of a lesson's run; ``threads`` None keeps the lesson's own number."""
     return RunRequest(lesson=lesson, changes=Changes(threads), speed=speed).setup()
 
 
 def setup_for_line(text: str, folder: Path) -> RunSetup:
-    """Return what an engine needs to carry out a ``ros2`` line with nothing else running.
+    """Return the set-up of an engine that only carries out a ``ros2`` line.
 
-    Packages are looked for around ``folder`` and among the lessons.
+    Packages are searched for around ``folder`` and among the lessons.
     """
     return RunSetup(
         title=text,
@@ -120,7 +121,7 @@ def setup_for_line(text: str, folder: Path) -> RunSetup:
 def request_to_judge(
     lesson: Lesson, file: Path | None = None, *, seed: int | None = None, real: RealRos | None = None
 ) -> RunRequest:
-    """Return the run that the lesson's predictions and checks are about, of its node or of another file.
+    """Return the run that the lesson's predictions and checks judge, of its node or of another file.
 
     ``seed`` chooses the thread schedule, None the default one; with ``real`` it runs on that ROS 2.
     """

@@ -1,4 +1,4 @@
-"""A learner's own programs and recordings: from a path that was typed to what is to be opened."""
+"""A learner's own programs and recordings: from a typed path to the entry to open."""
 
 import os
 from collections.abc import Sequence
@@ -12,18 +12,18 @@ if TYPE_CHECKING:
     from sim.recording import Recording
 
 PROGRAMS = (".py", ".xml", ".yaml", ".yml")
-"""What the names of node and launch files end with."""
+"""The name endings of node and launch files."""
 RECORDINGS = (".mcap",)
 _SCAN_LIMIT = 5000
-"""How many names of a folder are looked at for a completion."""
+"""Names of a folder that are examined for a completion."""
 
 
 class CannotOpenError(Exception):
-    """Something that cannot be opened; the text is a sentence."""
+    """A file that cannot be opened; the text is a sentence."""
 
 
 class PathCompletion(NamedTuple):
-    """The text with what all possible names begin with, and the names, folders with a stroke."""
+    """The text completed by the common beginning of all candidates, and these; folders end in a slash."""
 
     text: str
     names: Sequence[str]
@@ -82,7 +82,7 @@ def read_recording(path: Path) -> "Recording":
 
 
 def completed(text: str) -> PathCompletion:
-    """Complete a path as far as it has one way to go on; folders and what can be opened count."""
+    """Complete a path as far as it is unambiguous; folders and files that can be opened count."""
     folder, beginning = os.path.split(text)
     names = _names(_expanded(folder or "."), beginning)
     if not names:

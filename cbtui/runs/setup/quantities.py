@@ -1,15 +1,15 @@
-"""Numbers that a person can give a run: their bounds, and the message for invalid input."""
+"""Numbers that a person can set: their bounds, and the message for invalid input."""
 
 import math
 from typing import NamedTuple
 
 
 class BadQuantityError(ValueError):
-    """A text that is no such number; the text of this is a sentence that says why and what to give."""
+    """Text that is not a valid number; the message says why and what to enter."""
 
 
 class Quantity(NamedTuple):
-    """A number with a ``name`` that people understand, from ``least`` to ``most``, both included."""
+    """A number with a ``name`` for people, from ``least`` to ``most``, both included."""
 
     name: str
     unit: str
@@ -18,7 +18,7 @@ class Quantity(NamedTuple):
 
     @property
     def bounds(self) -> str:
-        """What can be given."""
+        """The bounds in words."""
         return f"{self.least:g} to {self.most:g} {self.unit}"
 
     def read(self, text: str) -> float:
@@ -44,4 +44,4 @@ class Quantity(NamedTuple):
 PERIOD = Quantity("period", "s", 0.001, 3600)
 SENSOR_RATE = Quantity("sensor rate", "Hz", 0.1, 100)
 USUAL_SENSOR_RATE = 20.0
-"""Hz, when nothing else was chosen."""
+"""Hz, by default."""

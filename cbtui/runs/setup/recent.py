@@ -1,4 +1,4 @@
-"""What was opened lately, kept in a small file from one console to the next."""
+"""The recently opened lessons, programs and recordings, in a small file that all consoles share."""
 
 from collections.abc import Iterable
 from enum import StrEnum
@@ -12,15 +12,15 @@ from lessons.state_file import StateFile, StateFileTexts
 
 FILE_NAME = "recent.jsonl"
 FILES_KEPT = 20
-"""How many programs and recordings are remembered."""
+"""Programs and recordings that are remembered."""
 LESSONS_KEPT = 500
-"""How many lessons are; more than there are."""
+"""Lessons that are remembered; more than there are."""
 _CLOCKS = ("real", "virtual")
 _WORDS = StateFileTexts("entry", "what you open is not remembered", "the list goes on")
 
 
 class RecentKind(StrEnum):
-    """What was opened."""
+    """The kind of an entry."""
 
     LESSON = "lesson"
     PROGRAM = "program"
@@ -30,7 +30,7 @@ class RecentKind(StrEnum):
 class RecentEntry(msgspec.Struct, frozen=True):
     """Something that was opened: ``what`` is a lesson's id or a file's absolute path.
 
-    ``at`` is seconds since 1970; ``arguments`` and ``clock`` are how a program was run.
+    ``at`` is seconds since 1970; ``arguments`` and ``clock`` tell how a program was run.
     """
 
     kind: RecentKind
@@ -50,19 +50,19 @@ class RecentEntry(msgspec.Struct, frozen=True):
 
     @property
     def key(self) -> tuple[RecentKind, str]:
-        """What two entries have in common that are about the same thing."""
+        """The identity of an entry's lesson or file."""
         return self.kind, self.what
 
 
 def usual_path() -> Path:
-    """Where the file is kept: in the person's folder for the state of programs."""
+    """The file's usual path, in the user's folder for state."""
     return state_folder() / FILE_NAME
 
 
 class RecentList:
     """The entries of a file of JSON lines, the newest first.
 
-    A file that cannot be read or written leaves the entries in memory, see ``StateFile``. Not thread-safe.
+    If the file cannot be read or written, the entries stay in memory, see ``StateFile``. Not thread-safe.
     """
 
     def __init__(self, path: Path | None = None) -> None:
@@ -71,7 +71,7 @@ class RecentList:
 
     @property
     def entries(self) -> tuple[RecentEntry, ...]:
-        """Everything that is remembered; the file is read when this is asked for first."""
+        """All entries; the file is read on the first access."""
         if self._entries is None:
             self._entries = self._read()
         return self._entries
@@ -87,18 +87,18 @@ class RecentList:
         return {entry.what: entry.at for entry in self.entries if entry.kind is RecentKind.LESSON}
 
     def note(self, entry: RecentEntry) -> None:
-        """Remember that something was opened."""
+        """Remember an entry."""
         with self._file.lock():
             before = self._read()
             self._keep([entry, *(each for each in before if each.key != entry.key)])
 
     def forget(self, entry: RecentEntry) -> None:
-        """Take something off the list."""
+        """Remove an entry from the list."""
         with self._file.lock():
             self._keep([each for each in self._read() if each.key != entry.key])
 
     def troubles(self) -> list[str]:
-        """Return what went wrong and was not told yet."""
+        """Return the errors that were not reported yet."""
         return self._file.troubles()
 
     def _read(self) -> tuple[RecentEntry, ...]:
@@ -130,11 +130,11 @@ _UNITS = (
     (86400, 7, "day", "days"),
     (604800, 53, "week", "weeks"),
 )
-"""Seconds of a unit, how many of them are not said in it any more, and what one and several are called."""
+"""A unit's seconds, the number of them from which the next unit is used, and its names."""
 
 
 def time_ago(at: int, now: float) -> str:
-    """Say in words how long before ``now`` a moment was; both are seconds since 1970."""
+    """Return how long before ``now`` a moment was, in words; both are seconds since 1970."""
     passed = max(0, int(now) - at)
     if passed < 60:
         return "just now"

@@ -1,4 +1,4 @@
-"""What a lesson screen runs and shows: a lesson of the catalogue, or a file of the learner's own."""
+"""The program that a screen runs and shows: a lesson of the catalogue, or a learner's own file."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from sim.real.wire import Hello
 
 SetUp: TypeAlias = Callable[[int | None, float | None], RunSetup]
-"""Makes a run from a number of threads (None: the program's own) and a speed (None: as fast as it can)."""
+"""Makes a run for a number of threads (None: the program's own) and a speed (None: as fast as possible)."""
 
 _GUIDE = """# {name}
 
@@ -54,10 +54,10 @@ you start with `cbtui probe -- COMMAND` shows here, too.
 
 @dataclass(frozen=True)
 class ShownProgram:
-    """One program to run on screen; ``service`` is empty where it shows only when the program runs.
+    """A program to run on screen; ``service`` is empty if only its run shows it.
 
-    ``source`` is the program's text where it is not the one that lies at ``node_path`` now, ``sources`` the
-    texts that a recording holds, by path.
+    ``source`` is the program's text if that differs from the file at ``node_path``, ``sources`` the texts of
+    a recording, by path.
     """
 
     heading: str
@@ -73,7 +73,7 @@ class ShownProgram:
 
 
 def of_lesson(lesson: Lesson, lessons: Sequence[Lesson]) -> ShownProgram:
-    """Return a lesson as a subject, among the ``lessons`` in their order."""
+    """Return the program of a lesson, one of ``lessons``."""
     place = lessons.index(lesson)
     unit = [each for each in lessons if each.unit == lesson.unit]
     return ShownProgram(
@@ -89,7 +89,7 @@ def of_lesson(lesson: Lesson, lessons: Sequence[Lesson]) -> ShownProgram:
 
 
 def of_exercise(lesson: Lesson, lessons: Sequence[Lesson], file: Path) -> ShownProgram:
-    """Return a learner's file for a lesson's exercise as a subject; it runs as it is judged."""
+    """Return a learner's file for a lesson's exercise; it runs as it is judged."""
     subject = of_lesson(lesson, lessons)
 
     def set_up(threads: int | None, speed: float | None) -> RunSetup:
@@ -105,7 +105,7 @@ def of_exercise(lesson: Lesson, lessons: Sequence[Lesson], file: Path) -> ShownP
 
 
 def of_file(path: Path, arguments: Sequence[str], clock: str) -> ShownProgram:
-    """Return a program file as a subject."""
+    """Return a program file."""
 
     def set_up(threads: int | None, speed: float | None) -> RunSetup:
         return RunRequest(
@@ -149,7 +149,7 @@ def of_robot(folder: Path, rate: float | None) -> ShownProgram:
 def of_processes(folder: Path, numbers: tuple[int, ...], found: Sequence["Hello"]) -> ShownProgram:
     """Return the processes whose probes listen in a folder; ``numbers`` chooses some, none means all.
 
-    The first one of those that were ``found`` has its program shown.
+    The program of the first one in ``found`` is shown.
     """
     real = RealRos(watched=str(folder), processes=numbers)
     title = counted(len(found), "process")

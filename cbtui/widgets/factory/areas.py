@@ -40,7 +40,7 @@ class AreaPainter:
             self.canvas.write(end - 1 - len(text), line, text, WARN, len(text))
 
     def _texture(self, area: Area, at: int, line: int, end: int) -> int:
-        """Draw the group's texture if there is room for every word too; return the column after it."""
+        """Draw the group's texture if every word still fits; return the column after it."""
         words = max(len(f" {admission_texts(each)[0]} ") for each in self.scene.areas)
         if end - at - 1 < 1 + _SWATCH + words + _LONGEST_QUEUE:
             return at
@@ -54,7 +54,7 @@ class AreaPainter:
         self._wall(area, line, walls.bottom_left, walls.bottom_right)
 
     def inner(self, place: AreaPlacement, density: Density) -> None:
-        """Draw side walls, seats and workers, and the group's letter where no upper wall tells it."""
+        """Draw side walls, seats and workers, and the group's letter if there is no upper wall."""
         area, ink = place.area, Ink(Role.LINE, place.area.number)
         for line in range(place.first, place.first + place.rows):
             self.canvas.put(self.columns.belts, line, self._walls(area).side, ink)

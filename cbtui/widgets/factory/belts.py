@@ -1,4 +1,4 @@
-"""Draws belts: a name, how full it is, boxes that queue up to the area's door, and why they stand there."""
+"""Draws belts: a name, the queue's level, the boxes up to the area's door, and the reason of their wait."""
 
 from collections.abc import Sequence
 
@@ -30,7 +30,7 @@ class BeltPainter:
         self._level = max((len(_widest_level(belt)) for belt in every if belt.tick is None), default=0)
 
     def draw(self, belt: Belt, area: Area, line: int, rows: int) -> None:
-        """Draw a belt in one row, or in more with the reason of its wait in the second one."""
+        """Draw a belt in one row; in more, the reason of its wait stands in the second one."""
         why = wait_texts(belt, self._scene.timeline, self._scene.now)
         at = self._head(belt, line)
         room = self._door - at
@@ -50,11 +50,11 @@ class BeltPainter:
         self._draw_door(belt, line, Ink(Role.BAR, area.number))
 
     def more(self, hidden: int, line: int) -> None:
-        """Tell of belts for which there is no room."""
+        """Show the number of belts that do not fit."""
         self._canvas.write(1, line, f"+{hidden} more belts", FAINT, self._door - 1)
 
     def _head(self, belt: Belt, line: int) -> int:
-        """Write a belt's name, and how full it is or how often it ticks; return the column after them."""
+        """Write a belt's name and its level or a timer's rate; return the column after them."""
         self._canvas.write(1, line, belt_name(belt), STRONG, self._name)
         at = self._name + 2
         if belt.tick is not None:
@@ -68,13 +68,13 @@ class BeltPainter:
         return min(self._door, at + width + 1)
 
     def _say(self, text: str, line: int, at: int, ink: Ink) -> int:
-        """Write text and return the column after it and a blank."""
+        """Write text and a blank; return the column after them."""
         return self._canvas.write(at, line, text, ink, self._door - at) + 1 if text else at
 
     def _details(self, belt: Belt, line: int, at: int, boxes: int) -> tuple[int, list[tuple[str, Ink]]]:
         """Write what fits before the boxes; return the column after it, and what did not fit.
 
-        What is lost may push boxes together, the rest may not.
+        The number of lost messages may push boxes together, the rest may not.
         """
         left_over = []
         for text, warns in belt_details(belt, self._scene.now):
@@ -89,7 +89,7 @@ class BeltPainter:
     def _below(
         self, why: Sequence[str], ink_of_why: Ink, left_over: Sequence[tuple[str, Ink]], line: int
     ) -> None:
-        """Write the reason at the door, and at the left what had no room above."""
+        """Write the reason at the door, and at the left what did not fit above."""
         text = first_fitting(why, self._door)
         start = self._door + 1 - len(text)
         self._canvas.write(start, line, text, ink_of_why, len(text))
@@ -99,7 +99,7 @@ class BeltPainter:
                 at = self._say(other, line, at, ink)
 
     def _boxes(self, belt: Belt) -> int:
-        """Return the columns that the boxes of a belt like to have."""
+        """Return the preferred columns of a belt's boxes."""
         if belt.tick is not None:
             return _TICK_TRACK if belt.wait is None else 1
         return min(_MOST_BOXES, max(belt.entity.depth, 0) or _MOST_BOXES)
@@ -124,7 +124,7 @@ class BeltPainter:
         self._canvas.fill(end - filled, end, line, self._glyphs.box, box)
 
     def _chips(self, belt: Belt, cells: int, room: int) -> list[str]:
-        """Return the ages of the messages in front that can be written into their boxes."""
+        """Return the ages of the front messages that fit into their boxes."""
         ages: list[str] = []
         for message in belt.queue.messages[:_MOST_BOXES]:
             age = duration(max(0, message.age(self._scene.now))).replace(" ", "")
@@ -159,7 +159,7 @@ class BeltPainter:
 
 
 def _ink_of(belt: Belt) -> Ink:
-    """Return the ink of a belt's wait: a warning, unless its own last call is all that is in its way."""
+    """Return the ink of a belt's wait: a warning, unless it waits only for its own last call."""
     return WARN if belt.waits_for_others else PLAIN
 
 

@@ -1,4 +1,4 @@
-"""Rows to paint a factory on, with text kept to the columns that it is given."""
+"""Rows of cells to paint a factory on, with text limited to given columns."""
 
 from collections.abc import Sequence
 
@@ -7,14 +7,14 @@ from cbtui.text.cells import CellRow, fit
 from cbtui.widgets.factory.glyphs import FACTORY_GLYPHS, FactoryGlyphs
 
 PLAIN = Ink(Role.TEXT, 0)
-"""Not the ink of blanks, so that a run begins where its words do."""
+"""Not the ink of blanks, so that a run of text begins at its first word."""
 FAINT = Ink(Role.FAINT)
 STRONG = Ink(Role.STRONG)
 WARN = Ink(Role.WARN)
 
 
 class Canvas:
-    """``width`` x ``height`` cells; what lies outside is left out."""
+    """``width`` x ``height`` cells; what lies outside is dropped."""
 
     def __init__(self, width: int, height: int, charset: Charset) -> None:
         self.charset = charset

@@ -7,7 +7,7 @@ from cbtui.looks.theme import Charset
 
 @dataclass(frozen=True, slots=True)
 class Walls:
-    """What an area is enclosed by; the joints are where an area stands on the wall of the one above."""
+    """The walls of an area; the joints are where it stands on the wall of the one above."""
 
     top: str
     side: str

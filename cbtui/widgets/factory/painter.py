@@ -15,7 +15,7 @@ from sim.trace.model import Nanoseconds
 from sim.trace.timeline import Timeline
 
 GLANCE: Nanoseconds = 150_000_000
-"""How long a worker is seen walking, where nothing else is said."""
+"""Nanoseconds for which a worker is shown walking, by default."""
 
 
 class FactoryPainter:
@@ -29,7 +29,7 @@ class FactoryPainter:
     ) -> Sequence[Sequence[TextRun]]:
         """Paint the factory at ``now`` in ``width`` x ``height`` cells.
 
-        A worker whose callback began or ended less than ``glance`` nanoseconds ago is seen walking.
+        A worker whose callback began or ended less than ``glance`` nanoseconds ago is shown walking.
         """
         if width <= 0 or height <= 0:
             return ()

@@ -1,4 +1,4 @@
-"""How the room is shared out: columns for belts, areas and workers, rows for each area."""
+"""The layout of the factory: columns for belts, areas and workers, rows for each area."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ _BENCH_FROM = 5
 
 @dataclass(frozen=True, slots=True)
 class FactoryColumns:
-    """Where things stand from left to right; ``yard`` is the width of the workers' own column, or 0."""
+    """The columns of a picture from left to right; ``yard`` is the width of the workers' own column, or 0."""
 
     width: int
     belts: int
@@ -43,7 +43,7 @@ class FactoryColumns:
 
 
 def columns_for(width: int) -> FactoryColumns:
-    """Share out a width of ``LEAST_WIDTH`` or more."""
+    """Return the columns for a width of ``LEAST_WIDTH`` or more."""
     yard = _YARD if width >= _YARD_FROM else 0
     aisle = 7 if yard else 5 if width >= _ROOMY else 3
     rest = width - yard - aisle
@@ -54,7 +54,7 @@ def columns_for(width: int) -> FactoryColumns:
 
 @dataclass(frozen=True, slots=True)
 class Density:
-    """How many rows things take: each belt, and above and below each area; ``last`` below all of them."""
+    """Rows per belt, and above and below each area; ``last`` below all of them."""
 
     belt: int
     top: int
@@ -68,12 +68,12 @@ class Density:
         return max(len(area.belts) * self.belt, seats * self.seat)
 
     def height(self, areas: Sequence[Area], scene: FactoryScene) -> int:
-        """Return the rows of some areas with their walls."""
+        """Return the rows of areas, with their walls."""
         return sum(self.top + self.rows(area, scene) + self.bottom for area in areas) + self.last
 
 
 LARGE = Density(3, 1, 1, 0, seat=3)
-"""Workers as figures of three rows; only where the workers have a column of their own."""
+"""Workers as figures of three rows, if they have a column of their own."""
 
 DENSITIES = (
     LARGE,
@@ -87,7 +87,7 @@ DENSITIES = (
 
 @dataclass(frozen=True, slots=True)
 class AreaPlacement:
-    """Where an area stands: its first row between the walls, how many there are, and which belts it shows."""
+    """The place of an area: its first row between the walls, how many there are, and the belts it shows."""
 
     area: Area
     first: int
@@ -97,7 +97,7 @@ class AreaPlacement:
 
 @dataclass(frozen=True, slots=True)
 class FactoryPlan:
-    """A whole picture's arrangement. Rows that are None are not shown."""
+    """The arrangement of a picture. Rows that are None are not shown."""
 
     columns: FactoryColumns
     height: int
@@ -112,8 +112,8 @@ class FactoryPlan:
 def plan_for(scene: FactoryScene, width: int, height: int) -> FactoryPlan:
     """Arrange a scene in at least ``LEAST_WIDTH`` x ``LEAST_HEIGHT``.
 
-    The arrangement depends on who is there and not on what they do, so that it stands still, but for what is
-    left out where there is not room for all.
+    The arrangement depends on who takes part, not on what they do, so that it does not move; only what is
+    hidden for want of room changes.
     """
     columns = columns_for(width)
     bench = 0 if columns.yard or height < _BENCH_FROM else 1
@@ -130,7 +130,7 @@ def plan_for(scene: FactoryScene, width: int, height: int) -> FactoryPlan:
 
 
 def _most_telling(scene: FactoryScene, room: int, density: Density) -> Sequence[Area]:
-    """Return as many areas as there is room for, those first where something waits or runs; one at least."""
+    """Return as many areas as fit, those with waiting or running callbacks first; at least one."""
     worths = {area.group.id: _worth(area) for area in scene.areas}
     left, chosen = room, set[int]()
     for area in sorted(scene.areas, key=lambda each: -worths[each.group.id]):
@@ -185,9 +185,9 @@ def _arranged(
 
 
 def _belts_shown(area: Area, room: int) -> tuple[int, ...]:
-    """Return the places of the belts there is room for: those first that wait or hold something.
+    """Return the places of the belts that fit: those that wait or hold something first.
 
-    Where some are left out, a row is kept to say how many, unless there is only one.
+    If some are hidden, a row shows their number, unless there is only one row.
     """
     every = range(len(area.belts))
     if len(every) <= room:

@@ -1,4 +1,4 @@
-"""What stands where in the factory at one moment: who sits, who walks, what lies on which belt."""
+"""The state of the factory at one moment: who sits, who walks, what lies on which belt."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -40,13 +40,13 @@ class FactoryWorker:
 
     @property
     def inside(self) -> bool:
-        """Whether it has a seat: its callback runs, though it may still be on its way."""
+        """Whether it has a seat: its callback runs, though it may still be on its way to it."""
         return self.stay in (WorkerState.COMES, WorkerState.WORKS)
 
 
 @dataclass(frozen=True, slots=True)
 class TimerTick:
-    """A timer's time: when it falls due next (None where nothing tells), and how late its last call came."""
+    """A timer's time: its next due time (None if unknown), and the lateness of its last call."""
 
     due: Nanoseconds | None
     late: Nanoseconds
@@ -54,7 +54,7 @@ class TimerTick:
 
 @dataclass(frozen=True, slots=True)
 class Belt:
-    """What brings work for one callback."""
+    """The queue or timer of one callback."""
 
     entity: EntityInfo
     queue: Queue
@@ -68,16 +68,16 @@ class Belt:
 
     @property
     def full(self) -> bool:
-        """Whether the next message will push one off."""
+        """Whether the queue loses its oldest message to the next one."""
         return self.entity.depth > 0 and self.queue.depth >= self.entity.depth
 
 
 @dataclass(frozen=True, slots=True)
 class Area:
-    """A callback group. ``number`` is its place in the order of letters.
+    """A callback group.
 
-    ``visitors`` sit in it, come or have just left; ``kept`` are callbacks that hold the group and sit
-    nowhere, such as a suspended coroutine.
+    ``number`` is its place in the order of letters. ``visitors`` sit in it, arrive or have just left;
+    ``kept`` are callbacks that hold the group on no thread, such as a suspended coroutine.
     """
 
     group: GroupInfo
@@ -86,21 +86,21 @@ class Area:
     visitors: tuple[FactoryWorker, ...]
     kept: tuple[EntityInfo, ...]
     more: int = 0
-    """Callbacks of the group that have no belt, where there are more than anybody could look at."""
+    """Callbacks of the group without a belt, if there are too many."""
 
     @property
     def is_open(self) -> bool:
-        """Whether it lets everyone in."""
+        """Whether it admits every callback."""
         return self.group.kind is GroupKind.REENTRANT
 
     @property
     def waiting(self) -> int:
-        """How many callbacks stand at its door because of others."""
+        """Callbacks that wait for others at its door."""
         return sum(belt.waits_for_others for belt in self.belts)
 
     @property
     def inside(self) -> int:
-        """How many workers it has now."""
+        """Workers in it now."""
         return sum(worker.inside for worker in self.visitors)
 
 
@@ -113,11 +113,11 @@ class FactoryScene:
     workers: tuple[FactoryWorker, ...]
     areas: tuple[Area, ...]
     more: int = 0
-    """Groups that have no area, where there are more than anybody could look at."""
+    """Groups without an area, if there are too many."""
 
     @cached_property
     def idle(self) -> int:
-        """How many workers have nothing to do."""
+        """Workers with nothing to do."""
         return sum(not worker.inside for worker in self.workers)
 
     def waits(self) -> Iterator[Wait]:
@@ -127,7 +127,9 @@ class FactoryScene:
 
 
 def scene_of(timeline: Timeline, now: Nanoseconds, glance: Nanoseconds) -> FactoryScene:
-    """Return the factory at ``now``; whoever began or ended less than ``glance`` ago is seen walking."""
+    """Return the factory at ``now``; who began or ended less than ``glance`` nanoseconds ago is shown
+    walking.
+    """
     return _SceneBuilder(timeline, now, max(glance, 1)).scene()
 
 
@@ -171,7 +173,7 @@ class _SceneBuilder:
             if since < self._glance and blocked is None:
                 return FactoryWorker(name, WorkerState.COMES, span, self._step(since))
             return FactoryWorker(name, WorkerState.WORKS, span, blocked=blocked)
-        span = self._just_ran(thread)
+        span = self._last_finished(thread)
         if span is not None:
             return FactoryWorker(
                 name, WorkerState.LEAVES, span, self._step(self._now - span.end_at(self._now))
@@ -183,8 +185,8 @@ class _SceneBuilder:
     def _step(self, since: Nanoseconds) -> int:
         return min(STEPS - 1, STEPS * since // self._glance)
 
-    def _just_ran(self, thread: ThreadId) -> Span | None:
-        """Return the call that ended last, less than a glance ago; looks no further back than it must."""
+    def _last_finished(self, thread: ThreadId) -> Span | None:
+        """Return the call that ended last, less than a glance ago; examines no earlier ones."""
         for part in _LOOKS_BACK:
             window = Window(self._now - self._glance // part, self._now + 1)
             ended = [
@@ -212,7 +214,7 @@ class _SceneBuilder:
         return Belt(entity, self._moment.queues.get(entity.id, _NO_QUEUE), wait, tick)
 
     def _tick(self, timer: EntityInfo) -> TimerTick:
-        """Work out a timer's next due time from its last call, as rcl does: what was missed is left out."""
+        """Compute a timer's next due time from its last call, as rcl does: missed ticks are dropped."""
         period = timer.period
         spans = self._timeline.spans_of(timer.id, Window(self._now - 2 * period, self._now + 1))
         if not spans or period <= 0:

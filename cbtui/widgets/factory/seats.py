@@ -1,4 +1,4 @@
-"""Draws the seats of an area: who sits there with which callback, how long, who comes and who leaves."""
+"""Draws the seats of an area: the worker with its callback and duration, arriving and leaving."""
 
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -13,14 +13,14 @@ from sim.durations import duration
 from sim.trace.model import EntityInfo
 
 _FREE_SEATS = 4
-"""How many free seats an open area shows: there is always room for more."""
+"""Free seats that an open area shows; it always has room for more."""
 
 
 class SeatPainter:
-    """Draws the seats of one area, from the column ``start`` on, one row each, or two where there is room."""
+    """Draws the seats of one area, from the column ``start`` on, in one row each, or two if they fit."""
 
     tall = 1
-    """Rows that a seat takes at least."""
+    """The least rows of a seat."""
 
     def __init__(
         self, canvas: Canvas, scene: FactoryScene, place: AreaPlacement, columns: FactoryColumns, start: int
@@ -38,7 +38,7 @@ class SeatPainter:
         self._marks = canvas.glyphs.open_seat if area.is_open else canvas.glyphs.seat
 
     def draw(self) -> None:
-        """Draw as many as there are rows for; a walled area has its one seat in the middle."""
+        """Draw as many seats as there are rows; a walled area has its one seat in the middle."""
         area = self._place.area
         seats: list[Callable[[int, int], None]] = []
         seats += [partial(self._worker, worker) for worker in area.visitors if worker.inside]
@@ -62,7 +62,7 @@ class SeatPainter:
             line += each
 
     def _open(self, seats: Sequence[Callable[[int, int], None]]) -> None:
-        """Draw seats below each other from the top, then free ones beside each other."""
+        """Draw seats below each other from the top, then free ones side by side."""
         room = self._place.rows
         each = max(self.tall, min(self.tall + 1, (room - self.tall) // max(1, len(seats)), 3))
         shown = seats if len(seats) * each <= room else seats[: max(0, room - 1) // each]
@@ -98,7 +98,7 @@ class SeatPainter:
             self._name(worker, trouble, self._start + 3, line + 1)
 
     def _chip(self, worker: FactoryWorker, line: int, tail: str) -> int:
-        """Draw the seat with its worker and callback, if the tail fits beside; return the column after it."""
+        """Draw the seat with its worker and callback, if the text fits beside; return the column after it."""
         left, right = self._marks
         face = " " if worker.stay is WorkerState.COMES else self._canvas.glyphs.busy
         room = self._end - self._start - 4 - len(tail) - 1
@@ -111,7 +111,7 @@ class SeatPainter:
         return at + 1
 
     def _left(self, worker: FactoryWorker, line: int, rows: int) -> None:
-        """Draw a free seat, and who has just left it with what done."""
+        """Draw a free seat, and the worker who has just left it, with the finished callback."""
         self._seat(self._start, line)
         self._walker(worker, line)
         room = self._end - self._start - 5
@@ -123,7 +123,7 @@ class SeatPainter:
         self._canvas.write(self._start + 4, line, "free", FAINT, self._end - self._start - 5)
 
     def _kept(self, entity: EntityInfo, line: int, rows: int) -> None:
-        """Draw a seat that is held by a call which runs on no thread now."""
+        """Draw a seat that is held by a call on no thread."""
         self._seat(self._start, line)
         self._canvas.put(self._start + 1, line, self._canvas.glyphs.away, self._line_ink)
         room = self._end - self._start - 5
@@ -151,7 +151,7 @@ class SeatPainter:
             self._canvas.put(at + place, line, glyph, STRONG)
 
     def _aisle_place(self, worker: FactoryWorker, width: int) -> int:
-        """Return the column at which a worker of some width walks now."""
+        """Return the column of a worker of some width on its way."""
         way = max(0, self._columns.aisle - width)
         step = STEPS - 1 - worker.step if worker.stay is WorkerState.COMES else worker.step
         return self._columns.aisle_at + way * step // (STEPS - 1)

@@ -1,4 +1,4 @@
-"""What the factory says: why something waits, who sits where, and the whole in one sentence."""
+"""The factory's texts: why something waits, who sits where, and a headline of the scene."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -21,26 +21,26 @@ def first_fitting(texts: Sequence[str], room: int) -> str:
 
 
 def counts_text(scene: FactoryScene) -> str:
-    """Say how many workers and areas there are: ``4 workers, 1 seat``."""
+    """Return the number of workers and areas: ``4 workers, 1 seat``."""
     if not scene.areas:
         return "no callback group yet"
     return f"{counted(len(scene.workers), 'worker')}, {_places(scene)}"
 
 
 class Headline(NamedTuple):
-    """A scene in one sentence: how many workers and areas there are, and what is wrong."""
+    """A scene in one sentence: the number of workers and areas, and the trouble."""
 
     counts: str
     trouble: str = ""
 
     @property
     def lead(self) -> str:
-        """The part before what is wrong."""
+        """The part before the trouble."""
         return f"{self.counts}: " if self.trouble else self.counts
 
     @property
     def text(self) -> str:
-        """The whole sentence."""
+        """The full sentence."""
         return self.lead + self.trouble
 
 
@@ -89,7 +89,8 @@ def _waiting(number: int) -> str:
 
 
 def wait_texts(belt: Belt, timeline: Timeline, now: Nanoseconds) -> tuple[str, ...]:
-    """Say how long a callback has waited and why, from the fullest to the shortest; () if it does not wait.
+    """Return how long a callback has waited and why, from the longest text to the shortest; () if it does not
+    wait.
 
     The last two do not say why.
     """
@@ -98,9 +99,9 @@ def wait_texts(belt: Belt, timeline: Timeline, now: Nanoseconds) -> tuple[str, .
         return ()
     took = duration(max(0, now - wait.since))
     verb = "late" if belt.entity.kind is EntityKind.TIMER else "waits"
-    whole = [f"{verb} {took}: {why}" for why in _why(belt, timeline)]
+    full = [f"{verb} {took}: {why}" for why in _why(belt, timeline)]
     brief = [f"{took}: {why}" for why in _why(belt, timeline)]
-    return (*whole[:-1], *brief[:-1], whole[-1], brief[-1], f"{verb} {took}", took)
+    return (*full[:-1], *brief[:-1], full[-1], brief[-1], f"{verb} {took}", took)
 
 
 def _why(belt: Belt, timeline: Timeline) -> tuple[str, ...]:
@@ -121,14 +122,14 @@ _WITHOUT_HOLDER = {
 
 
 def belt_name(belt: Belt) -> str:
-    """Return what a belt is called by."""
+    """Return the name of a belt."""
     return short_name(belt.entity.label)
 
 
 def queue_level(belt: Belt) -> str:
-    """Say how full a belt is: ``3/10``, ``10/10 !``; the bare number where there is no limit.
+    """Return the level of a queue: ``3/10``, ``10/10 !``; the bare number if it has no limit.
 
-    A client's says so, or how many replies wait on it: it goes by the same name as its service's.
+    A client's says that it is one, or how many replies wait: its service has the same name.
     """
     if belt.entity.kind is EntityKind.CLIENT:
         replies = belt.queue.depth
@@ -139,7 +140,7 @@ def queue_level(belt: Belt) -> str:
 
 
 def belt_details(belt: Belt, now: Nanoseconds) -> list[tuple[str, bool]]:
-    """Return what else there is to say of a belt, and whether each is a warning."""
+    """Return further facts about a belt, each with whether it is a warning."""
     found = []
     if belt.queue.dropped:
         found.append((f"lost {belt.queue.dropped}", True))
@@ -152,7 +153,7 @@ def belt_details(belt: Belt, now: Nanoseconds) -> list[tuple[str, bool]]:
 
 
 def admission_texts(area: Area) -> tuple[str, ...]:
-    """Say how many an area admits, from the fullest to the shortest."""
+    """Return how many callbacks an area admits, from the longest text to the shortest."""
     match area.group.kind:
         case GroupKind.EXCLUSIVE:
             return ("one seat", "1 seat")
@@ -163,7 +164,7 @@ def admission_texts(area: Area) -> tuple[str, ...]:
 
 
 def activity_texts(worker: FactoryWorker, timeline: Timeline) -> tuple[str, ...]:
-    """Say where a worker is: in full, briefly, and no more than whether it is idle."""
+    """Return where a worker is, in three lengths; the shortest only tells whether it is idle."""
     match worker.stay:
         case WorkerState.NEVER:
             return ("never needed", "unused", "unused")
@@ -186,7 +187,7 @@ def _letter(worker: FactoryWorker, timeline: Timeline) -> str:
 
 
 def blocked_texts(worker: FactoryWorker, now: Nanoseconds) -> tuple[str, ...]:
-    """Say that a worker waits inside a service call, from the fullest to the shortest; () if it does not."""
+    """Return that a worker waits inside a service call, from the longest text to the shortest; () if not."""
     if worker.blocked is None:
         return ()
     took, service = duration(now - worker.blocked.start), worker.blocked.service
@@ -201,7 +202,7 @@ def blocked_texts(worker: FactoryWorker, now: Nanoseconds) -> tuple[str, ...]:
 
 
 def finished_texts(worker: FactoryWorker, callback: str) -> tuple[str, ...]:
-    """Say what a worker who has just left a seat did there, from the fullest to the shortest."""
+    """Return what a worker who has just left a seat did there, from the longest text to the shortest."""
     span = worker.span
     length = 0 if span is None or span.end is None else span.end - span.start
     took = duration(length) if length else "no time"
@@ -216,6 +217,6 @@ def finished_texts(worker: FactoryWorker, callback: str) -> tuple[str, ...]:
 
 
 def suspended_texts(entity: EntityInfo) -> tuple[str, ...]:
-    """Say that a call which runs on no thread holds a seat, from the fullest to the shortest."""
+    """Return that a call on no thread holds a seat, from the longest text to the shortest."""
     name = entity.spoken_name
     return (f"kept by {name}, which awaits", f"kept by {name}", f"kept: {short_name(name)}")

@@ -1,4 +1,4 @@
-"""The factory on screen: a widget that draws what its painter paints."""
+"""The widget of the factory: draws what its painter paints."""
 
 from collections.abc import Sequence
 
@@ -16,7 +16,7 @@ class FactoryView(PaintedWidget):
     """Threads as workers, callback groups as areas with seats, queues as belts, at the cursor's time.
 
     Set ``timeline`` again (it may be the same one) when it has grown. ``glance`` is how many nanoseconds of
-    the run a worker is seen walking to an area or back: a moment on the screen times the run's speed.
+    the run a worker is shown walking to an area or back: a moment on the screen times the run's speed.
     """
 
     BORDER_TITLE = "3 Factory"
@@ -32,6 +32,6 @@ class FactoryView(PaintedWidget):
         return painter.paint(self.timeline, self.now, size.width, size.height, self.glance)
 
     def show(self, timeline: Timeline, now: Nanoseconds, speed: float) -> None:
-        """Show a moment of a run that goes ``speed`` times as fast as the person's time."""
+        """Show a moment of a run that goes at ``speed`` times real time."""
         self.now, self.timeline = now, timeline
         self.glance = round(GLANCE * speed)

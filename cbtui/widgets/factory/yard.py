@@ -1,4 +1,4 @@
-"""Draws the yard: every worker has a place there, and stands in it while it has nothing to do."""
+"""Draws the yard, in which every worker has a place for while it is idle."""
 
 from collections.abc import Sequence
 
@@ -25,7 +25,7 @@ def draw_yard(canvas: Canvas, scene: FactoryScene, column: int, first: int, afte
 
 
 def draw_bench(canvas: Canvas, scene: FactoryScene, line: int) -> None:
-    """Draw the workers beside each other in one row, with as many words as there is room for."""
+    """Draw the workers side by side in one row, with as much text as fits."""
     if not scene.workers:
         return
     words = [(*activity_texts(worker, scene.timeline), "") for worker in scene.workers]
@@ -47,7 +47,7 @@ def draw_bench(canvas: Canvas, scene: FactoryScene, line: int) -> None:
 
 
 def _crowd(canvas: Canvas, scene: FactoryScene, line: int) -> None:
-    """Draw more workers than have room for their names: figures, and how many do what."""
+    """Draw more workers than fit with their names: figures, and the number in each state."""
     glyphs = canvas.glyphs
     figures = "".join(glyphs.idle if _at_home(worker) else glyphs.away for worker in scene.workers)
     at = canvas.write(1, line, figures, STRONG, canvas.width // 2)

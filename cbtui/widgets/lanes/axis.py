@@ -1,4 +1,4 @@
-"""The time axis below the lanes: seconds, the cursor, and what the person did."""
+"""The time axis below the lanes: seconds, the cursor, and the person's commands."""
 
 from collections.abc import Iterable
 
@@ -13,7 +13,7 @@ _MARK = Ink(Role.MARK)
 
 
 def draw_axis(row: CellRow, scale: TimeScale, cursor: int, commands: Iterable[AxisMark]) -> None:
-    """Draw an axis; ``cursor`` is the cursor's column, in the picture or beside it."""
+    """Draw an axis. ``cursor`` is the cursor's column, which may lie outside the picture."""
     _draw_cursor(row, cursor)
     _draw_commands(row, scale, commands)
     for column, text in labels(scale):
@@ -22,7 +22,7 @@ def draw_axis(row: CellRow, scale: TimeScale, cursor: int, commands: Iterable[Ax
 
 
 def _draw_cursor(row: CellRow, column: int) -> None:
-    """Mark now, or on which side of the picture it lies."""
+    """Mark the cursor, or the side of the picture on which it lies."""
     glyphs = GLYPHS[row.charset]
     last = len(row.cells) - 1
     if column < 0:
@@ -36,7 +36,7 @@ def _draw_cursor(row: CellRow, column: int) -> None:
 
 
 def _draw_commands(row: CellRow, scale: TimeScale, commands: Iterable[AxisMark]) -> None:
-    """Mark what the person did, in words where there is room for them."""
+    """Mark the person's commands, with their text where it fits."""
     up = GLYPHS[row.charset].up
     marks = {scale.column_of(mark.at): mark for mark in commands}
     for column in marks:

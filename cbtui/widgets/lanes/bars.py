@@ -45,7 +45,7 @@ class BarPainter:
             self._failure(row, stretch)
 
     def blocked(self, row: CellRow, columns: Sequence[LaneColumn[Blocked] | None]) -> None:
-        """Draw where a thread stands still in a call of a service, beside the name that its bar bears."""
+        """Draw where a thread is blocked in a service call, beside the name on its bar."""
         for stretch in stretches(columns):
             if stretch.is_short:
                 continue
@@ -57,7 +57,7 @@ class BarPainter:
             self._words(row, *_longest_part(free), (f"blocked {where}", where, "blocked"))
 
     def lost(self, row: CellRow, places: Sequence[int]) -> None:
-        """Mark the columns in which a queue lost messages, but for words that stand there."""
+        """Mark the columns in which a queue lost messages, except under text."""
         for place in places:
             if row.inks[place] not in (_WORDS, _WARN):
                 row.put(place, self.glyphs.lost, _WARN)
@@ -89,7 +89,7 @@ class BarPainter:
             self._words(row, stretch.first, stretch.after, texts)
 
     def _together(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None], ink: Ink) -> None:
-        """Draw a group that lets everyone in: a line where one runs, a double one where several do."""
+        """Draw a reentrant group: a line where one callback runs, a double line where several do."""
         for stretch in stretches(columns):
             if stretch.is_short and stretch.columns[0].at_once < 2:
                 row.put(stretch.first, self.glyphs.point, ink)
@@ -130,7 +130,7 @@ class BarPainter:
         for stretch in stretches(columns):
             number = self._number(stretch.top.entity)
             hatch = self.glyphs.hatch[stretch.top.reason]
-            shown = [place for place, column in stretch.places() if _wins(column, calls[place])]
+            shown = [place for place, column in stretch.places() if _shows_wait(column, calls[place])]
             if len(shown) > 1 and calls[shown[-1]] is not None and shown[-1] == stretch.after - 1:
                 del shown[-1]
             for place in shown:
@@ -143,11 +143,11 @@ class BarPainter:
         took = self._took(wait)
         verb = "waits" if wait.end is None or wait.end > self.now else "waited"
         reasons = self._words_of(wait)
-        whole = (f"{verb} {took}: {reason}" for reason in reasons)
-        return (*whole, f"{took}: {reasons[-1]}", *reasons, f"{verb} {took}", took)
+        full = (f"{verb} {took}: {reason}" for reason in reasons)
+        return (*full, f"{took}: {reasons[-1]}", *reasons, f"{verb} {took}", took)
 
     def _took(self, interval: Interval) -> str:
-        """Return how long something lasts up to the cursor; in all if it begins later."""
+        """Return how long an interval lasts up to the cursor; its full length if it begins later."""
         end = self.timeline.end if interval.end is None else interval.end
         if interval.start <= self.now:
             end = min(end, self.now)
@@ -168,7 +168,7 @@ class BarPainter:
         self._cells(row, stretch, [(right if c.runs_on else left)[c.eighths] for c in stretch.columns], ink)
 
     def _texture(self, row: CellRow, stretch: MergedColumns[Span], number: int) -> None:
-        """Fill the whole columns of a bar, all between its ends, with the texture of its group."""
+        """Fill the bar's full columns, except at its ends, with the group's texture."""
         glyph, ink = texture_of(number, self.glyphs)
         if glyph == self.glyphs.left[8] or stretch.is_short:
             return
@@ -186,7 +186,7 @@ class BarPainter:
         row.inks[stretch.first : stretch.after] = [ink] * len(cells)
 
     def _seam(self, row: CellRow, stretch: MergedColumns[Span]) -> None:
-        """Part a bar from the one that it follows at once."""
+        """Separate a bar from the one directly before it."""
         before = stretch.first - 1
         if before < 0:
             return
@@ -198,15 +198,15 @@ class BarPainter:
             row.cells[before] = self.glyphs.left[7]
 
     def _label(self, row: CellRow, stretch: MergedColumns[Span], ink: Ink) -> None:
-        whole = [place for place, column in stretch.places() if column.eighths == 8]
-        if len(whole) < 2:
+        full = [place for place, column in stretch.places() if column.eighths == 8]
+        if len(full) < 2:
             return
         entity = self.timeline.entities[stretch.top.entity]
         letter = self.timeline.groups[entity.group].letter
         name = entity.spoken_name
         for text in (f"{letter} {name}", f"{letter} {short_name(name)}", letter):
-            if len(text) + 3 <= len(whole) or text == letter:
-                row.write(whole[0], f"{text} ", ink)
+            if len(text) + 3 <= len(full) or text == letter:
+                row.write(full[0], f"{text} ", ink)
                 return
 
     def _failure(self, row: CellRow, stretch: MergedColumns[Span]) -> None:
@@ -221,7 +221,7 @@ class BarPainter:
                 return
 
     def _words(self, row: CellRow, first: int, after: int, texts: Sequence[str]) -> None:
-        """Write the first of the texts that fits between two columns and leaves some of what it names."""
+        """Write the first text that fits between two columns without covering all of what it names."""
         for text in texts:
             if len(text) + 5 <= after - first:
                 row.write(first + 2, f" {text} ", _WORDS)
@@ -231,8 +231,8 @@ class BarPainter:
         return self.numbers[self.timeline.entities[entity].group]
 
 
-def _wins(wait: LaneColumn[Wait], call: LaneColumn[Span] | None) -> bool:
-    """Tell whether a column shows the wait: it took more than the calls, and enough to be seen."""
+def _shows_wait(wait: LaneColumn[Wait], call: LaneColumn[Span] | None) -> bool:
+    """Whether a column shows the wait: its share exceeds that of the calls, and is large enough to see."""
     if call is None:
         return True
     return wait.eighths >= _WAIT_SHOWS_FROM and wait.eighths > call.eighths

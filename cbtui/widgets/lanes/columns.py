@@ -1,4 +1,4 @@
-"""Intervals summed up column by column, so that a lane costs the same however much it shows."""
+"""Aggregates intervals column by column, so that the cost of a lane does not depend on their number."""
 
 from bisect import bisect_left
 from collections.abc import Callable, Iterable, Sequence
@@ -11,21 +11,21 @@ from sim.trace.events import EntityId
 from sim.trace.model import Nanoseconds, Window
 
 SAMPLES_PER_COLUMN = 8
-"""How many of the intervals that begin in one column are looked at; of more, an even sample."""
+"""Intervals that are examined per column at most; of more, an even sample."""
 
 _START = attrgetter("start")
 
 _SETTLED_AFTER: Nanoseconds = 100_000_000
-"""Threads of a real-clock run report a little out of order: younger columns are summed up anew."""
+"""Younger columns are aggregated again: threads of a real-clock run report slightly out of order."""
 
 
 _LENGTHS_KEPT = 4
-"""For how many lengths of columns the settled past is kept."""
+"""Number of column lengths for which the settled past is cached."""
 
 _NEWEST = 2
-"""Columns that are summed up however little of a ration is left: those in which a run goes on."""
+"""The newest columns, in which the run goes on, are aggregated even without budget left."""
 _SUMMED_AT_ONCE = 12
-"""Columns that are summed up before the ration is looked at again."""
+"""Columns that are aggregated between two checks of the budget."""
 
 
 class Interval(Protocol):
@@ -50,11 +50,11 @@ I = TypeVar("I", bound=Interval)  # noqa: E741 the one type variable here, for a
 
 
 class LaneColumn(NamedTuple, Generic[I]):
-    """What happened in one column.
+    """The aggregate of one column.
 
-    ``eighths`` is how much of it was taken, at least 1; ``top`` is the interval that took most of it, and
-    ``runs_on`` tells that it began here and lasts into the next column; ``at_once`` is how many there were
-    at the same time.
+    ``eighths`` is the occupied share, at least 1. ``top`` is the interval with the largest share; ``runs_on``
+    tells that it began here and lasts into the next column. ``at_once`` is the number of simultaneous
+    intervals.
     """
 
     eighths: int
@@ -77,7 +77,7 @@ class MergedColumns(NamedTuple, Generic[I]):
 
     @property
     def is_short(self) -> bool:
-        """Tell whether no column was wholly taken."""
+        """Whether no column is fully occupied."""
         columns = self.columns
         return columns[0].eighths < 8 and (len(columns) == 1 or all(column.eighths < 8 for column in columns))
 
@@ -86,29 +86,29 @@ class MergedColumns(NamedTuple, Generic[I]):
         return enumerate(self.columns, self.first)
 
 
-class LookBudget:
-    """How many intervals may be looked at for one picture; what is not looked at for one is for the next."""
+class IntervalBudget:
+    """The number of intervals that may be examined for one picture; the next picture goes on from there."""
 
     def __init__(self, looks: float = inf) -> None:
         self._left = looks
 
     @property
     def is_endless(self) -> bool:
-        """Whether everything may be looked at."""
+        """Whether there is no limit."""
         return self._left == inf
 
     @property
     def is_used_up(self) -> bool:
-        """Whether no more than what is newest may be summed up."""
+        """Whether only the newest columns may still be aggregated."""
         return self._left <= 0
 
     def use(self, looks: int) -> None:
-        """Note that so many intervals have been looked at."""
+        """Count examined intervals."""
         self._left -= looks
 
 
 class _SettledColumns(Generic[I]):
-    """What was summed up in columns of one length."""
+    """The cached columns of one length."""
 
     def __init__(self) -> None:
         self.edge = 0
@@ -119,9 +119,9 @@ class _SettledColumns(Generic[I]):
 
 
 class LaneColumns(Generic[I]):
-    """The columns of one lane; those of the settled past are kept from picture to picture.
+    """The columns of one lane, with a cache of the settled past.
 
-    The lengths of columns that were shown last are remembered, so that zooming out and in again is quick.
+    The cache covers the column lengths shown last, so that zooming out and in again is quick.
     """
 
     def __init__(self, query: Callable[[Window], Sequence[I]]) -> None:
@@ -129,14 +129,14 @@ class LaneColumns(Generic[I]):
         self._per_column = 0
         self._pasts: dict[Nanoseconds, _SettledColumns[I]] = {}
         self.unseen: tuple[int, ...] = ()
-        """The places of the last answer that are still to be summed up."""
+        """The columns of the last answer that are not aggregated yet."""
 
     def over(
-        self, scale: TimeScale, edge: Nanoseconds, ration: LookBudget | None = None
+        self, scale: TimeScale, edge: Nanoseconds, ration: IntervalBudget | None = None
     ) -> list[LaneColumn[I] | None]:
-        """Sum up a scale's columns; an interval that still lasts reaches to ``edge``.
+        """Aggregate a scale's columns, the newest first; open intervals end at ``edge``.
 
-        The newest come first. What the ration does not suffice for is None, and ``unseen``.
+        Columns beyond the budget are None, and listed in ``unseen``.
         """
         past = self._past_of(scale, edge)
         self._forget_what_changed(past)
@@ -144,7 +144,7 @@ class LaneColumns(Generic[I]):
         first = max(scale.first, 0)
         after = min(scale.first + scale.columns, edge // scale.per_column + 1)
         missing = [number for number in range(first, after) if number not in kept]
-        fresh, left = self._newest_of(missing, edge, ration or LookBudget())
+        fresh, left = self._newest_of(missing, edge, ration or IntervalBudget())
         self.unseen = tuple(number - scale.first for number in missing[:left])
         past.settled = max(0, (edge - _SETTLED_AFTER) // scale.per_column)
         for number, column in fresh.items():
@@ -160,7 +160,7 @@ class LaneColumns(Generic[I]):
         return columns
 
     def _past_of(self, scale: TimeScale, edge: Nanoseconds) -> _SettledColumns[I]:
-        """What is kept of columns of this length, and is of use."""
+        """The valid cached columns of this length."""
         self._per_column = scale.per_column
         past = self._pasts.pop(scale.per_column, None)
         if past is None or len(past.kept) > 4 * scale.columns or edge < past.edge:
@@ -172,9 +172,9 @@ class LaneColumns(Generic[I]):
         return past
 
     def _forget_what_changed(self, past: _SettledColumns[I]) -> None:
-        """Drop kept columns in which something began that was not told when they were summed up, or ended.
+        """Drop cached columns in which an interval ended, or one began that was unknown then.
 
-        A wait is often told late: once it is clear that the callback has to wait.
+        A wait is often reported late: once it is clear that the callback has to wait.
         """
         if not past.kept:
             return
@@ -188,9 +188,9 @@ class LaneColumns(Generic[I]):
             past.lasting = {key: number for key, number in past.lasting.items() if number < since}
 
     def _newest_of(
-        self, missing: Sequence[int], edge: Nanoseconds, ration: LookBudget
+        self, missing: Sequence[int], edge: Nanoseconds, ration: IntervalBudget
     ) -> tuple[dict[int, LaneColumn[I] | None], int]:
-        """Sum up missing columns from the last backwards; also returns how many of them are left."""
+        """Aggregate missing columns from the last backwards; also returns how many are left."""
         fresh: dict[int, LaneColumn[I] | None] = {}
         left = len(missing)
         while left and not (fresh and ration.is_used_up):
@@ -205,7 +205,9 @@ class LaneColumns(Generic[I]):
     def _summed(
         self, numbers: Sequence[int], edge: Nanoseconds
     ) -> tuple[dict[int, LaneColumn[I] | None], int]:
-        """Sum up all columns from the first of ascending numbers to the last, in how many looks."""
+        """Aggregate all columns from the first of ascending numbers to the last; also returns how many
+        intervals were examined.
+        """
         length = self._per_column
         found = self._query(Window(numbers[0] * length, (numbers[-1] + 1) * length))
         if not found:
@@ -239,7 +241,7 @@ def _key(interval: Interval) -> "_Key":
 
 
 class InstantColumns:
-    """In which columns of one lane something happened that takes no time; the settled past is kept."""
+    """The columns of one lane with instantaneous events; the settled past is cached."""
 
     def __init__(self, query: Callable[[Window], Sequence[Nanoseconds]]) -> None:
         self._query = query
@@ -264,10 +266,10 @@ class InstantColumns:
 
 
 def _first_from(found: Sequence[I], at: Nanoseconds, low: int, likely: int) -> int:
-    """Return the place of the first interval that begins at ``at`` or later; none before ``low`` does.
+    """Return the place of the first interval at or after ``low`` that begins at ``at`` or later.
 
-    ``likely`` is how far off it may be: neighbouring columns have much alike, and every look at an interval
-    has to make it first.
+    ``likely`` is the expected distance: neighbouring columns hold similar numbers, and an interval has to be
+    built before it can be examined.
     """
     near = min(len(found), low + 2 * likely + 2)
     place = bisect_left(found, at, lo=low, hi=near, key=_START)
@@ -277,7 +279,7 @@ def _first_from(found: Sequence[I], at: Nanoseconds, low: int, likely: int) -> i
 def _column(
     running: Sequence[I], begun: Sequence[I], step: int, window: Window, edge: Nanoseconds
 ) -> LaneColumn[I] | None:
-    """Sum up one column: what runs as it begins, and every ``step``-th of what begins in it."""
+    """Aggregate one column: what runs as it begins, and every ``step``-th interval that begins in it."""
     taken = 0
     longest = -1
     top: I | None = None
@@ -304,7 +306,7 @@ def _runs_on(interval: Interval, window: Window) -> bool:
 
 
 def stretches(columns: Sequence[LaneColumn[I] | None]) -> list[MergedColumns[I]]:
-    """Join neighbouring columns that the same interval took most of."""
+    """Join neighbouring columns with the same top."""
     found: list[MergedColumns[I]] = []
     before: I | None = None
     for place, column in enumerate(columns):

@@ -1,4 +1,4 @@
-"""What there is to know of a selected bar, in words: what caused it, how long it waited and for whom."""
+"""Describes a selected bar: its cause, how long it waited, and for what."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -19,14 +19,14 @@ _MOST_REASONS = 2
 
 @dataclass(frozen=True, slots=True)
 class BarDetails:
-    """What a bar is, and what is known of it: the most telling facts first."""
+    """A bar's title and the facts about it, the most important first."""
 
     title: str
     facts: tuple[str, ...] = ()
 
 
 def details_of(timeline: Timeline, bar: Bar, now: Nanoseconds) -> BarDetails:
-    """Return what is known of a bar at the moment ``now``; what lasts is measured up to then."""
+    """Describe a bar at the moment ``now``; open intervals end there."""
     match bar:
         case Span():
             return BarDetails(_who_runs(timeline, bar), tuple(_of_span(timeline, bar, now)))
@@ -39,7 +39,7 @@ def details_of(timeline: Timeline, bar: Bar, now: Nanoseconds) -> BarDetails:
 def details_of_selection(
     timeline: Timeline, selection: Selection, now: Nanoseconds, keys: LaneKeys = USUAL_KEYS
 ) -> BarDetails:
-    """Return what is known of a selection; of a lane without a bar, by which keys to find one."""
+    """Describe a selection; for a lane without a bar, name the keys that find one."""
     if selection.bar is not None:
         return details_of(timeline, selection.bar, now)
     match selection.lane:
@@ -89,7 +89,7 @@ def _blocked(timeline: Timeline, span: Span, now: Nanoseconds) -> Iterator[str]:
 
 
 def _cause(timeline: Timeline, span: Span, entity: EntityInfo) -> Iterator[str]:
-    """Say what let it run: a period, a message and its publisher, or a request and who called."""
+    """Return what made it ready: a period, a message and its publisher, or a request and its caller."""
     match entity.kind:
         case EntityKind.TIMER:
             yield f"due every {duration(entity.period)}, {_lateness(span.age)}"
@@ -119,7 +119,7 @@ def _publisher(timeline: Timeline, span: Span, entity: EntityInfo) -> str:
 
 
 def _waits_before(timeline: Timeline, span: Span) -> list[Wait]:
-    """Return the waits that ended with a call: those of the same readiness, in order."""
+    """Return the waits that ended with a call, in order: those since the callback became ready."""
     reach = _FIRST_REACH
     while True:
         window = Window(max(0, span.start - reach), span.start + 1)
@@ -131,8 +131,8 @@ def _waits_before(timeline: Timeline, span: Span) -> list[Wait]:
     last = waits[-1] if waits else None
     if last is None or last.end is None or last.end > span.start or any(at >= last.end for at in before):
         return []
-    whole = timeline.waits_of(span.entity, Window(last.since, span.start + 1))
-    return [wait for wait in whole if wait.since == last.since and wait.start < span.start]
+    ended = timeline.waits_of(span.entity, Window(last.since, span.start + 1))
+    return [wait for wait in ended if wait.since == last.since and wait.start < span.start]
 
 
 def _reasons(timeline: Timeline, waits: Sequence[Wait]) -> str:
@@ -183,7 +183,7 @@ def _of_call(timeline: Timeline, call: Call, now: Nanoseconds) -> Iterator[str]:
 
 
 def _call(timeline: Timeline, span: Span) -> Call | None:
-    """Return the call that a service's callback answers: its number stands for its request."""
+    """Return the call that a service's callback answers, by the number of its request."""
     out = timeline.calls_within(Window(max(0, span.start - 1), span.start + 1))
     return next((call for call in out if call.id == span.message), None)
 

@@ -1,4 +1,4 @@
-"""The keys that lanes speak of."""
+"""The keys that the lanes' hints name."""
 
 from typing import NamedTuple
 
@@ -8,9 +8,9 @@ from cbtui.looks.theme import Charset
 
 
 class LaneKeys(NamedTuple):
-    """Keys as people write them: for calling the service, and to a lane's bar before and after.
+    """Keys as people write them: for the service call, and for a lane's previous and next bar.
 
-    ``more`` shows the lanes for which there is no room; "" where no key does.
+    ``more`` shows the hidden lanes. "" means that there is no such key.
     """
 
     call: str
@@ -20,7 +20,7 @@ class LaneKeys(NamedTuple):
 
 
 def lane_keys(keymap: Keymap, scope: Scope, charset: Charset, *more: str) -> LaneKeys:
-    """Return the keys in force on a screen with lanes, where the actions ``more`` show more lanes."""
+    """Return the current keys of a screen with lanes, where the actions ``more`` show hidden lanes."""
     call = keymap.sign(Scope.LESSON, "call_service", charset)
     before, after = (keymap.sign(scope, action, charset) for action in ("previous_event", "next_event"))
     return LaneKeys(call, before, after, " ".join(keymap.sign(scope, action, charset) for action in more))

@@ -1,12 +1,12 @@
-"""What lanes are called, in as many columns as there are."""
+"""The names of lanes, shortened to the available columns."""
 
 from cbtui.text.callback_names import short_name
 from sim.trace.model import EntityInfo, GroupInfo, ThreadInfo
 
 _LEAST_PROGRAM = 3
-"""Columns below which nothing is left of a program's name to know it by."""
+"""Columns below which a program's name cannot be recognised."""
 _BRIEF = 4
-"""Letters by which the kinds of groups are still known."""
+"""Letters that identify a kind of group."""
 
 
 def short_thread(name: str) -> str:
@@ -15,9 +15,9 @@ def short_thread(name: str) -> str:
 
 
 def thread_name(thread: ThreadInfo, room: int, ellipsis: str) -> str:
-    """Return a thread's name in at most ``room`` columns, if any form of it is as short as that.
+    """Return a thread's name in at most ``room`` columns, if it can be shortened so far.
 
-    The program that it belongs to, of several, gives way in its middle: the end is what tells two apart.
+    Of several programs, the program's name is shortened in its middle: their ends differ.
     """
     for name in (thread.name, short_thread(thread.name)):
         if len(name) <= room:
@@ -38,18 +38,18 @@ def _without_middle(text: str, room: int, ellipsis: str) -> str:
 
 
 def group_name(group: GroupInfo, room: int) -> str:
-    """Return what kind of group one of several callbacks is."""
-    whole, brief = _kinds(group)
-    return whole if len(whole) <= room else brief
+    """Return the kind of a group of several callbacks."""
+    full, brief = _kinds(group)
+    return full if len(full) <= room else brief
 
 
 def entity_name(entity: EntityInfo, room: int) -> str:
-    """Return the name of a callback of a group of several."""
+    """Return the name of a callback in a group of several."""
     return entity.label if len(entity.label) <= room else short_name(entity.label)
 
 
 def sole_name(entity: EntityInfo, group: GroupInfo, room: int) -> str:
-    """Return the name of a group's only callback, after the kind of the group where there is room for it."""
+    """Return the name of a group's only callback, behind the group's kind if there is room."""
     names = (entity.label, short_name(entity.label))
     for text in (f"{kind} {name}" for kind in _kinds(group) for name in names):
         if len(text) <= room:
@@ -58,9 +58,9 @@ def sole_name(entity: EntityInfo, group: GroupInfo, room: int) -> str:
 
 
 def more_lanes(hidden: int, key: str, room: int) -> str:
-    """Say how many lanes are not shown and which key shows them, in as many words as there is room for.
+    """Return how many lanes are hidden and the key that shows them, in the longest text that fits.
 
-    ``key`` is "" where no key does.
+    ``key`` is "" if there is none.
     """
     plain = f"+{hidden} lanes"
     told = (f"{plain}: {key} shows more", f"{plain} {key}", f"+{hidden} {key}") if key else ()
@@ -68,5 +68,5 @@ def more_lanes(hidden: int, key: str, room: int) -> str:
 
 
 def _kinds(group: GroupInfo) -> tuple[str, str]:
-    """A group's kind, whole and brief."""
+    """A group's kind, in full and abbreviated."""
     return group.kind.value, group.kind.value[:_BRIEF]

@@ -10,7 +10,7 @@ from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun, texture_of
 from cbtui.text.cells import CellRow, fit
 from cbtui.widgets.lanes.axis import draw_axis
 from cbtui.widgets.lanes.bars import BarPainter
-from cbtui.widgets.lanes.columns import I, InstantColumns, LaneColumn, LaneColumns, LookBudget
+from cbtui.widgets.lanes.columns import I, InstantColumns, IntervalBudget, LaneColumn, LaneColumns
 from cbtui.widgets.lanes.keys import USUAL_KEYS
 from cbtui.widgets.lanes.names import entity_name, group_name, more_lanes, sole_name, thread_name
 from cbtui.widgets.lanes.picture import LEAST_WIDTH, LaneLayout, LanePicture, layout_for
@@ -40,28 +40,29 @@ NOW = Ink(Role.NOW)
 MARK = Ink(Role.MARK)
 
 
-LOOKS_PER_FRAME = 500
-"""Intervals that are looked at for one frame: a lesson's lanes fill in two or three frames, zoomed out on an
-hour in some twenty, and no key waits for all of it."""
+INTERVALS_PER_FRAME = 500
+"""Intervals that are examined per frame: a lesson's lanes are complete after two or three frames, an hour
+zoomed out after some twenty, and keys stay responsive.
+"""
 
 _TEXTURED_FROM = 20
-"""The narrowest column of names that shows the textures of groups."""
+"""The smallest width of the names' column that shows the textures of groups."""
 _SWATCH = 2
 """Columns of texture beside a group's letter."""
 
 
 def wanted_rows(timeline: Timeline, service: str = "") -> int:
-    """Return how many rows show every lane of a run and the axis; ``service`` as for the painter."""
+    """Return the number of rows that show every lane and the axis; ``service`` as for the painter."""
     return len(all_lanes(timeline, service)) + 1
 
 
 class LanePainter:
-    """Paints a timeline as lanes; keeps what it summed up of the past, so that one painter serves one widget.
+    """Paints a timeline as lanes. One painter serves one widget: it caches aggregates of the past.
 
-    ``service`` is a service of others that is to have a lane before it is first called. ``looks`` is how many
-    intervals a picture may look at; the next picture of the same stretch goes on where it stopped.
-    ``call_key`` is what calls the service, as people write it; ``more_key`` what shows the lanes that have no
-    room, "" where no key does.
+    ``service`` is another program's service that gets a lane before its first call. ``looks`` limits the
+    intervals that are examined per picture; the next picture of the same window goes on from there.
+    ``call_key`` is the key that calls the service, as people write it, ``more_key`` the one that shows hidden
+    lanes; "" if there is none.
     """
 
     def __init__(
@@ -114,7 +115,7 @@ class LanePainter:
         return LanePicture(tuple(tuple(row) for row in rows), tuple(lanes), layout, scale, complete)
 
     def spans(self, lane: Lane, timeline: Timeline) -> LaneColumns[Span]:
-        """Return the summed-up calls of a lane."""
+        """Return the aggregated calls of a lane."""
         match lane:
             case ThreadLane(thread):
                 return self.columns(timeline.spans_on, thread.id)
@@ -126,7 +127,7 @@ class LanePainter:
                 return LaneColumns(lambda _: ())
 
     def columns(self, query: Callable[[int, Window], Sequence[I]], subject: int) -> LaneColumns[I]:
-        """Return the columns of what a query of the timeline finds for an id; they are made once."""
+        """Return the cached columns of a query of the timeline for an id."""
         key = (query.__name__, subject)
         if key not in self._columns:
             self._columns[key] = LaneColumns(partial(query, subject))
@@ -141,10 +142,10 @@ class LanePainter:
 
 @dataclass(frozen=True, slots=True)
 class _LaneSummary:
-    """What a lane shows, column by column.
+    """A lane's content, column by column.
 
-    ``lasting`` is how long what still lasts has lasted, in words; ``unseen`` are the columns that are still
-    to be summed up.
+    ``lasting`` is the duration of the open interval, in words; ``unseen`` are the columns that are not
+    aggregated yet.
     """
 
     scale: TimeScale
@@ -175,7 +176,7 @@ class _LaneFrame:
         self._scale = scale
         self._layout = layout
         self._now = now
-        self._ration = LookBudget(painter.looks)
+        self._ration = IntervalBudget(painter.looks)
         self.unseen = False
         self._charset = painter.charset
         self._glyphs = GLYPHS[painter.charset]
@@ -193,7 +194,7 @@ class _LaneFrame:
         return self._framed(self._name(lane), runs, self._status.of(lane, self._latest(sums.calls)), chosen)
 
     def _repeats(self, lane: Lane) -> bool:
-        """Tell whether a lane looks as it did as long as its sums are the same."""
+        """Whether a lane looks the same as long as its aggregates do."""
         if self._now < self._edge:
             return False
         match lane:
@@ -204,7 +205,7 @@ class _LaneFrame:
         return True
 
     def _kept(self, lane: Lane, sums: _LaneSummary) -> list[TextRun]:
-        """Return a lane as it was painted last, painted anew if it has changed."""
+        """Return a lane's cached row, painted again if the lane has changed."""
         before = self._painter.painted.get(lane)
         if before is not None and before[0] == sums:
             return before[1]
@@ -224,7 +225,7 @@ class _LaneFrame:
         return row.runs()
 
     def axis(self, hidden: int) -> list[TextRun]:
-        """Paint the time axis; ``hidden`` lanes that had no room are told of at its left."""
+        """Paint the time axis, with the number of hidden lanes at its left."""
         row = CellRow(self._layout.columns, self._charset)
         draw_axis(row, self._scale, self._now_column, self._commands())
         name = more_lanes(hidden, self._painter.more_key, self._layout.names) if hidden else "seconds"
@@ -261,7 +262,7 @@ class _LaneFrame:
         return _LaneSummary(self._scale, calls, waits, blocks, losses, lengths, tuple(sorted(unseen)))
 
     def _summed(self, columns: LaneColumns[I], unseen: set[int]) -> list[LaneColumn[I] | None]:
-        """Sum up as much as the picture's ration allows, and add what it does not to ``unseen``."""
+        """Aggregate within the picture's budget, and add the remaining columns to ``unseen``."""
         summed = columns.over(self._scale, self._edge, self._ration)
         unseen.update(columns.unseen)
         return summed
@@ -289,7 +290,7 @@ class _LaneFrame:
         return next((column.top for column in reversed(shown) if column is not None), None)
 
     def _commands(self) -> list[AxisMark]:
-        """What the person did, but for the calls that a service's lane shows."""
+        """The person's commands, except the calls that a service's lane shows."""
         shown = {self._scale.column_of(call.sent) for call in self._calls.latest}
         marks = self._timeline.marks(self._scale.window)
         return [m for m in marks if m.kind == "command" and self._scale.column_of(m.at) not in shown]
@@ -311,7 +312,7 @@ class _LaneFrame:
         ]
 
     def _show_cursor(self, row: CellRow) -> None:
-        """Show where the cursor stands and what lies after it, when it is not at the edge."""
+        """Mark the cursor and the time after it, unless it is at the edge."""
         column = self._now_column
         at_edge = self._now + self._scale.per_column >= self._edge
         if at_edge or not 0 <= column < len(row.cells):
@@ -337,7 +338,7 @@ class _LaneFrame:
                 return [TextRun(service, PLAIN)]
 
     def _room_after(self, runs: list[TextRun]) -> int:
-        """How many columns of a name are left."""
+        """The columns left after a name."""
         return self._layout.names - sum(len(run.text) for run in runs)
 
     def _letter(self, group: GroupInfo) -> list[TextRun]:

@@ -1,4 +1,4 @@
-"""Painted lanes as a value, and how their width is shared out."""
+"""Painted lanes as a value, and the layout of their width."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ LEAST_WIDTH = 20
 
 @dataclass(frozen=True, slots=True)
 class LaneLayout:
-    """How a width is shared out: names at the left, lanes, statuses at the right; a frame between."""
+    """The layout of a width: names at the left, lanes, statuses at the right, a frame between."""
 
     names: int
     columns: int
@@ -21,7 +21,7 @@ class LaneLayout:
 
 
 def layout_for(width: int) -> LaneLayout:
-    """Share out a width of ``LEAST_WIDTH`` or more: the narrower, the shorter names and statuses."""
+    """Return the layout of a width of ``LEAST_WIDTH`` or more; a narrow one has short names and statuses."""
     for least, names, statuses in ((120, 23, 25), (72, 12, 16), (48, 10, 10), (LEAST_WIDTH, 6, 0)):
         if width >= least:
             return LaneLayout(names, width - names - statuses - 2, statuses)
@@ -30,9 +30,10 @@ def layout_for(width: int) -> LaneLayout:
 
 @dataclass(frozen=True, slots=True)
 class LanePicture:
-    """Painted lanes, the axis last. ``lanes`` are those that ``rows`` begins with, one a row.
+    """Painted lanes, the axis last.
 
-    One that is not ``complete`` has faint points where there was more to look at than a picture may take.
+    ``lanes`` are those of the first ``rows``, one a row. A picture that is not ``complete`` has faint points
+    in the columns beyond its budget.
     """
 
     rows: tuple[tuple[TextRun, ...], ...]

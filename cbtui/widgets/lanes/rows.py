@@ -1,4 +1,4 @@
-"""Which lanes there are, and which of them to show when there is not room for all."""
+"""The lanes of a run, and the choice of those to show if not all fit."""
 
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -70,13 +70,13 @@ def all_lanes(timeline: Timeline, service: str) -> list[Lane]:
 
 
 def lanes_beyond(lanes: list[Lane], timeline: Timeline) -> int:
-    """Return how many groups and callbacks of a run have no lane among all of these."""
+    """Return the number of groups and callbacks without a lane."""
     shown = sum([not isinstance(lane, ThreadLane | ServiceLane) for lane in lanes])
     return roster_of(timeline).lanes - shown
 
 
 def _working_threads(timeline: Timeline) -> list[ThreadInfo]:
-    """Return the threads without a main thread that only hands out work to others."""
+    """Return the threads, without a main thread that only dispatches work."""
     threads = list(timeline.threads.values())
     if len(threads) < 2:
         return threads
@@ -85,7 +85,7 @@ def _working_threads(timeline: Timeline) -> list[ThreadInfo]:
 
 
 def ever_ran(timeline: Timeline, thread: ThreadId, at: Nanoseconds) -> bool:
-    """Tell whether a thread ran any callback up to ``at``; looks no further than the first ones."""
+    """Whether a thread ran a callback up to ``at``; examines only the first calls."""
     reach = SECOND
     while reach < at:
         if timeline.spans_on(thread, Window(0, reach)):
@@ -97,11 +97,11 @@ def ever_ran(timeline: Timeline, thread: ThreadId, at: Nanoseconds) -> bool:
 def choose_lanes(
     lanes: list[Lane], room: int, timeline: Timeline, window: Window, selected: Lane | None = None
 ) -> list[Lane]:
-    """Return the lanes that matter most in ``window``, as many as there is room for, in their order.
+    """Return the most important lanes of ``window`` that fit, in their order.
 
-    The selected one stays with its neighbours, so that going through the lanes moves the view; then whoever
-    works or waits long. What never did anything goes first. The moment does not count: the choice would
-    flicker.
+    The selected lane and its neighbours stay, so that moving through the lanes scrolls the view. Lanes with
+    work or long waits come next; idle ones are dropped first. The cursor's moment does not count: the choice
+    would flicker.
     """
     if len(lanes) <= room:
         return lanes
@@ -115,21 +115,21 @@ def choose_lanes(
 
 
 _FAR = 2
-"""From the selected lane: as little as to be chosen by worth alone."""
+"""The distance from the selected lane beyond which only priority counts."""
 _LONG_WAIT: Nanoseconds = 10_000_000
 _LATEST = 200
-"""How many waits of a window are looked at for a long one."""
+"""Waits of a window that are examined for a long one."""
 
 
 @dataclass(frozen=True, slots=True)
 class _LanePriority:
-    """How much a lane tells in a window."""
+    """The priority of lanes in a window."""
 
     timeline: Timeline
     window: Window
 
     def of(self, lane: Lane) -> int:
-        """Return a number that is higher the more the lane tells."""
+        """Return a lane's priority."""
         match lane:
             case ThreadLane(thread):
                 return self._thread(thread)

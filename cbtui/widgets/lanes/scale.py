@@ -1,4 +1,4 @@
-"""How columns of the screen and moments of a run belong together, and where the time axis has labels."""
+"""Maps columns of the screen to times of a run, and places the labels of the time axis."""
 
 from typing import NamedTuple
 
@@ -43,7 +43,7 @@ def scale_for(window: Window, columns: int) -> TimeScale:
 
 
 def nice_column(least: Nanoseconds) -> Nanoseconds:
-    """Return the smallest easy length of a column that is ``least`` or more."""
+    """Return the smallest round length of a column that is ``least`` or more."""
     power = 1
     while True:
         for mantissa in _MANTISSAS:

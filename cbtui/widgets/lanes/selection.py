@@ -1,4 +1,4 @@
-"""Which lane and which bar on it a person has selected, and how to get from one to the next."""
+"""The selected lane and bar, and the way to neighbouring ones."""
 
 from dataclasses import dataclass, replace
 from typing import TypeAlias
@@ -9,7 +9,7 @@ from sim.trace.model import Call, Nanoseconds, Span, Wait, Window
 from sim.trace.timeline import Timeline
 
 Bar: TypeAlias = Span | Wait | Call
-"""What is drawn on lanes and can be selected: a call of a callback, a wait for one, a call of a service."""
+"""What can be selected on lanes: a call of a callback, a wait for one, a call of a service."""
 
 _FIRST_REACH: Nanoseconds = 1_000_000
 _REACH_GROWS = 4
@@ -33,7 +33,7 @@ class Selection:
         return None
 
     def renewed(self, timeline: Timeline) -> "Selection":
-        """Return the same as it is known now: what lasted may have ended."""
+        """Return the selection with the timeline's current values: an open interval may have ended."""
         if self.bar is None:
             return self
         start = start_of(self.bar)
@@ -42,17 +42,17 @@ class Selection:
 
 
 def start_of(bar: Bar) -> Nanoseconds:
-    """When something began, or a service's call was sent."""
+    """When a bar begins; for a service call, when it was sent."""
     return bar.sent if isinstance(bar, Call) else bar.start
 
 
 def end_of(bar: Bar) -> Nanoseconds | None:
-    """When something ended, or a service's reply came; None while that is to come."""
+    """When a bar ends; for a service call, when its reply came. None while it is open."""
     return bar.replied if isinstance(bar, Call) else bar.end
 
 
 def bars_in(timeline: Timeline, lane: Lane, window: Window) -> list[Bar]:
-    """Return what a lane shows of a window, in order of start."""
+    """Return the bars of a lane in a window, in order of start."""
     match lane:
         case ThreadLane(thread):
             return [*timeline.spans_on(thread.id, window)]
@@ -67,13 +67,13 @@ def bars_in(timeline: Timeline, lane: Lane, window: Window) -> list[Bar]:
 
 
 def bar_at(timeline: Timeline, lane: Lane, column: Window) -> Bar | None:
-    """Return what took most of a column of the screen; of equals the later one."""
+    """Return the bar with the largest share of a column; of equal ones the later."""
     found = bars_in(timeline, lane, column)
     return max(found, key=lambda bar: (_share(bar, column), start_of(bar)), default=None)
 
 
 def bar_up_to(timeline: Timeline, lane: Lane, column: Window, shown: Window) -> Bar | None:
-    """Return what a column shows, or else the last that a lane shows before it."""
+    """Return a column's bar, or else the lane's last bar before it."""
     before = bars_in(timeline, lane, Window(shown.start, max(shown.start, column.start)))
     return bar_at(timeline, lane, column) or (before[-1] if before else None)
 

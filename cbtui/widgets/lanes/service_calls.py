@@ -1,4 +1,4 @@
-"""Service calls in a picture: when they left, when they were answered, by whom they were made."""
+"""Draws service calls: when they were sent and answered, and who made them."""
 
 from collections.abc import Sequence
 from itertools import islice
@@ -15,11 +15,11 @@ MARK = Ink(Role.MARK)
 FAINT = Ink(Role.FAINT)
 
 _LATEST = 500
-"""How many calls a picture looks back on."""
+"""Calls that a picture looks back on."""
 
 
 class LatestCalls:
-    """The latest calls of a run, the very latest first."""
+    """The latest calls of a run, the newest first."""
 
     def __init__(self, timeline: Timeline) -> None:
         self.latest = list(islice(reversed(timeline.calls), _LATEST))
@@ -32,7 +32,7 @@ class LatestCalls:
         return self._by_service.get(service, ())
 
     def summary(self, service: str, now: Nanoseconds) -> str:
-        """Say how many calls were sent by ``now`` and how long the last took or has taken."""
+        """Return how many calls were sent by ``now`` and the duration of the last one."""
         sent = [call for call in self.of(service) if call.sent <= now]
         if not sent:
             return "not called"

@@ -1,4 +1,4 @@
-"""What stands at the right of a lane: how busy, how full, how late, at the moment of the cursor."""
+"""The status at the right of a lane at the cursor's moment: load, queue, lateness."""
 
 from dataclasses import dataclass
 
@@ -95,7 +95,7 @@ class LaneStatus:
         return TextRun("on time", FAINT)
 
     def _client(self, client: EntityInfo) -> TextRun:
-        """Tell a client from the service of the same name; what waits for it are replies."""
+        """Tell a client from the service of the same name: its queue holds replies."""
         replies = self.timeline.queue(client.id, self.moment.at).depth
         if replies == 0:
             return TextRun("client", FAINT)

@@ -1,4 +1,4 @@
-"""The lanes on screen: a widget that draws what its painter paints, and tells what the pointer picks."""
+"""The widget of the lanes: draws what its painter paints, and reports what the pointer picks."""
 
 from collections.abc import Sequence
 
@@ -12,7 +12,7 @@ from cbtui.looks.theme import GLYPHS, Charset, TextRun
 from cbtui.widgets.lanes.details import details_of_selection
 from cbtui.widgets.lanes.details_rows import ROWS, details_rows
 from cbtui.widgets.lanes.keys import USUAL_KEYS, LaneKeys
-from cbtui.widgets.lanes.painter import LOOKS_PER_FRAME, LanePainter, wanted_rows
+from cbtui.widgets.lanes.painter import INTERVALS_PER_FRAME, LanePainter, wanted_rows
 from cbtui.widgets.lanes.picture import LanePicture
 from cbtui.widgets.lanes.rows import Lane, all_lanes
 from cbtui.widgets.lanes.selection import Selection, bar_at, bar_up_to, neighbouring_bar, start_of
@@ -21,20 +21,19 @@ from sim.trace.model import Nanoseconds, Window
 from sim.trace.timeline import Timeline
 
 _LEAST_LANES = 3
-"""Rows below which the details of the selection are left out, to leave room for the lanes."""
+"""Rows of lanes below which the details of the selection are hidden."""
 
 _A_FRAME = 1 / 30
-"""Seconds until the lanes go on to fill."""
+"""Seconds between two frames while the lanes fill."""
 
 
 class Lanes(PaintedWidget, can_focus=True):
     """Threads as lanes, callbacks as bars, waits as hatching; the time axis runs along the bottom.
 
-    Set ``timeline`` again (it may be the same one) when it has grown. ``now`` is the cursor that every pane
-    obeys; ``service`` one that is not the learner's and is to have a lane before its first call. What is
-    selected stands out and is told of below the axis; it is for the screen to set ``selection``, ``hint`` to
-    what its frame is to say of keys, ``keys`` to those in force, and ``changes`` to what a person changed
-    about the run.
+    Set ``timeline`` again (it may be the same one) when it has grown. ``now`` is the cursor that all panes
+    share; ``service`` is another program's service that gets a lane before its first call. The selection
+    stands out and is described below the axis. The screen sets ``selection``, ``hint`` (what the frame says
+    of keys), ``keys`` and ``changes`` (what a person changed about the run).
     """
 
     DEFAULT_CSS = "Lanes { height: auto; }"
@@ -49,14 +48,14 @@ class Lanes(PaintedWidget, can_focus=True):
     changes: reactive[str] = painted("")
     keys: reactive[LaneKeys] = reactive(USUAL_KEYS, repaint=False)
 
-    _painter = LanePainter(looks=LOOKS_PER_FRAME)
+    _painter = LanePainter(looks=INTERVALS_PER_FRAME)
     _picture: LanePicture | None = None
     _laid_out_for = 0
     _titled = ""
     _goes_on = False
 
     class BarPicked(Message):
-        """The person pointed at a moment ``at``, and at something on a lane if ``selection`` says so."""
+        """The person clicked at the moment ``at``; ``selection`` is what lies there on a lane, if any."""
 
         def __init__(self, lanes: "Lanes", at: Nanoseconds, selection: Selection | None) -> None:
             super().__init__()
@@ -70,7 +69,7 @@ class Lanes(PaintedWidget, can_focus=True):
             return self.lanes
 
     class WheelTurned(Message):
-        """The person turned the wheel: ``steps`` > 0 asks for a longer stretch of time, < 0 for a shorter."""
+        """The person turned the wheel: ``steps`` > 0 asks for a longer window, < 0 for a shorter one."""
 
         def __init__(self, steps: int) -> None:
             super().__init__()
@@ -78,20 +77,20 @@ class Lanes(PaintedWidget, can_focus=True):
 
     @property
     def picture(self) -> LanePicture | None:
-        """What was painted last: its lanes, scale and layout tell what lies under a cell."""
+        """The picture that was painted last; its lanes, scale and layout tell what lies under a cell."""
         return self._picture
 
     # what can be selected
 
     def here(self) -> Selection | None:
-        """Return what is worth looking at first: a bar at the cursor, else one before it, else a lane."""
+        """Return the best first selection: a bar at the cursor, else one before it, else a lane."""
         lanes = [] if self._picture is None else self._picture.lanes
         found = [Selection(lane, bar_at(self.timeline, lane, self._cursor_column)) for lane in lanes]
         found += [self._last_on(lane) for lane in lanes]
         return next((each for each in found if each.bar is not None), found[0] if found else None)
 
     def lane_beside(self, step: int) -> Selection | None:
-        """Return the lane above (``step`` < 0) or below the selected one, and the last bar on it."""
+        """Return the lane above (``step`` < 0) or below the selected one, and its last bar."""
         lanes = all_lanes(self.timeline, self.service)
         if self.selection is None or self.selection.lane not in lanes:
             return self.here()
@@ -116,7 +115,7 @@ class Lanes(PaintedWidget, can_focus=True):
 
     @property
     def _cursor_column(self) -> Window:
-        """The column of the screen in which the cursor stands; for one at the very end, the last one."""
+        """The column in which the cursor stands; at the very end, the last one."""
         assert self._picture is not None
         length = self._picture.scale.per_column
         start = max(0, self.now - (self.now == self.timeline.end)) // length * length
@@ -125,7 +124,7 @@ class Lanes(PaintedWidget, can_focus=True):
     # the pointer
 
     def on_click(self, event: Click) -> None:
-        """Tell which moment and which bar lies under the pointer."""
+        """Report the moment and the bar under the pointer."""
         offset, picture = event.get_content_offset(self), self._picture
         if offset is None or picture is None or offset.y >= len(picture.lanes) + 1:
             return
@@ -142,12 +141,12 @@ class Lanes(PaintedWidget, can_focus=True):
         self.post_message(self.BarPicked(self, at, None if lane is None else Selection(lane, bar)))
 
     def on_mouse_scroll_up(self, event: MouseScrollUp) -> None:
-        """Ask for a shorter stretch of time."""
+        """Ask for a shorter window."""
         event.stop()
         self.post_message(self.WheelTurned(-1))
 
     def on_mouse_scroll_down(self, event: MouseScrollDown) -> None:
-        """Ask for a longer stretch of time."""
+        """Ask for a longer window."""
         event.stop()
         self.post_message(self.WheelTurned(1))
 
@@ -170,7 +169,7 @@ class Lanes(PaintedWidget, can_focus=True):
         return [*picture.rows, *details_rows(details, size.width, self.charset)]
 
     def _go_on_later(self) -> None:
-        """Paint what is missing in the next frame, also when the run stands."""
+        """Paint what is missing in the next frame, even if the run stands still."""
         if self.is_running and not self._goes_on:
             self._goes_on = True
             self.set_timer(_A_FRAME, self._go_on)
@@ -180,7 +179,7 @@ class Lanes(PaintedWidget, can_focus=True):
         self.changed()
 
     def _entitle(self, title: str) -> None:
-        """Set another title: Textual draws the whole widget anew even for the same one."""
+        """Set another title, if it differs: Textual draws the widget again even for the same one."""
         if title != self._titled:
             self._titled = title
             self.border_title = Text(title)
@@ -189,23 +188,23 @@ class Lanes(PaintedWidget, can_focus=True):
         return ROWS if size.height >= ROWS + _LEAST_LANES and size.width > ROWS else 0
 
     def get_content_height(self, container: Size, viewport: Size, width: int) -> int:
-        """Return how many rows show every lane, and tell of the selected bar."""
+        """Return the number of rows that show every lane and describe the selected bar."""
         self._laid_out_for = wanted_rows(self.timeline, self.service)
         return self._laid_out_for + (0 if self.selection is None else ROWS)
 
     def watch_timeline(self) -> None:
-        """Paint anew, in another height if lanes have come."""
+        """Paint again, in another height if there are new lanes."""
         # Lanes that are out of sight are not laid out: it is asked for again until it was done.
         if wanted_rows(self.timeline, self.service) != self._laid_out_for:
             self.refresh(layout=True)
 
     def watch_selection(self, before: Selection | None, after: Selection | None) -> None:
-        """Let another bar stand out, and make room to tell of it."""
+        """Highlight another bar, and make room for its description."""
         if (before is None) != (after is None):
             self.refresh(layout=True)
 
     def watch_hint(self) -> None:
-        """Say something else of keys; their signs are no markup."""
+        """Show another hint; the keys' signs are not markup."""
         self.border_subtitle = Text(self.hint)
 
     def watch_service(self) -> None:
@@ -213,7 +212,7 @@ class Lanes(PaintedWidget, can_focus=True):
         self._begin_anew()
 
     def watch_keys(self) -> None:
-        """Speak of other keys."""
+        """Name other keys."""
         self._begin_anew()
 
     def watch_charset(self) -> None:
@@ -221,7 +220,7 @@ class Lanes(PaintedWidget, can_focus=True):
         self._begin_anew()
 
     def _begin_anew(self) -> None:
-        """Have another painter, which remembers nothing."""
+        """Start with another painter and an empty cache."""
         call, more = self.keys.call, self.keys.more
-        self._painter = LanePainter(self.charset, self.service, LOOKS_PER_FRAME, call, more)
+        self._painter = LanePainter(self.charset, self.service, INTERVALS_PER_FRAME, call, more)
         self.changed()

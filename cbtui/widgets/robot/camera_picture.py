@@ -1,4 +1,4 @@
-"""A picture's pixels as cells of a terminal: two pixels a cell in colours, or signs of more or less ink."""
+"""A picture's pixels as cells of a terminal: two coloured pixels a cell, or characters by brightness."""
 
 from collections.abc import Sequence
 from functools import lru_cache
@@ -15,9 +15,9 @@ from sim.camera import Picture
 
 _RAMP = " .:-=+*#%@"
 _DARKEST, _BRIGHTEST = 20, 240
-"""The brightness, of 255, from which on a sign is the emptiest or the densest one."""
+"""Brightness, of 255, at which the emptiest and the densest character are reached."""
 _RED, _GREEN, _BLUE = 0.2126, 0.7152, 0.0722
-"""The share that each colour has in what an eye takes for brightness (ITU-R BT.709)."""
+"""The weights of the colours in perceived brightness (ITU-R BT.709)."""
 
 _BITS = 3
 _TOP_LEVEL = (1 << _BITS) - 1
@@ -33,9 +33,10 @@ def half_blocks(picture: Picture) -> list[Strip]:
 
 
 def ramp(picture: Picture, dark: bool, style: Style) -> list[Strip]:
-    """Return strips of signs in one style, the brighter the denser on a dark ground; on a light one the less.
+    """Return strips of characters in one style; on a dark ground bright pixels are dense, on a light one dark
+    pixels.
 
-    The picture's height is even.
+    The picture's height must be even.
     """
     signs = _RAMP if dark else _RAMP[::-1]
     brightness = _channels(picture) @ np.array([_RED, _GREEN, _BLUE])
@@ -50,7 +51,7 @@ def _channels(picture: Picture) -> NDArray[np.uint8]:
 
 
 def _runs(pairs: NDArray[np.int32]) -> Strip:
-    """Return one row of cells, those of the same colours in one segment."""
+    """Return one row of cells, neighbours of the same colours in one segment."""
     width = len(pairs)
     starts = [0, *(np.flatnonzero(np.diff(pairs)) + 1).tolist()]
     colours: Sequence[int] = pairs[starts].tolist()

@@ -1,4 +1,4 @@
-"""Which part of the arena a map shows, and where a place in metres lies on it."""
+"""The part of the arena that a map shows, and the position of places (metres) on it."""
 
 import math
 from dataclasses import dataclass
@@ -22,7 +22,7 @@ class Extent(NamedTuple):
     top: float
 
 
-def whole_arena(plan: ArenaShown) -> Extent:
+def full_arena(plan: ArenaShown) -> Extent:
     """Return the extent of all walls and the sphere."""
     x, y, radius = plan.sphere
     across = [at for wall in plan.walls for at in (wall[0], wall[2])] + [x - radius, x + radius]
@@ -33,7 +33,7 @@ def whole_arena(plan: ArenaShown) -> Extent:
 def robot_surroundings(plan: ArenaShown, robot: RobotMoved) -> Extent:
     """Return the surroundings of the robot, with the sphere while it is close.
 
-    The borders lie on a coarse grid, so that the map stands still while the robot moves.
+    The borders lie on a coarse grid, so that the map does not move with the robot.
     """
     x, y, radius = plan.sphere
     points = [(robot.x, robot.y, plan.robot_radius)]
@@ -53,7 +53,7 @@ def _down(at: float) -> float:
 
 @dataclass(frozen=True, slots=True)
 class MapView:
-    """A map of ``columns`` x ``lines`` cells; a cell is taken to be twice as high as wide."""
+    """A map of ``columns`` x ``lines`` cells; a cell counts as twice as high as wide."""
 
     left: float
     top: float
@@ -66,7 +66,7 @@ class MapView:
 
     @classmethod
     def of(cls, extent: Extent, columns: int, lines: int, charset: Charset) -> "MapView":
-        """Fit an extent into cells, in the middle, as large as it goes."""
+        """Fit an extent into cells, centred and as large as possible."""
         width, height = extent.right - extent.left, extent.top - extent.bottom
         cell = max(width / (columns - 1), height / (2 * lines - 1), 1e-6)
         across, down = DOTS_PER_CELL[charset]
@@ -76,11 +76,11 @@ class MapView:
 
     @property
     def metres_per_dot(self) -> float:
-        """How wide a dot is, in metres."""
+        """The width of a dot in metres."""
         return self.metres_across
 
     def shows_size(self, radius: float) -> bool:
-        """Tell whether a circle of this radius (metres) can be told from a point."""
+        """Whether a circle of this radius (metres) is larger than a point."""
         return radius >= 2 * self.metres_across
 
     def dot(self, x: float, y: float) -> tuple[float, float]:

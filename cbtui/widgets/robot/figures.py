@@ -1,4 +1,4 @@
-"""The robot's figures in a few lines: where it is, what it was told, what it does, what is ahead."""
+"""The robot's figures in a few lines: its position, the command, its velocity, the way ahead."""
 
 import math
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ _Figure = tuple[str, Ink]
 def figures(
     robot: RobotMoved, command: VelocityCommanded | None, width: int, charset: Charset
 ) -> list[CellRow]:
-    """Return lines with the figures, as many as a width always needs, so that nothing below them jumps."""
+    """Return lines with the figures; their number depends on the width alone, so that nothing below jumps."""
     entries = _entries(robot, command, charset)
     rows: list[CellRow] = []
     at = width
@@ -53,5 +53,5 @@ def _velocity(linear: float, angular: float) -> str:
 
 
 def _two_places(figure: float) -> str:
-    """Return a figure with two places, five wide; what rounds to nothing has no minus."""
+    """Return a number with two decimals, five columns wide, without a negative zero."""
     return f"{round(figure, 2) + 0.0:5.2f}"

@@ -8,7 +8,7 @@ from textual.geometry import Region
 
 from cbtui.looks.theme import GLYPHS, Charset, Ink, Role, TextRun
 from cbtui.text.cells import CellRow
-from cbtui.widgets.robot.extents import MapView, robot_surroundings, whole_arena
+from cbtui.widgets.robot.extents import MapView, full_arena, robot_surroundings
 from cbtui.widgets.robot.figures import figures
 from cbtui.widgets.robot.pane_regions import PaneRegions, RobotViewMode, arrange
 from cbtui.widgets.robot.scene import RobotScene
@@ -28,7 +28,7 @@ WARN = Ink(Role.WARN)
 
 
 class RobotPainting(NamedTuple):
-    """Painted rows, and where in them the camera's picture goes, if anywhere."""
+    """Painted rows, and the region of the camera's picture in them, if any."""
 
     rows: Sequence[Sequence[TextRun]]
     camera: Region | None = None
@@ -37,9 +37,10 @@ class RobotPainting(NamedTuple):
 class RobotPainter:
     """Paints walls, sphere, robot, its trail, the true scan and the one that the node saw, at a moment.
 
-    The scan that the node saw last is drawn as the node believes it: from where the robot is *now*. While it
-    is fresh it lies under the true one; the older it is, the further the two come apart. When the robot runs
-    into something, rays flash around it and the picture gets coloured edges.
+    The scan that the node saw last is drawn from the robot's *current* position, as the node takes it. A
+    fresh one lies under the true scan; an old one lies apart from it.
+
+    When the robot hits something, rays flash around it and the picture gets coloured edges.
     """
 
     def __init__(self, charset: Charset = Charset.BRAILLE) -> None:
@@ -54,7 +55,7 @@ class RobotPainter:
         look: RobotViewMode = RobotViewMode.MAP,
         note: str = "",
     ) -> RobotPainting:
-        """Paint ``height`` rows of ``width`` columns; ``note`` stands where no picture is yet."""
+        """Paint ``height`` rows of ``width`` columns; ``note`` replaces a picture that has not come yet."""
         robot, plan = timeline.robot(now), timeline.arena
         if robot is None or plan is None:
             return self._nothing(width, height)
@@ -82,10 +83,10 @@ class RobotPainter:
         return RobotPainting([row.runs() for row in rows])
 
     def _draw_maps(self, canvas: Sequence[CellRow], places: PaneRegions, scene: RobotScene) -> list[MapView]:
-        """Draw the maps that there is place for, and return their views."""
+        """Draw the maps that have a region, and return their views."""
         extents = (
             (places.near, robot_surroundings(scene.plan, scene.robot)),
-            (places.room, whole_arena(scene.plan)),
+            (places.room, full_arena(scene.plan)),
         )
         views = []
         for place, extent in extents:

@@ -1,4 +1,4 @@
-"""Which part of the robot pane shows what: maps, the camera's picture, and the lines between them."""
+"""The regions of the robot pane: maps, the camera's picture, and the lines between them."""
 
 from enum import StrEnum
 from typing import NamedTuple
@@ -12,7 +12,7 @@ _LEAST_HEIGHT = 3
 
 
 class RobotViewMode(StrEnum):
-    """What a person wants to see of the robot."""
+    """What the robot pane shows: map, camera or both."""
 
     MAP = "map"
     CAMERA = "camera"
@@ -20,13 +20,13 @@ class RobotViewMode(StrEnum):
 
     @property
     def following(self) -> "RobotViewMode":
-        """The look after this one, round and round."""
+        """The next mode, in a circle."""
         looks = list(RobotViewMode)
         return looks[(looks.index(self) + 1) % len(looks)]
 
 
 class PaneRegions(NamedTuple):
-    """Regions in cells: the robot's surroundings, the whole room, the picture; None for what is not shown.
+    """Regions in cells: the robot's surroundings, the whole room, the picture; None if not shown.
 
     ``lines`` are one column wide or one row high.
     """
@@ -38,7 +38,7 @@ class PaneRegions(NamedTuple):
 
 
 def arrange(body: Region, look: RobotViewMode) -> PaneRegions:
-    """Share out the part of the pane between legend and figures; nothing fits into one too small."""
+    """Divide the part of the pane between legend and figures; one that is too small shows nothing."""
     if body.width < _LEAST_WIDTH or body.height < _LEAST_HEIGHT:
         return PaneRegions()
     match look:
@@ -57,7 +57,7 @@ def arrange(body: Region, look: RobotViewMode) -> PaneRegions:
 
 
 def _halves(region: Region) -> tuple[Region, Region, Region]:
-    """Cut a region in two, and a line between, across its longer side; a cell is twice as high as wide."""
+    """Halve a region across its longer side, with a line between; a cell counts as twice as high as wide."""
     x, y, width, height = region
     if width >= 2 * height:
         half = width // 2

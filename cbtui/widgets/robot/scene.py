@@ -1,4 +1,4 @@
-"""What is to be seen on a map of the robot's world at a moment, drawn in dots."""
+"""The robot's world at a moment, drawn in dots on a map."""
 
 import math
 from itertools import pairwise
@@ -38,7 +38,7 @@ _RAYS = 8
 
 
 class RobotScene:
-    """All that a timeline knows of the robot's world at one moment."""
+    """What a timeline knows of the robot's world at one moment."""
 
     def __init__(self, plan: ArenaShown, timeline: Timeline, now: Nanoseconds, robot: RobotMoved) -> None:
         self.plan = plan
@@ -52,7 +52,7 @@ class RobotScene:
         self._trail = [trail[place] for place in range(0, len(trail), step)]
 
     def picture(self, view: MapView, charset: Charset) -> list[CellRow]:
-        """Draw everything as one view shows it."""
+        """Draw everything in one view."""
         dots = DotGrid(view.columns, view.lines, charset)
         for x0, y0, x1, y1 in self.plan.walls:
             dots.line(view.dot(x0, y0), view.dot(x1, y1), _WALL)
@@ -86,7 +86,7 @@ class RobotScene:
         dots.line(view.dot(robot.x, robot.y), view.dot(*tip), layer)
 
     def _draw_flash(self, dots: DotGrid, view: MapView) -> None:
-        """Rays around the robot, which turn by half a gap every now and then."""
+        """Draw rays around the robot, which turn by half a gap from time to time."""
         if self.hit_age is None:
             return
         first = self.hit_age // _FLASH_TURNS % 2 * math.pi / _RAYS
@@ -98,7 +98,7 @@ class RobotScene:
             dots.line(view.dot(*start), view.dot(*end), _FLASH)
 
     def _points(self, scan: Scanned) -> tuple[Floats, Floats]:
-        """Return where a scan's beams end, in metres, taken from where the robot stands."""
+        """Return the ends of a scan's beams, in metres, for the robot's position."""
         robot = self.robot
         ranges = np.frombuffer(scan.ranges, dtype="<u2") / 1000.0
         angles = robot.yaw - math.pi + np.arange(len(ranges)) * (2 * math.pi / max(1, len(ranges)))
@@ -107,7 +107,7 @@ class RobotScene:
 
 
 def since_hit(timeline: Timeline, now: Nanoseconds) -> Nanoseconds | None:
-    """How long ago the robot ran into something; None when that is longer ago than a flash lasts."""
+    """Return the time since the last collision; None if its flash is over."""
     start = now - _FLASH_LASTS
     before = timeline.robot(start)
     moves = timeline.trail(Window(start + 1, now + 1))

@@ -1,4 +1,4 @@
-"""The robot pane: maps of its world and a camera's picture, at the moment on screen."""
+"""The robot pane: maps of its world and a camera's picture, at the cursor's moment."""
 
 import asyncio
 from collections.abc import Callable, Sequence
@@ -25,13 +25,13 @@ _STARTING = "The camera starts."
 
 
 class CameraClient(Protocol):
-    """What the pane needs of a camera; ``sim.camera.Camera`` is one."""
+    """The camera's interface as the pane needs it; ``sim.camera.Camera`` implements it."""
 
     def want(self, shot: Shot) -> None:
-        """Ask for a picture; the newest wish counts."""
+        """Request a picture; a new request replaces a waiting one."""
 
     def stop(self) -> None:
-        """End it."""
+        """Close the camera."""
 
 
 OpenCamera = Callable[[Callable[[Picture], None], Callable[[str], None]], CameraClient]
@@ -41,7 +41,7 @@ class RobotView(PaintedWidget):
     """Robot, trail, true scan and the scan the node last saw, from above; a camera's picture when asked for.
 
     Set ``timeline`` again (it may be the same one) when it has grown. The camera is opened when its picture
-    is first shown, and asked for ``PICTURES_A_SECOND`` at most.
+    is first shown, and gets ``PICTURES_A_SECOND`` requests at most.
     """
 
     timeline: reactive[Timeline] = painted(Timeline, always_update=True)
@@ -57,7 +57,7 @@ class RobotView(PaintedWidget):
             self.picture = picture
 
     class CameraLost(Message):
-        """The camera takes no more pictures."""
+        """The camera failed and takes no more pictures."""
 
         def __init__(self, why: str) -> None:
             super().__init__()
@@ -75,21 +75,21 @@ class RobotView(PaintedWidget):
         self._painting = RobotPainting(())
 
     def cycle_camera(self) -> None:
-        """Show the map, the camera's picture, both, and so on; a camera that was lost is tried again."""
+        """Show the map, the camera's picture, both, and so on; retry a camera that failed."""
         self._why_none = ""
         self.look = self.look.following
 
     # drawing
 
     def rows(self, size: Size) -> Sequence[Sequence[TextRun]]:
-        """Paint all but the picture."""
+        """Paint everything except the picture."""
         note = "" if self._fits() else self._why_none or _STARTING
         painter = RobotPainter(self.charset)
         self._painting = painter.paint(self.timeline, self.now, size.width, size.height, self.look, note)
         return self._painting.rows
 
     def segments(self, y: int) -> list[Segment]:
-        """Return one painted line, and the picture's over it."""
+        """Return one painted line, with the picture over it."""
         painted = super().segments(y)
         place = self._painting.camera
         if place is None or not place.y <= y < place.bottom or not self._fits():
@@ -98,7 +98,7 @@ class RobotView(PaintedWidget):
         return [*around.crop(0, place.x), *picture, *around.crop(place.right)]
 
     def changed(self) -> None:
-        """Paint anew, and ask for another picture, as soon as the message at hand is dealt with."""
+        """Paint again and request another picture, after the current message."""
         super().changed()
         if self.is_running and self.look is not RobotViewMode.MAP:
             self.call_next(self._ask)
@@ -113,13 +113,13 @@ class RobotView(PaintedWidget):
         self._develop()
 
     def on_resize(self) -> None:
-        """Ask for a picture that fits."""
+        """Request a picture of the new size."""
         self.changed()
 
     # the camera
 
     def _ask(self) -> None:
-        """Ask for the picture of the moment on screen, unless one was asked for just now."""
+        """Request the picture of the cursor's moment, unless the last request is too recent."""
         shot = self._shot()
         if shot is None or shot == self._asked or self._resting or self._why_none:
             return
@@ -135,7 +135,7 @@ class RobotView(PaintedWidget):
         self._ask()
 
     def _shot(self) -> Shot | None:
-        """The picture that the screen has a place for; poses that nobody can tell apart are one."""
+        """The request for the picture's region; poses that look the same are equal."""
         robot, plan, place = self.timeline.robot(self.now), self.timeline.arena, self._painting.camera
         if robot is None or plan is None or not place:
             return None
@@ -143,7 +143,7 @@ class RobotView(PaintedWidget):
         return Shot(plan.walls, plan.sphere, *pose, place.width, 2 * place.height)
 
     def _take(self, picture: Picture) -> None:
-        """Bring a picture from the camera's thread to the screen's."""
+        """Pass a picture from the camera's thread to the screen's."""
         self.post_message(self.PictureTaken(picture))
 
     def _lose(self, why: str) -> None:
@@ -172,7 +172,7 @@ class RobotView(PaintedWidget):
         self.changed()
 
     async def on_unmount(self) -> None:
-        """End the camera, whatever way the screen is left."""
+        """Close the camera, however the screen is left."""
         await self._close_camera()
 
     async def _close_camera(self) -> None:
@@ -181,14 +181,14 @@ class RobotView(PaintedWidget):
             await asyncio.to_thread(camera.stop)
 
     def _fits(self) -> bool:
-        """Whether there is a picture of the size of its place."""
+        """Whether there is a picture of its region's size."""
         place, picture = self._painting.camera, self._picture
         if place is None or picture is None:
             return False
         return (picture.width, picture.height) == (place.width, 2 * place.height)
 
     def _develop(self) -> None:
-        """Make strips of the picture."""
+        """Turn the picture into strips."""
         if self._picture is None:
             self._film = ()
         elif self.charset is Charset.ASCII or self.app.no_color:

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from sim import plain_yaml
+from sim.atomic_file import write_atomically
 from sim.ros.node.parameter_client import AsyncParameterClient
 from sim.ros.parameters.parameter import (
     Parameter,
@@ -22,7 +23,6 @@ from sim.shell.graph import absolute, is_hidden, known_nodes, known_parameters
 from sim.shell.parser import LineParser
 from sim.shell.session import CommandFailed, ShellSession
 from sim.shell.verbs.verb import ShellCommand, Verb, add_graph_options
-from sim.whole_file import write_whole
 
 _SERVICES_PATIENCE = 5.0
 _REPLY_PATIENCE = 1.0
@@ -266,7 +266,7 @@ def _dump(session: ShellSession, arguments: Namespace) -> None:
         return
     path = Path(arguments.output_dir) / f"{full[1:].replace('/', '__')}.yaml"
     try:
-        write_whole(path, text.encode())
+        write_atomically(path, text.encode())
     except OSError as error:
         raise CommandFailed(f"Error writing {path}: {error.strerror}") from None
     session.say(f"Saving to:  {path}")

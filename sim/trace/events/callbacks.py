@@ -1,4 +1,4 @@
-"""What becomes of a callback: it gets ready, waits, runs, is suspended, fails, ends."""
+"""The life of a callback: ready, waiting, running, suspended, failed, ended."""
 
 from enum import StrEnum
 
@@ -38,8 +38,8 @@ class EntityReady(TraceEvent, frozen=True, tag="ready"):
 class MessageDropped(TraceEvent, frozen=True, tag="message_drop"):
     """A queue lost a message.
 
-    A full queue loses its oldest message to a newer one, and any queue a message that stays longer than the
-    lifespan that its publisher gave it.
+    A full queue loses its oldest message to a newer one; any queue loses a message that stays longer than the
+    lifespan set by its publisher.
     """
 
     entity: EntityId
@@ -66,7 +66,7 @@ class WaitStarted(TraceEvent, frozen=True, tag="wait_start"):
 
 
 class WaitEnded(TraceEvent, frozen=True, tag="wait_end"):
-    """A callback that waited got its thread, or what it waited for is gone."""
+    """A waiting callback got its thread, or what it waited for has gone."""
 
     entity: EntityId
 
@@ -88,7 +88,7 @@ class CallbackStarted(TraceEvent, frozen=True, tag="callback_start"):
 
 
 class CallbackEnded(TraceEvent, frozen=True, tag="callback_end"):
-    """The callback returned or raised, and its group is free of it."""
+    """The callback returned or raised, and left its group."""
 
     entity: EntityId
     thread: ThreadId
@@ -102,7 +102,7 @@ class CallbackSuspended(TraceEvent, frozen=True, tag="callback_suspend"):
 
 
 class CallbackResumed(TraceEvent, frozen=True, tag="callback_resume"):
-    """A suspended coroutine callback runs on, perhaps on another thread."""
+    """A suspended coroutine callback continues, perhaps on another thread."""
 
     entity: EntityId
     thread: ThreadId
@@ -122,4 +122,4 @@ class CallbackFailed(TraceEvent, frozen=True, tag="callback_error"):
     exception: WireOnly[str] = ""
     """The exception's class; "" if not known."""
     no_response: WireOnly[bool] = False
-    """Whether a service's callback returned, but no response."""
+    """Whether a service's callback returned without a response."""

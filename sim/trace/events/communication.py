@@ -1,4 +1,4 @@
-"""What goes between nodes: messages, their contents, service calls and their replies."""
+"""Communication between nodes: messages, their contents, service calls and replies."""
 
 from sim.trace.events.event import TraceEvent
 from sim.trace.events.fields import (
@@ -28,10 +28,11 @@ class Published(TraceEvent, frozen=True, tag="publish"):
 
 
 class QosMismatched(TraceEvent, frozen=True, tag="qos_mismatch"):
-    """A publisher and a subscription of one topic do not match, so no message goes between them.
+    """A publisher and a subscription of one topic do not match, so no messages pass between them.
 
     The node is the publisher's, the callback the subscription's, none for one outside the program. A
-    subscription that no executor serves, as ``wait_for_message`` makes it, is no entity and has a place.
+    subscription that no executor serves, as in ``wait_for_message``, is not an entity; its place is told
+    instead.
     """
 
     topic: TopicName
@@ -46,18 +47,18 @@ class QosMismatched(TraceEvent, frozen=True, tag="qos_mismatch"):
 
 
 class TopicAppeared(TraceEvent, frozen=True, tag="topic"):
-    """The first message was published of a topic whose contents are recorded."""
+    """A topic whose contents are recorded had its first message published."""
 
     topic: WireOnly[TopicId]
     name: TopicName
     message_type: TypeName
     """Full name of the messages' type, such as ``std_msgs/msg/Int32``."""
     definition: str
-    """Definition of the type and of all that it contains, in the ``ros2msg`` form of MCAP schemas."""
+    """Definition of the type and of all types in it, in the ``ros2msg`` form of MCAP schemas."""
     type_hash: WireOnly[str] = ""
-    """What ROS 2 knows the type by (``RIHS01_…``)."""
+    """Hash of the type in ROS 2 (``RIHS01_…``)."""
     offered_qos: WireOnly[str] = ""
-    """What the first publisher offers, as YAML in rosbag2's form."""
+    """Quality of service of the first publisher, as YAML in rosbag2's form."""
 
 
 class MessageSent(TraceEvent, frozen=True, tag="message"):
@@ -66,7 +67,7 @@ class MessageSent(TraceEvent, frozen=True, tag="message"):
     message: MessageId
     topic: TopicId
     data: Cdr
-    """Bytes of the message as little-endian CDR; none where it could not be encoded."""
+    """The message as little-endian CDR; none if it could not be encoded."""
 
 
 class ServiceCalled(TraceEvent, frozen=True, tag="service_call"):
@@ -89,7 +90,7 @@ class ServiceReplied(TraceEvent, frozen=True, tag="service_reply"):
 
 
 class RequestLost(TraceEvent, frozen=True, tag="request_lost"):
-    """A request was sent while nobody offered the service; no answer will ever come."""
+    """A request was sent while no node offered the service; no reply will come."""
 
     call: CallId
     service: ServiceName

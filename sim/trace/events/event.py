@@ -1,4 +1,4 @@
-"""What all events have in common."""
+"""The base class of all events."""
 
 from functools import cache
 
@@ -21,9 +21,9 @@ class TraceEvent(msgspec.Struct, frozen=True, array_like=True, gc=False):
 
 @cache
 def kinds() -> tuple[type[TraceEvent], ...]:
-    """Every kind of event. For use after ``sim.trace.events`` has been imported, which imports them all.
+    """Every kind of event; ``sim.trace.events`` must have been imported, which imports them all.
 
-    A class elsewhere may stand for one of them until it is packed; it is no kind of its own.
+    A class elsewhere that stands for one of them until it is packed is not a kind of its own.
     """
     return tuple(
         each for each in TraceEvent.__subclasses__() if each.__module__.startswith(f"{__package__}.")

@@ -16,7 +16,7 @@ JsonObject: TypeAlias = dict[str, object]
 
 
 class IdNames(Protocol):
-    """What the ids of a run stand for, as far as its events have told; None or nothing for an unknown one."""
+    """Names of a run's ids, as far as its events have introduced them; None or nothing for an unknown one."""
 
     def process(self, process: int) -> str | None:
         """The label of one of several programs."""
@@ -77,7 +77,7 @@ def _size(data: bytes | None) -> int | None:
 
 
 def _scan(ranges: bytes) -> JsonObject:
-    """Of a scan only the range straight ahead: all of them would outweigh the rest of the file."""
+    """Keep only the range straight ahead: all of them would exceed the rest of the file."""
     beams = len(ranges) // 2
     ahead = int.from_bytes(ranges[beams : beams + 2], "little")
     return {"beams": beams, "front": ahead / 1000 if ahead else None}
@@ -107,7 +107,7 @@ NodeId: TypeAlias = Annotated[int, JsonForm("node", lambda names, number: names.
 CallbackId: TypeAlias = Annotated[
     int, JsonForm("callback", lambda names, number: names.callback(number)), Shown.IF_ANY
 ]
-"""Name of the callback in which it happened, or which it is about."""
+"""Name of the callback in which it happened, or of the callback concerned."""
 
 EntityId: TypeAlias = Annotated[
     int,

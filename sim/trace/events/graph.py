@@ -1,4 +1,4 @@
-"""Who takes part in a run: programs, threads, executors, nodes, callback groups and entities."""
+"""The participants of a run: programs, threads, executors, nodes, callback groups and entities."""
 
 from enum import StrEnum
 
@@ -19,7 +19,7 @@ from sim.trace.events.fields import (
 
 
 class EntityKind(StrEnum):
-    """What an entity of a wait set is."""
+    """The kind of an entity of a wait set."""
 
     TIMER = "timer"
     SUBSCRIPTION = "subscription"
@@ -42,7 +42,7 @@ class ProcessAppeared(TraceEvent, frozen=True, tag="process"):
 
     process: ProcessId
     label: WireOnly[str]
-    """Tells the program from the others."""
+    """Distinguishes the program from the others."""
 
 
 class ProcessEnded(TraceEvent, frozen=True, tag="process_end"):
@@ -50,7 +50,7 @@ class ProcessEnded(TraceEvent, frozen=True, tag="process_end"):
 
     process: ProcessId
     reason: str
-    """Why the program is over, as a sentence."""
+    """Why the program ended, as a sentence."""
     status: int
     """Exit code."""
 
@@ -124,17 +124,16 @@ class EntityGone(TraceEvent, frozen=True, tag="entity_gone"):
 
 
 class SpinClashed(TraceEvent, frozen=True, tag="spin_clash"):
-    """A thread asked to spin what is being spun already.
+    """A thread asked to spin an executor or a node that already spins.
 
-    Without ``node`` nothing was taken from an executor: the executor, which spins already, raised
-    ``RuntimeError``.
+    Without ``node`` the executor raised ``RuntimeError``, and no node was taken from an executor.
     """
 
     entity: CallbackId
     node: Maybe[NodeId]
-    """Node that was taken from the executor that spins it, which serves it no more."""
+    """Node that was taken from the executor that spins it; that executor serves it no longer."""
     function: str
-    """Function of rclpy's that asked to spin."""
+    """The function of rclpy that asked to spin."""
     file: Maybe[str]
     """File of the program in which it was called."""
     line: Maybe[int]

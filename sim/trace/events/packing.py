@@ -20,9 +20,9 @@ def encode(events: list[TraceEvent]) -> bytes:
 
 
 def escape_surrogates(events: list[TraceEvent]) -> list[TraceEvent]:
-    """Return events in whose texts lone surrogates, which UTF-8 does not have, are written as ``\\udc80``.
+    """Return events with the lone surrogates in their texts written as ``\udc80``: UTF-8 cannot encode them.
 
-    They come from names of files that are not UTF-8, and what programs print can hold them.
+    They come from file names that are not UTF-8, and from what programs print.
     """
     return [_escaped(event) for event in events]
 

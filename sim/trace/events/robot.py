@@ -1,4 +1,4 @@
-"""The robot and what stands around it."""
+"""The robot and its surroundings."""
 
 from sim.trace.events.event import TraceEvent
 from sim.trace.events.fields import (
@@ -12,7 +12,7 @@ from sim.trace.events.fields import (
 
 
 class ArenaShown(TraceEvent, frozen=True, tag="arena"):
-    """What stands around the robot."""
+    """The robot's surroundings."""
 
     walls: tuple[tuple[float, float, float, float], ...]
     """Walls as x0, y0, x1 and y1 each, in metres."""
@@ -23,16 +23,16 @@ class ArenaShown(TraceEvent, frozen=True, tag="arena"):
 
 
 class RobotMoved(TraceEvent, frozen=True, tag="robot"):
-    """Where the robot is, and how it moves."""
+    """Position and velocity of the robot."""
 
     x: Metres
-    """Position in the room."""
+    """Position in the arena."""
     y: Metres
-    """Position in the room."""
+    """Position in the arena."""
     yaw: Radians
     """Direction, counter-clockwise from the x axis."""
     front: Metres
-    """Free way straight ahead, infinite for nothing in sight."""
+    """Distance to the next obstacle straight ahead, infinite if none is in range."""
     linear: MetresPerSecond
     """Velocity of the robot."""
     angular: RadiansPerSecond
@@ -48,7 +48,7 @@ class RobotMoved(TraceEvent, frozen=True, tag="robot"):
 
 
 class Scanned(TraceEvent, frozen=True, tag="scan"):
-    """The laser measured a full turn."""
+    """The laser finished a full turn."""
 
     message: MessageId
     ranges: Ranges

@@ -1,4 +1,4 @@
-"""The run itself: its beginning and end, its inputs, its time, and what its trace has lost."""
+"""The run itself: its beginning and end, its inputs, its time, and losses of its trace."""
 
 from enum import StrEnum
 
@@ -14,7 +14,7 @@ class RunStarted(TraceEvent, frozen=True, tag="run_start"):
     clock: str
     """``virtual`` or ``real``."""
     epoch: Nanoseconds
-    """Time since 1970 that ``t`` = 0 has in log lines."""
+    """Time since 1970 at ``t`` = 0, as in log lines."""
 
 
 class CommandKind(StrEnum):
@@ -27,24 +27,24 @@ class CommandKind(StrEnum):
     RUN_UNTIL = "run until"
     CALL = "call"
     OTHER = "other"
-    """Also in recordings that do not tell."""
+    """Also in recordings without kinds."""
 
 
 class RunEnded(TraceEvent, frozen=True, tag="run_end"):
     """The run is over: its time was up, its program returned or failed, or somebody stopped it."""
 
     reason: str
-    """Why the run is over, as a sentence."""
+    """Why the run ended, as a sentence."""
     failed: bool
     """Whether the run ended because something went wrong."""
     time_was_up: WireOnly[bool] = False
-    """Whether it had been given so much time, and no more."""
+    """Whether the run ended because its time was up."""
     error: WireOnly[str | None] = None
     """The exception that ended it, as ``CallbackFailed.error`` has it; "" for none, None if not known."""
 
 
 class RunEnding(TraceEvent, frozen=True, tag="run_ending"):
-    """The program was told to end, as by Ctrl-C: what follows is its own ending, and checks leave it out."""
+    """The program was asked to end, as by Ctrl-C. Checks ignore its own ending that follows."""
 
     reason: str
     """Why the run ends, as a sentence."""
@@ -60,40 +60,40 @@ class CommandGiven(TraceEvent, frozen=True, tag="command"):
 
 
 class InputGiven(TraceEvent, frozen=True, tag="input"):
-    """Something was told to the run from outside, and is carried out now: what a repetition has to be told.
+    """An input from outside takes effect; a repetition needs the same.
 
-    What the set-up of the run foresaw is not among these, nor is what is done to the run's time.
+    Inputs of the run's set-up are not among these, nor are commands for the run's time.
     """
 
     command: Text
     """A command of the engine as JSON."""
     recess: WireOnly[int] = 0
-    """0 at the end of its moment; a moment that does not end takes inputs in recesses, counted from 1."""
+    """0 at the end of its moment; a moment without end takes inputs in recesses, counted from 1."""
 
 
 class TimeHalted(TraceEvent, frozen=True, tag="halt"):
-    """Time stands again: what the run was to go on to has come."""
+    """Time is paused again: the goal of the run is reached."""
 
     text: Text
-    """The command that said how far to go."""
+    """The command that set the goal."""
 
 
 class TimePassed(TraceEvent, frozen=True, tag="time"):
-    """The run on the real clock has come to ``t``: told while nothing else is, so that time goes on.
+    """The time of a run on the real clock, sent when there is nothing else, so that the display goes on.
 
     Lines of JSON leave it out.
     """
 
 
 class EventsLost(TraceEvent, frozen=True, tag="lost"):
-    """The trace could not keep up, and events were thrown away."""
+    """The trace could not keep up, and events were dropped."""
 
     count: int
-    """How many were lost since the run began."""
+    """Events dropped since the run began."""
 
 
 class ContentsLost(TraceEvent, frozen=True, tag="contents_lost"):
     """Messages were published faster than they could be encoded."""
 
     count: int
-    """How many are without contents since the run began."""
+    """Messages without contents since the run began."""

@@ -1,4 +1,4 @@
-"""What a run says, and what is typed into it: log, output, notices, keyboard, ``ros2`` lines."""
+"""Output and input of a run: log, output, notices, keyboard, ``ros2`` lines."""
 
 from enum import StrEnum
 
@@ -7,7 +7,7 @@ from sim.trace.events.fields import CallbackId, LineId, LoggerName, Maybe, Proce
 
 
 class Severity(StrEnum):
-    """Severities of a log line, named as ROS prints them."""
+    """Severity of a log line, named as ROS prints it."""
 
     DEBUG = "DEBUG"
     INFO = "INFO"
@@ -20,15 +20,15 @@ class Reading(StrEnum):
     """How a program reads from its terminal."""
 
     NOTHING = "nothing"
-    """It does not wait for the keyboard any more."""
+    """It does not wait for the keyboard."""
     LINES = "lines"
     """Line by line; each key is shown as it is typed, and ctrl+c ends the run."""
     SECRET = "secret"
-    """Line by line, and nothing is shown: a password."""
+    """Line by line, without echo: a password."""
     KEYS = "keys"
     """Key by key, without enter; ctrl+c ends the run."""
     RAW = "raw"
-    """Key by key, and ctrl+c is a key like any other."""
+    """Key by key; ctrl+c is a key like any other."""
 
     @property
     def takes_keys(self) -> bool:
@@ -58,26 +58,26 @@ class Printed(TraceEvent, frozen=True, tag="print"):
     """Whether it went to standard error."""
     process: Maybe[ProcessId] = 0
     ends: WireOnly[bool] = True
-    """False for the beginning of a line behind which the program waits for the keyboard."""
+    """False for the beginning of a line, after which the program waits for the keyboard."""
 
 
 class NoticeKind(StrEnum):
-    """What a notice is about, where more than a reader's eye depends on it."""
+    """The subject of a notice, if more depends on it than a reader's attention."""
 
     OTHER = "other"
-    """Also in recordings that do not tell."""
+    """Also in recordings without kinds."""
     ENGINE_SILENT = "engine silent"
-    """Nothing comes from the engine."""
+    """The engine sends nothing."""
     NO_PROGRESS = "no progress"
-    """A thread does not come back, or lets no time pass; the run may not go on by itself."""
+    """A thread does not return, or lets no time pass; the run may not go on by itself."""
     ENDLESS_WAIT = "endless wait"
     """A callback waits without a timeout for what may still come."""
     DEADLOCK = "deadlock"
-    """Threads wait without a timeout for what cannot come any more."""
+    """Threads wait without a timeout for what can no longer come."""
 
 
 class Notice(TraceEvent, frozen=True, tag="notice"):
-    """The engine has something to say to the person about the run itself."""
+    """The engine informs the person about the run itself."""
 
     severity: Severity
     """``INFO``, ``WARN`` or ``ERROR``."""
@@ -85,33 +85,33 @@ class Notice(TraceEvent, frozen=True, tag="notice"):
     """One sentence."""
     entity: CallbackId = 0
     unrepeatable: WireOnly[bool] = False
-    """Whether it says why a run on virtual time cannot be repeated exactly."""
+    """Whether it says why a run on virtual time is not reproducible."""
     kind: WireOnly[NoticeKind] = NoticeKind.OTHER
-    """What it is about."""
+    """Its subject."""
     problem: WireOnly[str] = ""
-    """The part of ``text`` that says what is wrong, where the notice is about a callback that waits."""
+    """The part of ``text`` that says what is wrong, if a callback waits."""
     advice: WireOnly[str] = ""
     """The part of ``text`` that says what to do about it."""
 
 
 class KeyboardAsked(TraceEvent, frozen=True, tag="keyboard"):
-    """A program waits for the keyboard; recorded where it begins to, does so in another way, or stops.
+    """A program begins to wait for the keyboard, does so in another way, or stops.
 
-    A program that looks for keys again and again, each time for a moment, is recorded the first time only.
+    A program that polls for keys again and again is recorded the first time only.
     """
 
     reads: Reading
-    """``lines``, ``secret`` (lines that are not shown), ``keys``, ``raw`` (ctrl+c is a key, too), or
-    ``nothing`` any more."""
+    """``lines``, ``secret`` (lines without echo), ``keys``, ``raw`` (ctrl+c is a key, too), or ``nothing``.
+    """
     program: str
-    """What people call the program."""
+    """The program's name for people."""
 
 
 class Typed(TraceEvent, frozen=True, tag="typed"):
     """Text was typed at the terminal of the run's programs."""
 
     text: Text
-    """What was typed; a password is spelt in dots."""
+    """The text; a password is shown as dots."""
 
 
 class LineGiven(TraceEvent, frozen=True, tag="line"):
@@ -133,7 +133,7 @@ class LineSaid(TraceEvent, frozen=True, tag="line_text"):
 
 
 class LineEnded(TraceEvent, frozen=True, tag="line_end"):
-    """A ``ros2`` line is done."""
+    """A ``ros2`` line ended."""
 
     line: LineId
     status: int
@@ -141,10 +141,10 @@ class LineEnded(TraceEvent, frozen=True, tag="line_end"):
 
 
 class LineCompleted(TraceEvent, frozen=True, tag="completion"):
-    """The answer to a request for completion in a ``ros2`` line."""
+    """The answer to a completion request for a ``ros2`` line."""
 
     line: LineId
     start: int
-    """Where in the line the word begins that was to be completed."""
+    """Where in the line the completed word begins."""
     words: tuple[str, ...]
-    """What could stand from there to where completion was asked for."""
+    """Candidates for the text from there to the cursor."""

@@ -5,7 +5,13 @@ from dataclasses import dataclass
 from hypothesis import given
 from hypothesis import strategies as st
 
-from cbtui.widgets.lanes.columns import SAMPLES_PER_COLUMN, InstantColumns, LaneColumns, LookBudget, stretches
+from cbtui.widgets.lanes.columns import (
+    SAMPLES_PER_COLUMN,
+    InstantColumns,
+    IntervalBudget,
+    LaneColumns,
+    stretches,
+)
 from cbtui.widgets.lanes.scale import TimeScale
 from sim.trace.model import Window
 from sim.trace.timeline import Timeline
@@ -146,7 +152,7 @@ def test_what_a_ration_leaves_out_comes_with_the_next_pictures(stays: list[Stay]
     columns, scale = LaneColumns(store.query), TimeScale(0, S, 24)
     whole = LaneColumns(store.query).over(scale, 30 * S)
     for _ in range(12):
-        summed = columns.over(scale, 30 * S, LookBudget(looks))
+        summed = columns.over(scale, 30 * S, IntervalBudget(looks))
         assert all(summed[place] is None for place in columns.unseen)
         seen = [place for place in range(24) if place not in columns.unseen]
         assert [summed[place] for place in seen] == [whole[place] for place in seen]

@@ -11,7 +11,7 @@ from textual.geometry import Region
 
 from cbtui.looks.theme import Charset, Role
 from cbtui.widgets.robot import RobotViewMode
-from cbtui.widgets.robot.extents import Extent, MapView, robot_surroundings, whole_arena
+from cbtui.widgets.robot.extents import Extent, MapView, full_arena, robot_surroundings
 from cbtui.widgets.robot.painter import RobotPainter
 from sim.trace.events import ArenaShown, RobotMoved, Scanned
 from sim.trace.timeline import Timeline
@@ -152,7 +152,7 @@ def test_the_pane_has_the_size_that_was_asked_for_wherever_the_robot_is(
 
 @given(st.integers(4, 100), st.integers(3, 60), st.sampled_from(Charset))
 def test_the_whole_extent_is_on_the_map_and_not_distorted(columns: int, lines: int, charset: Charset) -> None:
-    view = MapView.of(whole_arena(PLAN), columns, lines, charset)
+    view = MapView.of(full_arena(PLAN), columns, lines, charset)
     for x, y in ((-6.5, -6.5), (6.5, 6.5)):
         column, line = view.cell(x, y)
         assert 0 <= column < columns

@@ -10,8 +10,8 @@ import pytest
 
 from cbtui.runs.recorded.events_file import EventsFile
 from cbtui.runs.recorded.exporting import FORMATS, ExportError, ExportRequest, export
+from sim.atomic_file import atomic_file, write_atomically
 from sim.trace.events import AnyEvent
-from sim.whole_file import whole_file, write_whole
 from tests.support.runs import shared_group_run
 
 EVENTS = shared_group_run().events
@@ -72,15 +72,15 @@ def test_permissions_and_links_are_kept(tmp_path: Path) -> None:
     target.write_text("before")
     target.chmod(0o640)
     link.symlink_to("target")
-    write_whole(link, b"after")
+    write_atomically(link, b"after")
     assert link.is_symlink()
     assert (target.read_bytes(), stat.S_IMODE(target.stat().st_mode)) == (b"after", 0o640)
-    write_whole(link, b"itself", follow=False)
+    write_atomically(link, b"itself", follow=False)
     assert (link.is_symlink(), target.read_bytes(), link.read_bytes()) == (False, b"after", b"itself")
 
 
 def test_a_new_file_has_usual_permissions(tmp_path: Path) -> None:
-    write_whole(tmp_path / "ours", b"")
+    write_atomically(tmp_path / "ours", b"")
     (tmp_path / "plain").touch()
     assert (tmp_path / "ours").stat().st_mode == (tmp_path / "plain").stat().st_mode
 
@@ -88,7 +88,7 @@ def test_a_new_file_has_usual_permissions(tmp_path: Path) -> None:
 def test_the_file_is_as_before_until_all_is_written(tmp_path: Path) -> None:
     target = tmp_path / "out"
     target.write_text("before")
-    with whole_file(target) as file:
+    with atomic_file(target) as file:
         file.write(b"after")
         assert target.read_text() == "before"
     assert target.read_text() == "after"
@@ -98,13 +98,13 @@ def test_the_file_is_as_before_until_all_is_written(tmp_path: Path) -> None:
 def test_what_is_there_is_not_replaced_unless_it_may_be(tmp_path: Path) -> None:
     (tmp_path / "out").symlink_to("nowhere")
     with pytest.raises(FileExistsError):
-        write_whole(tmp_path / "out", b"after", replace=False)
-    write_whole(tmp_path / "new", b"new", replace=False)
+        write_atomically(tmp_path / "out", b"after", replace=False)
+    write_atomically(tmp_path / "new", b"new", replace=False)
     assert {path.name for path in tmp_path.iterdir()} == {"out", "new"}
 
 
 def test_a_device_is_written_to_as_it_is(tmp_path: Path) -> None:
-    write_whole(Path(os.devnull), b"gone")
+    write_atomically(Path(os.devnull), b"gone")
     assert stat.S_ISCHR(Path(os.devnull).stat().st_mode)
 
 

@@ -1,4 +1,4 @@
-"""Writes files that are there whole or, after a full disk, Ctrl-C or another failure, as they were before."""
+"""Writes files atomically: after a full disk, Ctrl-C or another failure the file is as it was before."""
 
 import errno
 import os
@@ -12,14 +12,14 @@ _DEVICES = Path("/dev")
 
 
 @contextmanager
-def whole_file(
+def atomic_file(
     path: Path, *, replace: bool = True, follow: bool = True, mode: int = 0o666
 ) -> Iterator[BinaryIO]:
-    """A file to write to, which gets its place when all is written, or is gone if anything is raised.
+    """A file to write to, which replaces ``path`` once it is complete, and is removed if anything is raised.
 
     An existing file is replaced only with ``replace``, and keeps its permissions; a new one gets ``mode``,
-    less what the process masks. A link is followed, or replaced itself without ``follow``. Pipes and devices
-    are written to as they are.
+    less the bits that the process masks. A link is followed, or replaced itself without ``follow``. Pipes
+    and devices are written to directly.
 
     Raises:
         FileExistsError: there is such a file, and it is not to be replaced.
@@ -50,7 +50,7 @@ def whole_file(
         part.unlink(missing_ok=True)
 
 
-def write_whole(path: Path, content: bytes, **how: Any) -> None:
-    """Write a file as ``whole_file`` does, which takes ``how``."""
-    with whole_file(path, **how) as file:
+def write_atomically(path: Path, content: bytes, **how: Any) -> None:
+    """Write a file as ``atomic_file`` does, which takes ``how``."""
+    with atomic_file(path, **how) as file:
         file.write(content)
