@@ -35,7 +35,7 @@ def usual_path() -> Path:
 
 
 def faulty_line(path: Path) -> int | None:
-    """Return the number of the first line of a progress file that is none, None if all are; changes nothing.
+    """Return the number of a file's first line that is not progress, None without one; changes nothing.
 
     Raises:
         OSError: the file cannot be read.

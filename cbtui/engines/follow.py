@@ -67,7 +67,7 @@ class FollowedRun:
         return self.session.start()
 
     def limit(self, seconds: float) -> None:
-        """Set the timeout to so many real seconds from now, replacing an earlier one."""
+        """Set the timeout, in real seconds from now, replacing an earlier one."""
         self._deadline = monotonic() + seconds
 
     def __iter__(self) -> Iterator[list["AnyEvent"]]:

@@ -86,7 +86,7 @@ class ProcessTree:
                 process.kill()
 
     def wait_for_end(self, seconds: float) -> bool:
-        """Wait up to so many seconds for the engine's end; returns whether it has ended."""
+        """Wait for the engine's end, at most a number of seconds; returns whether it has ended."""
         deadline = time.monotonic() + seconds
         while self.lives():
             if time.monotonic() > deadline:

@@ -40,7 +40,7 @@ class ResourceGuard:
         self._thread.join()
 
     def wait(self, seconds: float) -> None:
-        """Wait up to so many seconds until the watch is over."""
+        """Wait for the end of the watch, at most a number of seconds."""
         self._thread.join(seconds)
 
     def _watch(self) -> None:

@@ -48,7 +48,7 @@ class PreviewRun:
         self._given_up.set()
 
     def wait(self, seconds: float) -> None:
-        """Wait for the engine's end, at most so many real seconds."""
+        """Wait for the engine's end, at most a number of real seconds."""
         self._ended.wait(seconds)
 
     def run(self) -> "Timeline":

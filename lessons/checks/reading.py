@@ -67,7 +67,7 @@ ROTATES = Stretch("the robot rotates", rotations)
 
 
 def runs_long(callback: str, seconds: float = 1.0) -> Stretch:
-    """While a callback is in a call that lasts at least so many seconds."""
+    """While a callback is in a call of a least length in seconds."""
 
     def windows(run: Timeline) -> list[Window]:
         every = (Window(span.start, span.end_at(run.end)) for span in spans_of(run, callback))

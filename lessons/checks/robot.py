@@ -11,7 +11,7 @@ from sim.units import SECOND
 
 
 def turns(times: int) -> Check:
-    """The robot turns so many times; a turn goes from a command to turn to the first one not to."""
+    """The robot makes a number of turns; a turn goes from a command to turn to the first one not to."""
     expected = counted(times, "turn")
 
     def judge(run: Timeline) -> Verdict:

@@ -51,7 +51,7 @@ class PacedLock:
         self.release = lock.release
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Take the lock; False if it is not to be had at once (or within ``timeout`` seconds)."""
+        """Take the lock; False if it is not available at once (or within ``timeout`` seconds)."""
         if timeout <= 0 or not blocking:
             return self._lock.acquire(blocking, timeout)
         return _within(timeout, self._clock, lambda seconds: self._lock.acquire(timeout=seconds))
@@ -75,7 +75,7 @@ class PacedRLock(_RLock):  # type: ignore[misc]
     _clock: PacedClock
 
     def acquire(self, blocking: bool = True, timeout: float = -1) -> bool:
-        """Take the lock once more; False if it is not to be had at once (or within ``timeout`` seconds)."""
+        """Take the lock once more; False if it is not available at once (or within ``timeout`` seconds)."""
         take: Callable[..., bool] = super().acquire
         if timeout <= 0 or not blocking:
             return take(blocking, timeout)

@@ -53,5 +53,5 @@ def threads_for(entities: Iterable[EntityId], at: Nanoseconds, timeline: Timelin
 
 
 def with_threads(threads: int) -> str:
-    """The executor with so many threads, as code."""
+    """The executor with a number of threads, as code."""
     return f"MultiThreadedExecutor(num_threads={threads})"

@@ -25,7 +25,7 @@ from sim.trace.events import (
 from sim.trace.participants import Participants
 
 ROBOT = "robot"
-"""What stands for the node of the robot's driver, which is none of the learner's program."""
+"""The node of the robot's driver, which the learner's program does not contain."""
 
 _FIRST = (
     *("process", "program", "node", "callback", "kind", "entity", "group", "group_type"),

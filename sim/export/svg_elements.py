@@ -104,12 +104,12 @@ def words(x: float, y: float, text: str, ink: str = TEXT, anchor: str = "start",
 
 
 def fitting(texts: tuple[str, ...], room: float) -> str:
-    """The first of the texts that fits into so many pixels; empty if none does."""
+    """The first of the texts that fits into a width in pixels; empty if none does."""
     return next((text for text in texts if len(text) * CHARACTER <= room), "")
 
 
 def shortened(text: str, room: float) -> str:
-    """The text, cut to so many pixels."""
+    """The text, cut to a width in pixels."""
     most = max(1, int(room / CHARACTER))
     return text if len(text) <= most else text[: most - 1] + "…"
 

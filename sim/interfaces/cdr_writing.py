@@ -213,7 +213,7 @@ def _counted(name: str, size: int, write_values: _Write) -> _Write:
 
 
 def _write_numbers(size: int) -> _Write:
-    """Write any number of numbers of so many bytes each, which lie in an ``array.array``."""
+    """Write an ``array.array`` of numbers; ``size`` is the bytes of each."""
     paddings = _PADDINGS[size]
 
     def write(values: Any, out: bytearray) -> None:

@@ -17,7 +17,7 @@ def literal_of(text: str, base: str, *, is_list: bool) -> object:
     """Return the value of a literal of a primitive type; a list of them for a field of several.
 
     Raises:
-        ValueError: it is none of this type.
+        ValueError: it is not a value of this type.
     """
     if not is_list:
         return _scalar(text, base)

@@ -21,7 +21,7 @@ _ENDS = frozenset(("RENAME", "PATTERN", "PERMISSIONS", "USE_SOURCE_PERMISSIONS",
 def read_cmake(root: Path) -> Installed:
     """Read ``install(PROGRAMS …)``, ``install(FILES …)`` and ``install(DIRECTORY …)``.
 
-    What else a CMake file does, such as to compile, is none of an interpreter's business and left out.
+    Everything else in a CMake file, such as compiling, is left out: an interpreter does not need it.
 
     Raises:
         PackageError: the file cannot be read.

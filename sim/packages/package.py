@@ -159,7 +159,7 @@ class Package:
             try:
                 link.parent.mkdir(parents=True, exist_ok=True)
                 link.symlink_to(path.resolve())
-            except (OSError, ValueError):  # a file where another one needs a folder, or a name that is none
+            except (OSError, ValueError):  # a file where another one needs a folder, or an invalid name
                 raise PackageError(f"package {self.name!r} cannot install {path} as {place}") from None
         return prefix
 

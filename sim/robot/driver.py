@@ -35,7 +35,7 @@ class Port(Protocol):
         """Nanoseconds of the run's time."""
 
     def sleep(self, duration: int) -> None:
-        """Wait for so many nanoseconds of the run's time."""
+        """Wait for a number of nanoseconds of the run's time."""
 
     def message(self, package: str, name: str) -> Any:
         """A message class."""

@@ -45,7 +45,7 @@ def add_typing(parser: argparse.ArgumentParser) -> None:
 
 
 def check(options: argparse.Namespace, seconds: float) -> None:
-    """Refuse inputs that come after the end of a run of so many seconds."""
+    """Refuse inputs that come after a run's end, in seconds."""
     moments = [("call", at) for at in options.calls] + [("line", at) for at, _ in options.lines]
     moments += [("key", at) for at, _ in getattr(options, "typed", ())]
     for what, at in moments:

@@ -121,11 +121,11 @@ class ShownRun(Protocol):
         """Let time pass again."""
 
     def change_speed(self, steps: int) -> None:
-        """Change the speed by so many steps of ``speeds``."""
+        """Change the speed by steps of ``speeds``."""
 
 
 def neighbouring_speed(speed: float | None, speeds: Sequence[float | None], steps: int) -> float | None:
-    """Return the speed so many steps up (> 0) or down, up to the last one."""
+    """Return the speed some steps up (> 0) or down, up to the last one."""
     return speeds[max(0, min(speeds.index(speed) + steps, len(speeds) - 1))]
 
 
@@ -302,6 +302,6 @@ class LiveRun:
         self._session.send(ResetWorld())
 
     def change_speed(self, steps: int) -> None:
-        """Change the speed by so many steps of ``speeds``."""
+        """Change the speed by steps of ``speeds``."""
         self.speed = neighbouring_speed(self.speed, self.speeds, steps)
         self._session.send(SetSpeed(self.speed))

@@ -74,5 +74,5 @@ class FrameSchedule:
         self._drawn_at = self._clock()
 
     def rest(self, waited: float) -> None:
-        """Rest after a frame that waited so many seconds for a CPU; key effects are still drawn."""
+        """Rest after a frame by the seconds that it waited for a CPU; key effects are still drawn."""
         self._rests_until = self._clock() + min(_REST_FACTOR * waited, _MAX_REST)

@@ -72,7 +72,7 @@ class BarPainter:
         ]
 
     def group(self, row: CellRow, columns: Sequence[LaneColumn[Span] | None], group: GroupInfo) -> None:
-        """Draw who holds a group: a line for as long as it is held, a point for an instant."""
+        """Draw the callback that holds a group: a line, or a point for an instant."""
         ink = Ink(Role.LINE, self.numbers[group.id])
         if group.kind is GroupKind.REENTRANT:
             self._together(row, columns, ink)

@@ -36,7 +36,7 @@ class TimeScale(NamedTuple):
 
 
 def scale_for(window: Window, columns: int) -> TimeScale:
-    """Return the scale that shows at least ``window`` in so many columns, with its end at the right."""
+    """Return the scale that shows at least ``window`` in ``columns``, with its end at the right."""
     per_column = nice_column(-(-max(window.length, 1) // columns))
     last = -(-window.end // per_column)
     return TimeScale(last - columns, per_column, columns)

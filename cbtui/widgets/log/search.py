@@ -35,7 +35,7 @@ class LogSearch:
         return bisect_left(self.places, count)
 
     def go_on(self, most: int) -> bool:
-        """Search at most so many further lines; returns whether there are more."""
+        """Search a limited number of further lines; returns whether there are more."""
         if self.wanted.lets_all_through:
             return False
         logs = self.timeline.logs

@@ -10,9 +10,9 @@ Wait = Callable[[Callable[[], Any], float | None], tuple[Any, bool]]
 class Polling:
     """One of the system's objects, made by ``make``, for everything but the terminal.
 
-    ``is_terminal`` tells whether the calling thread means the terminal by a file. ``wait`` waits for keys for
-    so many seconds, None for ever; returns what its first argument found of other files, and whether there
-    are keys. ``per_second`` is in what parts of a second timeouts are given.
+    ``is_terminal`` tells whether the calling thread means the terminal by a file. ``wait`` waits for keys, at
+    most some seconds or, for None, for ever; it returns what its first argument found of other files, and
+    whether there are keys. ``per_second`` is the number of timeout units in a second.
     """
 
     def __init__(

@@ -178,7 +178,7 @@ class EventHandler(Entity):
 
 
 class DefaultEventHandler(EventHandler):
-    """Logs a warning for an event that the program has no callback for; it is none of the program's own."""
+    """Logs a warning for an event for which the program has no callback."""
 
     traced = False
 

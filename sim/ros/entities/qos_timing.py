@@ -187,7 +187,7 @@ class LivelinessChangedHandler(EventHandler):
         self.watch()
 
     def count(self, *, alive: int, not_alive: int) -> None:
-        """So many more are alive, and so many more are not."""
+        """Change the number of living and of lost publishers."""
         self.info.alive_count += alive
         self.info.alive_count_change += alive
         self.info.not_alive_count += not_alive

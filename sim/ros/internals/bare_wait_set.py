@@ -54,7 +54,7 @@ class BareWaitSet(ProgramWaitSet):
             ready.clear()
 
     def wait(self, timeout_nsec: int = -1) -> None:
-        """Wait until something is ready, or so many nanoseconds; a negative time waits for ever.
+        """Wait until something is ready, at most a number of nanoseconds; a negative time waits for ever.
 
         Raises:
             RCLError: there is nothing to wait for.

@@ -119,11 +119,11 @@ class LifecycleStateMachine:
         return self._way_out(label).transition_id
 
     def trigger_transition_by_id(self, transition_id: int) -> Transition:
-        """Take a way out of the state, by its number; RCLError if it is none."""
+        """Take a way out of the state, by its number; RCLError if there is no such transition."""
         return self._take(self._way_out(transition_id))
 
     def trigger_transition_by_label(self, label: str) -> Transition:
-        """Take a way out of the state, by its label; RCLError if it is none."""
+        """Take a way out of the state, by its label; RCLError if there is no such transition."""
         return self._take(self._way_out(label))
 
     def _way_out(self, wanted: int | str) -> Transition:

@@ -48,7 +48,7 @@ def parse_rule(text: str) -> RemapRule:
     """Read ``from:=to``, ``node:from:=to``, ``__node:=name`` or ``__ns:=/namespace``.
 
     Raises:
-        RemapRuleError: it is none of these.
+        RemapRuleError: it is not a remapping rule.
     """
     left, sign, right = text.partition(":=")
     if not sign:

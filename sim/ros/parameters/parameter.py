@@ -167,7 +167,7 @@ def parameter_value_to_python(parameter_value: Any) -> Any:
     """The value in an rcl_interfaces/msg/ParameterValue, arrays as lists; None if it is not set.
 
     Raises:
-        RuntimeError: the message's type is none of the known ones.
+        RuntimeError: the message's type is unknown.
     """
     try:
         type_ = Parameter.Type(parameter_value.type)

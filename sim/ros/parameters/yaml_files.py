@@ -72,7 +72,7 @@ def read_nodes(text: str) -> NodeParameters:
     """Read the text of a parameter file.
 
     Raises:
-        ParameterYamlError: it is none.
+        ParameterYamlError: it is not a file of parameters.
     """
     root = _compose(text)
     found: NodeParameters = {}

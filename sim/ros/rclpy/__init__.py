@@ -2,7 +2,7 @@
 
 ``import rclpy`` means this package in an engine process (see ``sim.ros.importing``). Its modules are rclpy's,
 and say where the model has what they offer. A folder that begins with an underscore only groups modules:
-it is no part of their names.
+it is not part of their names.
 """
 
 from __future__ import annotations
