@@ -4,9 +4,11 @@ import sys
 from collections.abc import Iterator, Mapping
 from importlib.metadata import PackageNotFoundError, version
 
+from packaging.requirements import Requirement
+
 from cbtui.doctor.examination import Examination, fault, note, well
 from cbtui.doctor.probes import ProbeProcess, module_of
-from cbtui.doctor.requirements import Requirement, in_range, requirements
+from cbtui.doctor.requirements import requirements
 from cbtui.text.installing import install_command
 
 _OLDEST = (3, 11)
@@ -31,7 +33,7 @@ def dependencies(importing: ProbeProcess) -> Iterator[Examination]:
             "packages", "cbtui is not installed", "install it with pip install . to have them looked at"
         )
         return
-    broken = _wrapped(importing)
+    broken = _broken(importing)
     found = [verdict for each in needed if (verdict := _package(each, broken)) is not None]
     yield from found
     if not found:
@@ -39,23 +41,21 @@ def dependencies(importing: ProbeProcess) -> Iterator[Examination]:
 
 
 def _package(needed: Requirement, broken: Mapping[str, str]) -> Examination | None:
-    name, versions = needed
-    remedy = f"install it with {install_command(f'{name}{versions}')}"
+    name, wanted = needed.name, f"{needed.name}{needed.specifier}"
+    remedy = f"install it with {install_command(wanted)}"
     try:
         installed = version(name)
     except PackageNotFoundError:
         return fault(name, "is not installed", remedy)
-    if not in_range(installed, versions):
-        return fault(name, f"is {installed}, and cbtui needs {versions}", remedy)
+    if not needed.specifier.contains(installed, prereleases=True):
+        return fault(name, f"is {installed}, and cbtui needs {needed.specifier}", remedy)
     if (why := broken.get(module_of(name))) is not None:
-        remedy = (
-            f"install it again with {install_command('--force-reinstall', '--no-deps', f'{name}{versions}')}"
-        )
+        remedy = f"install it again with {install_command('--force-reinstall', '--no-deps', wanted)}"
         return fault(name, f"{installed} cannot be imported ({why})", remedy)
     return None
 
 
-def _wrapped(importing: ProbeProcess) -> dict[str, str]:
+def _broken(importing: ProbeProcess) -> dict[str, str]:
     """The modules that cannot be imported, with the reason."""
     outcome = importing.outcome()
     broken, begun = {}, ""
