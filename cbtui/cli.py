@@ -242,11 +242,12 @@ def _add_real_ros(commands: "argparse._SubParsersAction[CommandParser]") -> None
     probing = commands.add_parser(
         "probe",
         help="run a command on real ROS 2 so that attach can watch it",
-        usage="%(prog)s -- COMMAND …",
-        description="Become a command, such as python3 node.py or ros2 launch …, in which every process that "
+        usage="%(prog)s [--keep SECONDS] [--tcp PORT] -- COMMAND …",
+        description="Run a command, such as python3 node.py or ros2 launch …, in which every process that "
         "imports rclpy can be watched with cbtui attach. The processes need nothing of cbtui's, and go on "
         "whether they are watched or not.",
     )
+    probe.add_probe_options(probing)
     probing.set_defaults(action=probe.probe)
 
     driving = commands.add_parser(

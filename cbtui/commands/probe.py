@@ -2,71 +2,137 @@
 
 import argparse
 import os
+import secrets
 import shutil
-from typing import TYPE_CHECKING, NoReturn
+import tempfile
+from pathlib import Path
+from typing import TYPE_CHECKING
 
 from cbtui.commands.options.appearance import add_options, appearance, console_of
 from cbtui.commands.options.targets import need_terminal, refuse
+from cbtui.commands.options.values import duration, port, process_or_address
 from cbtui.text.output import complain, say
+from sim.engine.setup import RealRos
 
 if TYPE_CHECKING:
-    from pathlib import Path
+    from sim.real.wire import Hello
+
+
+def add_probe_options(parser: argparse.ArgumentParser) -> None:
+    """Give ``cbtui probe`` its arguments."""
+    parser.add_argument(
+        "--keep",
+        metavar="SECONDS",
+        type=duration,
+        help="keep the last seconds in memory, and record them when a callback starves, a deadlock closes or "
+        "a process dies",
+    )
+    parser.add_argument(
+        "--tcp",
+        metavar="PORT",
+        type=port,
+        help="let consoles of other machines in, too: on this port of the loopback interface, for ssh -L",
+    )
 
 
 def add_attach_options(parser: argparse.ArgumentParser) -> None:
     """Give ``cbtui attach`` its arguments."""
     parser.add_argument(
         "processes",
-        metavar="PID",
+        metavar="PID|HOST:PORT",
         nargs="*",
-        type=int,
-        help="numbers of processes to watch (all that there are, and those that come)",
+        type=process_or_address,
+        help="processes to watch: by their numbers (all that there are, and those that come), or where "
+        "probe --tcp has them listen",
     )
+    parser.add_argument("--token", help="what probe --tcp has printed (that of CBTUI_PROBE_TOKEN)")
     parser.add_argument("--list", action="store_true", help="only list what can be watched")
     add_options(parser)
 
 
-def probe(options: argparse.Namespace) -> NoReturn:
-    """Become the command behind ``--``, whose rclpy processes can be watched from then on."""
+def probe(options: argparse.Namespace) -> int:
+    """Become the command behind ``--``, or run it and keep what it does; returns its exit code."""
     command = options.arguments
     if not command:
         refuse("probe needs a command: cbtui probe -- python3 node.py, or cbtui probe -- ros2 launch …")
     program = shutil.which(command[0])
     if program is None:
         refuse(f"there is no program {command[0]}")
+    from sim.probes.on_path.cbtui_probe import PORT, TOKEN
     from sim.real.programs import watched_environment
 
     folder = probes_folder()
+    reached = {}
+    if options.tcp is not None:
+        reached = {PORT: str(options.tcp), TOKEN: secrets.token_urlsafe(16)}
+        complain(
+            f"watch this through ssh -L {options.tcp}:localhost:{options.tcp} with: "
+            f"cbtui attach localhost:{options.tcp} --token {reached[TOKEN]}"
+        )
     complain("watch this with: cbtui attach")
-    os.execve(program, command, watched_environment(program, folder))
+    if options.keep is None:
+        os.execve(program, command, {**watched_environment(program, folder), **reached})
+    from cbtui.runs.headless.keeping import run_and_keep
+    from cbtui.runs.setup.shown_program import watched_setup
+
+    with tempfile.TemporaryDirectory(prefix="command-", dir=folder) as own:
+        environment = {**watched_environment(program, Path(own)), **reached}
+        setup = watched_setup(Path(command[-1]).stem, RealRos(watched=own))
+        return run_and_keep(command, environment, setup, options.keep)
 
 
 def attach(options: argparse.Namespace) -> int:
     """List what can be watched, or open the console on it; returns the exit code."""
     from cbtui.runs.setup.shown_program import of_processes
+    from sim.probes.on_path.cbtui_probe import TOKEN
     from sim.real.probe_link import processes_in
     from sim.real.watched import label_of
 
+    if options.token is not None:
+        os.environ[TOKEN] = options.token
+    addresses = tuple(each for each in options.processes if not isinstance(each, int))
+    numbers = tuple(each for each in options.processes if isinstance(each, int))
     folder = probes_folder()
-    found = processes_in(folder)
-    unknown = [str(each) for each in options.processes if each not in {hello.process for hello in found}]
-    if unknown:
-        refuse(f"no process {unknown[0]} can be watched; cbtui attach --list tells which can")
+    found = [_process_at(each) for each in addresses]
+    if numbers or not addresses:
+        there = processes_in(folder)
+        unknown = [each for each in numbers if each not in {hello.process for hello in there}]
+        if unknown:
+            refuse(f"no process {unknown[0]} can be watched; cbtui attach --list tells which can")
+        found += [hello for hello in there if not numbers or hello.process in numbers]
     if not found:
         refuse("no process can be watched: start one with cbtui probe -- COMMAND")
     if options.list:
         for hello in found:
             say(f"{label_of(hello)}  Python {hello.python}  {' '.join(hello.command)}")
         return 0
+    watched = str(folder) if numbers or not addresses else ""
+    real = RealRos(watched=watched, processes=numbers, addresses=addresses)
     look = appearance(options)
     need_terminal("cbtui attach --list")
-    chosen = [hello for hello in found if hello.process in (options.processes or [hello.process])]
-    app = console_of(look, start_program=of_processes(folder, tuple(options.processes), chosen))
+    app = console_of(look, start_program=of_processes(real, found))
     app.run()
     return app.return_code or 0
 
 
-def probes_folder() -> "Path":
+def _process_at(address: tuple[str, int]) -> "Hello":
+    """The process whose probe listens there; none ends the program with one line and 2."""
+    from sim.real.probe_link import process_at
+
+    where = f"{address[0]}:{address[1]}"
+    try:
+        hello = process_at(address)
+    except OSError as error:
+        refuse(
+            f"no probe listens at {where} ({error.strerror}); "
+            "start one with cbtui probe --tcp PORT -- COMMAND"
+        )
+    if hello is None:
+        refuse(f"the probe at {where} wants the token that cbtui probe --tcp printed: give it by --token")
+    return hello
+
+
+def probes_folder() -> Path:
     """The folder in which probes listen; one that cannot be used ends the program with one line and 2."""
     from cbtui.engines.control_socket import UnusableFolderError, runtime_folder
 

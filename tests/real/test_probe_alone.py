@@ -17,7 +17,7 @@ from sim.probes.on_path.cbtui_probe.consoles import Console as ConsoleLink
 from sim.probes.on_path.cbtui_probe.consoles import lines
 from sim.probes.on_path.cbtui_probe.recorder import Recorder, now
 from sim.probes.on_path.cbtui_probe.sockets import Server
-from sim.real.probe_link import process_at, processes_in
+from sim.real.probe_link import process_at, processes_in, sockets_in
 from sim.real.programs import ON_PATH
 from sim.real.wire import Hello, Left, decode_lines
 from sim.trace.events import EventsLost, Notice
@@ -224,6 +224,20 @@ def test_a_console_that_does_not_read_loses_events_and_is_told_how_many() -> Non
     heard = decode_lines(received)
     [lost] = [line for line in heard if isinstance(line, EventsLost)]
     assert lost.count + len(heard) - 1 == 300
+
+
+def test_a_socket_is_there_only_once_it_answers(
+    recorder: Recorder, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    found: list[list[Path]] = []
+    listen = socket.socket.listen
+    monkeypatch.setattr(
+        socket.socket, "listen", lambda *each: (found.append(sockets_in(folder)), listen(*each))
+    )
+    server = Server(recorder, lambda: None)
+    server.start(str(folder))
+    server.close()
+    assert found == [[]]
 
 
 def test_a_full_buffer_gives_up_the_oldest_and_counts_them(recorder: Recorder) -> None:

@@ -14,6 +14,7 @@ from cbtui.engines.control_socket import runtime_folder
 from cbtui.engines.session import ProcessSession
 from cbtui.runs.setup.shown_program import of_processes
 from sim.engine.commands import Stop
+from sim.engine.setup import RealRos
 from sim.real.probe_link import processes_in
 from sim.real.wire import Hello
 from sim.trace.events import AnyEvent, CallbackEnded, ProcessAppeared, RunEnded
@@ -35,6 +36,8 @@ def folder(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyP
         (["probe"], "probe needs a command: cbtui probe -- python3 node.py"),
         (["probe", "--", "no-such-program"], "there is no program no-such-program"),
         (["attach"], "no process can be watched: start one with cbtui probe -- COMMAND"),
+        (["attach", "localhost:1"], "argument PID|HOST:PORT: 1 is no port for a program"),
+        (["attach", "localhost:65500"], "no probe listens at localhost:65500 (Connection refused)"),
         (["attach", "4711"], "no process 4711 can be watched; cbtui attach --list tells which can"),
     ],
 )
@@ -78,7 +81,9 @@ def test_a_process_is_watched_and_goes_on_when_nobody_watches_any_more(tmp_path:
 def watched(folder: Path, found: list[Hello]) -> list[AnyEvent]:
     """Watch until three callbacks have ended, and leave."""
     news: Queue[list[AnyEvent] | str | None] = Queue()
-    session = ProcessSession(of_processes(folder, (), found).set_up(None, 1.0), news.put, news.put)
+    session = ProcessSession(
+        of_processes(RealRos(watched=str(folder)), found).set_up(None, 1.0), news.put, news.put
+    )
     session.start()
     events: list[AnyEvent] = []
     try:

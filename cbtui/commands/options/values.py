@@ -95,6 +95,20 @@ def whole_number(text: str) -> int:
         raise argparse.ArgumentTypeError(f"{text!r} is not a whole number; give one such as 17") from None
 
 
+def port(text: str) -> int:
+    """A port that a program may listen on."""
+    number = whole_number(text)
+    if not 1024 <= number <= 65_525:
+        raise argparse.ArgumentTypeError(f"{text} is no port for a program: give one from 1024 to 65525")
+    return number
+
+
+def process_or_address(text: str) -> int | tuple[str, int]:
+    """A process's number, or host and port."""
+    host, colon, number = text.rpartition(":")
+    return (host, port(number)) if colon else whole_number(text)
+
+
 def speed(text: str) -> float:
     """Read how many seconds of a run pass per real second; infinite for ``max``."""
     if text == "max":

@@ -146,14 +146,13 @@ def of_robot(folder: Path, rate: float | None) -> ShownProgram:
     )
 
 
-def of_processes(folder: Path, numbers: tuple[int, ...], found: Sequence["Hello"]) -> ShownProgram:
-    """Return the processes whose probes listen in a folder; ``numbers`` chooses some, none means all.
+def of_processes(real: RealRos, found: Sequence["Hello"]) -> ShownProgram:
+    """Return processes that others have started as a subject; ``found`` are those that are there now.
 
-    The program of the first one in ``found`` is shown.
+    The first one of those has its program shown.
     """
-    real = RealRos(watched=str(folder), processes=numbers)
     title = counted(len(found), "process")
-    setup = RunSetup(title=title, programs=(), clock="real", robot=RobotUse.NEVER, real=real)
+    setup = watched_setup(title, real)
     lines = [f"- `{' '.join(each.command)}` ({each.process}, Python {each.python})" for each in found]
     return ShownProgram(
         heading=f"watched: {title}",
@@ -163,3 +162,8 @@ def of_processes(folder: Path, numbers: tuple[int, ...], found: Sequence["Hello"
         executor="as the programs say",
         set_up=lambda _threads, _speed: setup,
     )
+
+
+def watched_setup(title: str, real: RealRos) -> RunSetup:
+    """Return the set-up of a run that only watches what others have started."""
+    return RunSetup(title=title, programs=(), clock="real", robot=RobotUse.NEVER, real=real)

@@ -87,16 +87,18 @@ class Server:
     def start(self, folder: str) -> None:
         """Listen in ``folder``, as ``<process id>.sock``, and on the port that the environment names."""
         self._path = Path(folder) / f"{os.getpid()}.sock"
-        self._path.unlink(missing_ok=True)
+        deaf = self._path.with_suffix(".new")  # a socket that refuses is taken for a dead process's
+        deaf.unlink(missing_ok=True)
         listener = socket.socket(socket.AF_UNIX)
-        listener.bind(str(self._path))
-        self._path.chmod(0o600)
+        listener.bind(str(deaf))
+        deaf.chmod(0o600)
         self._listeners.append(listener)
         if os.environ.get(PORT) and self._token:
             self._listen_on_loopback(int(os.environ[PORT]))
         for each in self._listeners:
             each.listen(_CONSOLES)
             each.setblocking(False)
+        deaf.rename(self._path)
         self._pid = os.getpid()
         atexit.register(self.close)
         self._thread.start()
