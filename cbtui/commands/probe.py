@@ -58,38 +58,34 @@ def probe(options: argparse.Namespace) -> int:
     program = shutil.which(command[0])
     if program is None:
         refuse(f"there is no program {command[0]}")
-    from sim.probes.on_path.cbtui_probe import PORT, TOKEN
     from sim.real.programs import watched_environment
 
-    folder = probes_folder()
-    reached = {}
-    if options.tcp is not None:
-        reached = {PORT: str(options.tcp), TOKEN: secrets.token_urlsafe(16)}
+    folder, port, token = probes_folder(), options.tcp, secrets.token_urlsafe(16)
+    if port is not None:
         complain(
-            f"watch this through ssh -L {options.tcp}:localhost:{options.tcp} with: "
-            f"cbtui attach localhost:{options.tcp} --token {reached[TOKEN]}"
+            f"watch this through ssh -L {port}:localhost:{port} with: "
+            f"cbtui attach localhost:{port} --token {token}"
         )
     complain("watch this with: cbtui attach")
     if options.keep is None:
-        os.execve(program, command, {**watched_environment(program, folder), **reached})
+        os.execve(program, command, watched_environment(program, folder, port, token))
     from cbtui.runs.headless.keeping import run_and_keep
     from cbtui.runs.setup.shown_program import watched_setup
 
     with tempfile.TemporaryDirectory(prefix="command-", dir=folder) as own:
-        environment = {**watched_environment(program, Path(own)), **reached}
         setup = watched_setup(Path(command[-1]).stem, RealRos(watched=own))
+        environment = watched_environment(program, Path(own), port, token)
         return run_and_keep(command, environment, setup, options.keep)
 
 
 def attach(options: argparse.Namespace) -> int:
     """List what can be watched, or open the console on it; returns the exit code."""
     from cbtui.runs.setup.shown_program import of_processes
-    from sim.probes.on_path.cbtui_probe import TOKEN
-    from sim.real.probe_link import processes_in
+    from sim.real.probe_link import processes_in, say_token
     from sim.real.watched import label_of
 
     if options.token is not None:
-        os.environ[TOKEN] = options.token
+        say_token(options.token)
     addresses = tuple(each for each in options.processes if not isinstance(each, int))
     numbers = tuple(each for each in options.processes if isinstance(each, int))
     folder = probes_folder()

@@ -123,6 +123,11 @@ def _connected(place: Place, word: bytes = b"") -> socket.socket:
     return connection
 
 
+def say_token(token: str) -> None:
+    """Have this process and those that it starts say a token to the probes of other machines."""
+    os.environ[TOKEN] = token
+
+
 def process_at(place: Place) -> Hello | None:
     """Ask the probe at a place which process it is in; None: it does not say, as to one without its token.
 

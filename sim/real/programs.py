@@ -19,7 +19,7 @@ from selectors import BaseSelector
 from typing import NamedTuple
 
 from sim.engine.setup import RunSetup
-from sim.probes.on_path.cbtui_probe import CHANGES, FOLDER
+from sim.probes.on_path.cbtui_probe import CHANGES, FOLDER, PORT, TOKEN
 from sim.real.probe_link import LineReader, ProbeLink
 from sim.real.wire import Uncaught
 
@@ -49,9 +49,15 @@ def unbootstrapped(python: str) -> dict[str, str]:
     return {**inherited, "PYTHONPATH": path}
 
 
-def watched_environment(python: str, folder: Path) -> dict[str, str]:
-    """The environment of a process that others start, probed at a socket in ``folder``."""
-    return {**unbootstrapped(python), FOLDER: str(folder)}
+def watched_environment(
+    python: str, folder: Path, port: int | None = None, token: str = ""
+) -> dict[str, str]:
+    """The environment of a process that others start, probed at a socket in ``folder``.
+
+    With a ``port`` of the loopback interface also there, for consoles that say the ``token``.
+    """
+    reached = {} if port is None else {PORT: str(port), TOKEN: token}
+    return {**unbootstrapped(python), FOLDER: str(folder), **reached}
 
 
 def claimed_domain() -> tuple[int, socket.socket]:
