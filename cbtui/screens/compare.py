@@ -67,7 +67,8 @@ class CompareScreen(SizedScreen[None]):
     ) -> None:
         super().__init__()
         self._sides = (first, second)
-        self._charset = charset
+        self.charset = charset
+        """What the terminal can show."""
         self._bounds = bounds
         self._whole = True
         self.navigation = TimeNavigation(
@@ -86,25 +87,20 @@ class CompareScreen(SizedScreen[None]):
 
     def compose(self) -> ComposeResult:
         """Lay out both runs and the table."""
-        yield HeadingLine(self._charset, id="status")
+        yield HeadingLine(self.charset, id="status")
         for number in range(len(self._sides)):
-            yield HeadingLine(self._charset, id=f"run{number}")
+            yield HeadingLine(self.charset, id=f"run{number}")
             yield Lanes(id=f"lanes{number}")
-        yield HeadingLine(self._charset, ruled="-" if self._charset is Charset.ASCII else "─", id="window")
-        yield ComparisonHeadings(self._charset)
-        yield ComparisonTable(self._charset)
-        yield KeyBar(Scope.COMPARE, self._charset)
-
-    @property
-    def charset(self) -> Charset:
-        """What the terminal can show."""
-        return self._charset
+        yield HeadingLine(self.charset, ruled="-" if self.charset is Charset.ASCII else "─", id="window")
+        yield ComparisonHeadings(self.charset)
+        yield ComparisonTable(self.charset)
+        yield KeyBar(Scope.COMPARE, self.charset)
 
     def on_mount(self) -> None:
         """Start drawing, and warn of damaged or failed runs."""
         for number, side in enumerate(self._sides):
             lanes = self._lanes(number)
-            lanes.charset, lanes.service, lanes.can_focus = self._charset, side.service, False
+            lanes.charset, lanes.service, lanes.can_focus = self.charset, side.service, False
             for sentence in (side.damage, side.failure):
                 if sentence is not None:
                     self.notify(sentence, severity="warning", markup=False)
@@ -276,7 +272,7 @@ class CompareScreen(SizedScreen[None]):
             self.set_class(name == alone, name)
         more = () if alone == _LANES_ALONE else ("enlarge_lanes",)
         for lanes in self.query(Lanes):
-            lanes.keys = lane_keys(keymap_of(self.app), Scope.COMPARE, self._charset, *more)
+            lanes.keys = lane_keys(keymap_of(self.app), Scope.COMPARE, self.charset, *more)
 
     def action_leave(self) -> None:
         """Go back to where the comparison was opened."""

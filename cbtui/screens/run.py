@@ -87,7 +87,8 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         super().__init__()
         self._compositor = PatchCompositor()
         self.subject = subject
-        self._charset = charset
+        self.charset = charset
+        """What the terminal can show."""
         self.runs = runs
         self._frames = FrameSchedule()
         self.finisher = FileFinisher(self.tell)
@@ -109,18 +110,13 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
             more["next_lesson"] = lambda: self.console.open_lesson(following)
         every = (self.navigation, self.panes, self.bars, self.selection, self._exports, self._copy)
         self._parts = ScreenParts(self, Scope.LESSON, *every, *parts, **more)
-        self._keys = OfferedKeys(self, self._parts, self._charset)
+        self._keys = OfferedKeys(self, self._parts, self.charset)
 
     def post(self, message: Message) -> None:
         """Post a message from any thread; a closing screen drops it."""
         self.post_message(message)
 
     # the interface for parts
-
-    @property
-    def charset(self) -> Charset:
-        """What the terminal can show."""
-        return self._charset
 
     @property
     def console(self) -> Console:
@@ -134,7 +130,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
 
     def key(self, action: str) -> str:
         """Return the key in force of one of a lesson's actions, as people write it."""
-        return keymap_of(self.app).sign(Scope.LESSON, action, self._charset)
+        return keymap_of(self.app).sign(Scope.LESSON, action, self.charset)
 
     def redraw(self) -> None:
         """Draw everything in the next frame, or at once if none was just drawn."""
@@ -192,7 +188,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
                 pane.add_class("pane")
                 yield pane
         yield DiagnosisLine()
-        yield KeyBar(Scope.LESSON, self._charset)
+        yield KeyBar(Scope.LESSON, self.charset)
 
     def compose_panes(self) -> Iterator[Widget]:
         """Yield the panes."""
@@ -206,7 +202,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
     def on_mount(self) -> None:
         """Start the run and the timer that draws it."""
         lanes, robot, factory = self.query_one(Lanes), self.query_one(RobotView), self.query_one(FactoryView)
-        lanes.charset = robot.charset = factory.charset = self._charset
+        lanes.charset = robot.charset = factory.charset = self.charset
         lanes.service = self.subject.service
         self.panes.enlarge("")
         lanes.changes = self.changes.words
@@ -287,7 +283,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         line = self.query_one(DiagnosisLine)
         line.diagnosis = with_worst_problem(self.diagnosis(), told, way_on(run, keymap))
         line.note = call_note(run.timeline, self.navigation.now)
-        line.problems = problems_note(told, keymap, self._charset)
+        line.problems = problems_note(told, keymap, self.charset)
         for name in panes:
             pane = self.panes.pane(name)
             if pane.display:
@@ -309,7 +305,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
                 pane.show(run.timeline, now)
             case ShellView():
                 pane.show(run.timeline, now)
-                pane.ask(run.asked, keymap_of(self.app), self._charset)
+                pane.ask(run.asked, keymap_of(self.app), self.charset)
                 if not run.alive and isinstance(self.focused, ProgramKeyboard):
                     self.focused.action_leave_keyboard()
             case FactoryView():

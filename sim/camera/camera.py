@@ -38,18 +38,14 @@ class Camera:
         self._next: Shot | None = None
         self._busy = False
         self._stopping = False
-        self._process: BaseProcess | None = None
-
-    @property
-    def process(self) -> BaseProcess | None:
+        self.process: BaseProcess | None = None
         """The process; None before the first shot."""
-        return self._process
 
     def want(self, shot: Shot) -> None:
         """Ask for a picture; of several that are asked for during another, only the newest is taken."""
         if self._stopping:
             return
-        if self._process is None:
+        if self.process is None:
             self._start()
         with self._lock:
             if self._busy:
@@ -63,26 +59,24 @@ class Camera:
         if self._stopping:
             return
         self._stopping = True
-        if self._process is None:
+        if self.process is None:
             return
-        self._process.terminate()
-        self._process.join(_GRACE)
-        if self._process.is_alive():
-            self._process.kill()
-            self._process.join()
+        self.process.terminate()
+        self.process.join(_GRACE)
+        if self.process.is_alive():
+            self.process.kill()
+            self.process.join()
         self._reader.join(_GRACE)
         self._pipe.close()
 
     def _start(self) -> None:
         context = multiprocessing.get_context("spawn")
         self._pipe, far_end = context.Pipe()
-        self._process = context.Process(
-            target=self._target, args=(far_end,), name="cbtui-camera", daemon=True
-        )
+        self.process = context.Process(target=self._target, args=(far_end,), name="cbtui-camera", daemon=True)
         self._reader = threading.Thread(target=self._read, name="camera-reader", daemon=True)
         # Starting a process hands on standard error, and Textual's stand-in for it has no descriptor.
         with redirect_stderr(sys.__stderr__), without_current_folder():
-            self._process.start()
+            self.process.start()
         far_end.close()
         self._reader.start()
 

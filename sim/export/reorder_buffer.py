@@ -52,7 +52,8 @@ class ReorderBuffer:
     def __init__(self, horizon: Nanoseconds = HORIZON) -> None:
         self._horizon = horizon
         self._held: list[AnyEvent] = []
-        self._latest: Nanoseconds = 0
+        self.latest: Nanoseconds = 0
+        """The time of the latest event."""
         self._released_until: Nanoseconds = 0
         self._wait_series: dict[EntityId, tuple[Nanoseconds, Nanoseconds | None]] = {}
         self._kinds: dict[EntityId, EntityKind] = {}
@@ -61,7 +62,7 @@ class ReorderBuffer:
     def take(self, events: Sequence[AnyEvent]) -> Sequence[AnyEvent]:
         """Add a batch; return the events whose order is final."""
         held = self._held
-        latest, earliest = self._latest, self._released_until
+        latest, earliest = self.latest, self._released_until
         for event in events:
             kind = event.__class__
             placed = event
@@ -71,19 +72,14 @@ class ReorderBuffer:
                 placed = msgspec.structs.replace(placed, t=earliest)
             latest = max(latest, event.t)
             held.append(placed)
-        self._latest = latest
+        self.latest = latest
         if not held or latest - held[0].t < 2 * self._horizon:
             return ()
         return self._release(latest - self._horizon)
 
-    @property
-    def latest(self) -> Nanoseconds:
-        """The time of the latest event."""
-        return self._latest
-
     def flush(self) -> Sequence[AnyEvent]:
         """Release all buffered events, at the end of the stream."""
-        return self._release(self._latest)
+        return self._release(self.latest)
 
     def receivers(self, payload: PayloadKind, number: int) -> Sequence[EntityId]:
         """The entities that will receive a message, request or reply; they are forgotten with this call."""

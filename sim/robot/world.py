@@ -35,6 +35,8 @@ class World:
     The robot is driven by its wheels' motors and the friction under them, never put anywhere but by
     `reset`. The same calls at the same times give the same bits. Times are integer nanoseconds since
     the world was built. Not thread-safe: one thread at a time.
+
+    ``commanded`` is the body velocity that the motors aim at: clamped, and zero while they are off.
     """
 
     def __init__(self, arena: Arena = ARENA) -> None:
@@ -57,7 +59,7 @@ class World:
             inertial_frame = client.getDynamicsInfo(self._scene.robot, -1)[3:5]
             self._base_in_inertial = client.invertTransform(*inertial_frame)
             self._lidar = Lidar(arena)
-            self._powered = True
+            self.motors_on = True
             self._turn_wheels(STANDSTILL)
             for _ in range(STEP_RATE):
                 client.stepSimulation()
@@ -66,16 +68,6 @@ class World:
         self._turned = 0.0
         self._travelled = 0.0
         self._sampled = self.pose()
-
-    @property
-    def commanded(self) -> Velocity:
-        """The body velocity that the motors aim at: clamped, and zero while they are off."""
-        return self._commanded
-
-    @property
-    def motors_on(self) -> bool:
-        """Whether the motors have power."""
-        return self._powered
 
     @property
     def turned(self) -> float:
@@ -96,7 +88,7 @@ class World:
         wanted = Velocity(linear, angular)
         if not is_drivable(wanted):
             return False
-        if self._powered:
+        if self.motors_on:
             self._turn_wheels(clamped(wanted))
         return True
 
@@ -106,9 +98,9 @@ class World:
         Without power the gears alone brake the wheels, within some tenths of a second. Power that
         comes back moves nothing: the robot stands until the next command.
         """
-        if on == self._powered:
+        if on == self.motors_on:
             return
-        self._powered = on
+        self.motors_on = on
         self._turn_wheels(STANDSTILL)
 
     def advance_to(self, time_ns: int) -> None:
@@ -166,8 +158,8 @@ class World:
         self._client.close()
 
     def _turn_wheels(self, body: Velocity) -> None:
-        self._commanded = body
-        torque = _MOTOR_TORQUE if self._powered else _GEAR_DRAG
+        self.commanded = body
+        torque = _MOTOR_TORQUE if self.motors_on else _GEAR_DRAG
         self._client.setJointMotorControlArray(
             self._scene.robot,
             self._scene.wheels,

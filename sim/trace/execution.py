@@ -93,7 +93,7 @@ class ThreadSpans(Lane):
         """Take in a span that begins inside those of the stack, or after all; tells where."""
         layer = super().add(row)
         self.stack.append(row)
-        if layer is self._layers[0]:
+        if layer is self.layers[0]:
             if self._latest is not None:
                 ended = self._intervals.ended_at(self._latest)
                 self._busy += ended - self._intervals.started_at(self._latest)

@@ -57,26 +57,21 @@ class RunController(Generic[RunT_co]):
         self._post = post
 
     @property
-    def run(self) -> RunT_co:
-        """The run on screen."""
-        return self._run
-
-    @property
     def timeline(self) -> Timeline:
         """Its timeline."""
-        return self._run.timeline
+        return self.run.timeline
 
     def begin(self, speed: float | None) -> None:
         """Create another run without starting it."""
         self.disown()
         number = self.number
-        self._run = self._make(
+        self.run = self._make(
             speed,
             lambda events: self.deliver(number, events),
             lambda trouble: self._post(self.Over(number, trouble)),
         )
-        self.concurrency = Concurrency(self._run.timeline)
-        self.findings = FindingsMonitor(self._run.timeline)
+        self.concurrency = Concurrency(self.run.timeline)
+        self.findings = FindingsMonitor(self.run.timeline)
 
     def disown(self) -> None:
         """Ignore further events of the run."""
@@ -99,4 +94,4 @@ class RunController(Generic[RunT_co]):
     def take(self, message: Delivered) -> str | None:
         """Add events to the run on screen, ignoring those of others; returns a warning, if any."""
         message.taken.set()
-        return self._run.take(message.events) if message.run == self.number else None
+        return self.run.take(message.events) if message.run == self.number else None

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import deque
 from typing import TYPE_CHECKING, Any
 
-from sim.probes.probe import SilentProbe
+from sim.probes.probe import Probe, SilentProbe
 from sim.probes.traced import TracedEntity
 from sim.ros.entities.client import Client, Reply
 from sim.ros.entities.event_handler import SubscriptionEventCallbacks
@@ -25,17 +25,25 @@ if TYPE_CHECKING:
     from sim.ros.scheduling.task import Future
 
 
+_CALLS = (
+    Probe.call_id,
+    Probe.service_called,
+    Probe.service_replied,
+    Probe.request_lost,
+    Probe.call_blocked,
+    Probe.call_unblocked,
+)
+
+
 class PartProbe(SilentProbe):
-    """Records what happens at a part: calls and replies as they are, its queue as the waitable's."""
+    """Records what happens at a part: ``_CALLS`` as the program's probe does, its queue as the waitable's."""
 
     def __init__(self, owner: ActionWaitable) -> None:
         super().__init__(owner.node.context.host.clock)
         self._owner = owner
         self._program = owner.node.context.probe
-
-    def call_id(self) -> int:
-        """A new id for a service call, among the program's."""
-        return self._program.call_id()
+        for calls in _CALLS:
+            setattr(self, calls.__name__, getattr(self._program, calls.__name__))
 
     def ready(self, entity: TracedEntity, depth: int, message: int) -> None:
         """Something arrived for the part."""
@@ -44,26 +52,6 @@ class PartProbe(SilentProbe):
     def dropped(self, entity: TracedEntity, depth: int, message: int) -> None:
         """The part's full queue lost its oldest."""
         self._program.dropped(self._owner, self._owner.queued, message)
-
-    def service_called(self, call: int, service: str, request: object) -> None:
-        """A request left."""
-        self._program.service_called(call, service, request)
-
-    def service_replied(self, call: int, service: str, response: object) -> None:
-        """The service answered."""
-        self._program.service_replied(call, service, response)
-
-    def request_lost(self, call: int, service: str) -> None:
-        """Nobody offers the service."""
-        self._program.request_lost(call, service)
-
-    def call_blocked(self, call: int, service: str) -> None:
-        """The calling thread stands still until a reply comes."""
-        self._program.call_blocked(call, service)
-
-    def call_unblocked(self, call: int) -> None:
-        """The calling thread goes on."""
-        self._program.call_unblocked(call)
 
 
 class Part(Entity):

@@ -1,4 +1,4 @@
-"""Methods of a node that a part of it does: rclpy has them all on one class."""
+"""Methods and properties of a node that belong to one of its parts: rclpy has them all on one class."""
 
 from __future__ import annotations
 
@@ -29,3 +29,8 @@ class Delegated(Generic[PartT]):
 
         method.__qualname__ = call.__qualname__ = f"Node.{method.__name__}"
         return call
+
+    def view(self, of: Any) -> property:
+        """Show a property of the part as one of the node."""
+        attribute, read = self._attribute, of.fget
+        return property(lambda node: read(getattr(node, attribute)), doc=of.__doc__)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
@@ -10,12 +10,6 @@ from sim.ros.clocks.clock import Clock, ROSClock
 from sim.ros.context.arguments import arguments_of_node, parameters_for
 from sim.ros.context.context import Context
 from sim.ros.context.utilities import get_default_context
-from sim.ros.entities.client import Client
-from sim.ros.entities.guard_condition import NodeGuardCondition
-from sim.ros.entities.publisher import Publisher
-from sim.ros.entities.service import Service
-from sim.ros.entities.subscription import Subscription
-from sim.ros.entities.timer import Timer
 from sim.ros.handle import Handle
 from sim.ros.logging.logger import RcutilsLogger, get_logger
 from sim.ros.naming.node_names import NodeNames
@@ -179,40 +173,13 @@ class Node:
 
     # What it has
 
-    @property
-    def publishers(self) -> Iterator[Publisher]:
-        """Its publishers."""
-        return self._node_entities.publishers
-
-    @property
-    def subscriptions(self) -> Iterator[Subscription]:
-        """Its subscriptions, oldest first."""
-        return self._node_entities.subscriptions
-
-    @property
-    def timers(self) -> Iterator[Timer]:
-        """Its timers, oldest first."""
-        return self._node_entities.timers
-
-    @property
-    def services(self) -> Iterator[Service]:
-        """Its services, oldest first."""
-        return self._node_entities.services
-
-    @property
-    def clients(self) -> Iterator[Client]:
-        """Its clients, oldest first."""
-        return self._node_entities.clients
-
-    @property
-    def guards(self) -> Iterator[NodeGuardCondition]:
-        """Its guard conditions, oldest first."""
-        return self._node_entities.guards
-
-    @property
-    def waitables(self) -> Iterator[Any]:
-        """Its waitables, oldest first: the program's own, and what tells of events and serves actions."""
-        return self._node_entities.waitables
+    publishers = _entities.view(NodeEntities.publishers)
+    subscriptions = _entities.view(NodeEntities.subscriptions)
+    timers = _entities.view(NodeEntities.timers)
+    services = _entities.view(NodeEntities.services)
+    clients = _entities.view(NodeEntities.clients)
+    guards = _entities.view(NodeEntities.guards)
+    waitables = _entities.view(NodeEntities.waitables)
 
     # What it is
 

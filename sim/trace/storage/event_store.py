@@ -32,15 +32,11 @@ class EventStore:
         self._size_limit = size_limit
         self._lock = Lock()
         self._file: FileIO | None = None
-        self._length = 0
+        self.size = 0
+        """Bytes in the file."""
         self._waiting = bytearray()
         self._ended_at: Nanoseconds | None = None
         self._full_because = ""
-
-    @property
-    def size(self) -> int:
-        """Bytes in the file."""
-        return self._length
 
     @property
     def missing(self) -> str:
@@ -67,7 +63,7 @@ class EventStore:
             OSError: the file cannot be read.
         """
         with self._lock:
-            end, waiting = self._length, bytes(self._waiting)
+            end, waiting = self.size, bytes(self._waiting)
         place = 0
         while place < end:
             block, place = self._block(place)
@@ -79,9 +75,9 @@ class EventStore:
         block = frame.compress(bytes(self._waiting))
         try:
             file = self._opened()
-            file.seek(self._length)
+            file.seek(self.size)
             data = len(block).to_bytes(_LENGTH) + block
-            if self._length + len(data) > self._size_limit:
+            if self.size + len(data) > self._size_limit:
                 self._full_because = f"no more than {self._size_limit // 1_000_000} MB of a run are kept"
             elif file.write(data) != len(data):
                 self._full_because = "the folder for temporary files is full"
@@ -89,7 +85,7 @@ class EventStore:
             self._full_because = f"the temporary file cannot be written: {error.strerror}"
         if self._full_because:
             return False
-        self._length += len(data)
+        self.size += len(data)
         self._waiting.clear()
         return True
 

@@ -81,11 +81,12 @@ class Lane:
     a query is one bisection per layer.
     """
 
-    __slots__ = ("_intervals", "_layers")
+    __slots__ = ("_intervals", "layers")
 
     def __init__(self, intervals: Intervals) -> None:
         self._intervals = intervals
-        self._layers: list[Layer] = []
+        self.layers: list[Layer] = []
+        """The layers, the outermost intervals first."""
 
     def add(self, row: RowId) -> Layer:
         """Add a row and return its layer.
@@ -94,37 +95,32 @@ class Lane:
         """
         cell = self._intervals.table.cell
         start = cell(row, Intervals.START)
-        for layer in self._layers:
+        for layer in self.layers:
             if cell(layer.last(Layer.ROW), Intervals.END) <= start:
                 layer.append([start, row])
                 return layer
         layer = Layer(self._intervals.spill)
         layer.append([start, row])
-        self._layers.append(layer)
+        self.layers.append(layer)
         return layer
-
-    @property
-    def layers(self) -> Sequence[Layer]:
-        """The layers, the outermost intervals first."""
-        return self._layers
 
     def overlapping(self, window: Window) -> Sequence[RowId]:
         """Rows that overlap the window, in order of start; instants count if they lie in it."""
-        return self._in_order([layer.intervals(self._places(layer, window)) for layer in self._layers])
+        return self._in_order([layer.intervals(self._places(layer, window)) for layer in self.layers])
 
     def starting(self, window: Window) -> Sequence[RowId]:
         """Rows that start in the window, in order of start."""
         return self._in_order(
             [
                 layer.intervals(range(layer.before(window.start), layer.before(window.end)))
-                for layer in self._layers
+                for layer in self.layers
             ]
         )
 
     def covering(self, at: Nanoseconds) -> list[RowId]:
         """Rows that are open after all events at ``at``."""
         found: list[RowId] = []
-        for layer in self._layers:
+        for layer in self.layers:
             after = layer.until(at)
             if after:
                 row = layer.interval(after - 1)
@@ -134,18 +130,18 @@ class Lane:
 
     def starting_in(self, window: Window) -> int:
         """The number of rows that start in the window."""
-        return sum(layer.before(window.end) - layer.before(window.start) for layer in self._layers)
+        return sum(layer.before(window.end) - layer.before(window.start) for layer in self.layers)
 
     def starts_beside(self, at: Nanoseconds, step: int) -> Iterator[Nanoseconds]:
         """Of each layer the first start after ``at`` (``step`` > 0), or the last one before it."""
-        for layer in self._layers:
+        for layer in self.layers:
             place = layer.until(at) if step > 0 else layer.before(at) - 1
             if 0 <= place < len(layer):
                 yield layer.start(place)
 
     def ends_beside(self, at: Nanoseconds, step: int) -> Iterator[Nanoseconds]:
         """Of each layer the first end after ``at`` (``step`` > 0), or the last one before it."""
-        for layer in self._layers:
+        for layer in self.layers:
             # Ends ascend with starts: it is the end of the last interval to start, or its neighbour's.
             nearest = layer.until(at) - 1 if step > 0 else layer.before(at) - 1
             for place in (nearest, nearest + step):
