@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from cbtui.commands.check import add_limit, exercise_of
-from cbtui.commands.options import more_lessons
+from cbtui.commands.options import changes, more_lessons
 from cbtui.commands.options.targets import folder_of, refuse, same_file
 from cbtui.text.output import complain, say, say_data
 
@@ -28,8 +28,10 @@ and solutions. Without bwrap it can read and write whatever you can. Either way 
 process that traces it: one that knows how can write a trace of its own. What gives that away (a
 broken seal, functions of the engine that were replaced, callbacks that were not handed in, events
 that cannot follow one another) is reported as suspicious and earns no marks; read such files
-yourself. Ends with 0 if all pass, 1 if some do not, 3 if something is suspicious, 4 if a submission
-changed cbtui or a lesson, which ends the grading."""
+yourself. With --on ros2 each runs on real rclpy, at its pace; there it tells itself what its own
+callbacks did, but cannot lie of the robot and of calls from outside. Ends with 0 if all pass, 1 if
+some do not, 3 if something is suspicious, 4 if a submission changed cbtui or a lesson, which ends the
+grading."""
 
 
 def add_options(parser: argparse.ArgumentParser) -> None:
@@ -49,11 +51,13 @@ def add_options(parser: argparse.ArgumentParser) -> None:
         help="keep the rows that are in OUT.csv already, and grade what is missing there or was changed",
     )
     add_limit(parser, 30)
+    changes.add_on(parser)
     more_lessons.add_option(parser)
 
 
 def grade(options: argparse.Namespace) -> int:
     """Check every learner's files; returns the exit code."""
+    real = changes.real_ros_of(options)
     papers = _papers(options)
     path = None if options.csv in {None, _STANDARD_OUTPUT} else Path(options.csv)
     if path is not None:
@@ -64,12 +68,12 @@ def grade(options: argparse.Namespace) -> int:
     from cbtui.grading.grading import Grader, PackagesChangedError, line
     from cbtui.grading.mark_sheet import MarkSheet, SheetFile, SheetStream, UnwritableSheetError
 
-    handed_in = Grader(papers)
+    handed_in = Grader(papers, real)
     sheet = MarkSheet(handed_in.most_checks)
     if options.resume and path is not None:
         _take_earlier(sheet, path, handed_in)
     hidden = [Path(options.folder), *_hidden(papers), *([] if path is None else [path])]
-    confinement = Confinement.best(hidden)
+    confinement = Confinement.best(hidden, real)
     if confinement.missing:
         complain(
             f"{confinement.missing}: each submission runs on a copy, but can read and write what you can, "

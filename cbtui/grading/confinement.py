@@ -10,11 +10,12 @@ import shutil
 import subprocess
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Self
 
 from lessons.catalogue import ROOT as LESSONS
+from sim.engine.setup import RealRos
 
 PACKAGES = LESSONS.parent
 """The folder that contains cbtui's packages: a checkout, or that of all installed packages."""
@@ -23,8 +24,14 @@ _SYSTEM = (
     *("/etc/localtime", "/etc/passwd", "/etc/group", "/etc/nsswitch.conf", "/etc/hosts"),
 )
 _KEPT = ("PATH", "LANG", "LANGUAGE", "LC_ALL", "LC_CTYPE", "TZ", "LD_LIBRARY_PATH", "CBTUI_MEMORY_GB")
+_KEPT_OF_ROS = (
+    *("AMENT_PREFIX_PATH", "PYTHONPATH", "RMW_IMPLEMENTATION"),
+    *("ROS_DISTRO", "ROS_PYTHON_VERSION", "ROS_VERSION"),
+)
+"""What a terminal has in which ROS is sourced."""
 _TMP_BYTES = 1 << 28
 _PROBE = "import cbtui.engines.session, sim.engine.process"
+_PATH = "import sys; print(sys.prefix, sys.base_prefix, *sys.path, sep='\\n')"
 _PROBE_SECONDS = 60
 _SCRIPT = """#!/bin/sh
 {bwrap} {python} "$@"
@@ -47,7 +54,10 @@ class Confinement:
     missing: str = ""
 
     libraries: tuple[Path, ...] = field(default_factory=lambda: tuple(_libraries()))
-    """Readable folders: Python, installed packages and the engine."""
+    """Readable folders: Python, installed packages, the engine, and ROS if that is another Python's."""
+
+    kept: tuple[str, ...] = _KEPT
+    """The variables that a program inherits."""
 
     @property
     def import_path(self) -> list[str]:
@@ -59,13 +69,20 @@ class Confinement:
         ]
 
     @classmethod
-    def best(cls, hidden: Sequence[Path]) -> Self:
-        """Return the strictest confinement that works on this machine; it is tried once."""
+    def best(cls, hidden: Sequence[Path], real: RealRos | None = None) -> Self:
+        """Return the strictest confinement that works on this machine; it is tried once.
+
+        ``real`` is the ROS 2 that programs are to run on.
+        """
+        loosest = cls(None)
+        if real is not None and real.python:
+            needed = (*loosest.libraries, *_libraries_of(real.python))
+            loosest = replace(loosest, libraries=needed, kept=(*_KEPT, *_KEPT_OF_ROS))
         bwrap = shutil.which("bwrap")
         if bwrap is None:
-            return cls(None, missing="bwrap (of the package bubblewrap) is not installed")
+            return replace(loosest, missing="bwrap (of the package bubblewrap) is not installed")
         everywhere = dict.fromkeys(form for path in hidden for form in (path.absolute(), path.resolve()))
-        confinement = cls(bwrap, tuple(everywhere))
+        confinement = replace(loosest, bwrap=bwrap, hidden=tuple(everywhere))
         words = [*confinement._words(None), sys.executable, "-P", "-c", _PROBE]
         found = {"PYTHONPATH": os.pathsep.join(confinement.import_path)}
         try:
@@ -73,10 +90,10 @@ class Confinement:
                 words, capture_output=True, text=True, timeout=_PROBE_SECONDS, check=False, cwd="/", env=found
             )
         except (OSError, subprocess.TimeoutExpired) as error:
-            return cls(None, missing=f"bwrap does not work here ({error})")
+            return replace(loosest, missing=f"bwrap does not work here ({error})")
         if tried.returncode:
             said = tried.stderr.strip().rpartition("\n")[2]
-            return cls(None, missing=f"bwrap does not work here ({said})")
+            return replace(loosest, missing=f"bwrap does not work here ({said})")
         return confinement
 
     def launcher(self, folder: Path, script: Path) -> Path | None:
@@ -90,7 +107,7 @@ class Confinement:
 
     def environment(self, folder: Path) -> dict[str, str]:
         """The environment variables of a program that is confined to a folder."""
-        kept = {name: os.environ[name] for name in _KEPT if name in os.environ}
+        kept = {name: os.environ[name] for name in self.kept if name in os.environ}
         temporary = {} if self.bwrap else {"TMPDIR": str(folder)}
         python = {"PYTHONDONTWRITEBYTECODE": "1", "PYTHONNOUSERSITE": "1"}
         return {**kept, **temporary, **python, "HOME": str(folder)}
@@ -110,6 +127,13 @@ class Confinement:
         if folder is not None:
             yield from ("--bind", str(folder), str(folder), "--chdir", str(folder))
         yield from ("--remount-ro", "/")
+
+
+def _libraries_of(python: str) -> Iterator[Path]:
+    """What another Python needs, and the ROS that is sourced for it."""
+    asked = subprocess.run([python, "-c", _PATH], capture_output=True, text=True, check=False)
+    sourced = os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)
+    yield from (Path(each) for each in (*asked.stdout.splitlines(), *sourced) if each)
 
 
 def _libraries() -> Iterator[Path]:

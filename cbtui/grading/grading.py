@@ -13,6 +13,7 @@ from cbtui.grading.supervisor import Marks, mark
 from cbtui.text.output import is_text
 from lessons.judge import Judge
 from lessons.lesson import Lesson
+from sim.engine.setup import RealRos
 
 _PYTHON = ".py"
 
@@ -99,14 +100,18 @@ def hand_ins_in(folder: Path, exercises: Sequence[Lesson], only: Lesson | None) 
 
 
 class Grader:
-    """Grades hand-ins that were all read at the start, so that a program cannot change other marks later."""
+    """Grades hand-ins that were all read at the start, so that a program cannot change other marks later.
 
-    def __init__(self, papers: Iterable[HandIn]) -> None:
+    With ``real`` they run on that ROS 2.
+    """
+
+    def __init__(self, papers: Iterable[HandIn], real: RealRos | None = None) -> None:
         """Read them.
 
         Raises:
             BadLesson: the checks of a lesson cannot be used.
         """
+        self._real = real
         self._totals: dict[str, int] = {}
         self.entries = [self._entry(paper) for paper in papers]
         self._packages = _PackageFiles(entry.paper.lesson for entry in self.entries)
@@ -124,7 +129,7 @@ class Grader:
         confinement: Confinement,
         watch: Callable[[], str | None],
     ) -> Iterator[Grade]:
-        """Grade hand-ins one after another, each for at most ``limit`` real seconds.
+        """Grade hand-ins one after another; ``limit`` is that of ``real_limit``.
 
         ``watch`` is called after each; it returns a sentence on a forbidden change, or None.
 
@@ -136,7 +141,7 @@ class Grader:
             if lesson is None or submission is None:
                 yield Grade(entry, Marks(trouble=entry.problem))
                 continue
-            marks = mark(submission, lesson.folder, limit, confinement)
+            marks = mark(submission, lesson, limit, confinement, self._real)
             packages = self._packages.changed()
             changed = [*packages[:1], *self._changed_papers()]
             seen = [f"{path} was changed while it ran" for path in changed] + [*filter(None, [watch()])]

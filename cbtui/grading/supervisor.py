@@ -30,7 +30,8 @@ from cbtui.runs.judged.check_text import verdict_line
 from cbtui.runs.judged.checking import observe
 from cbtui.runs.setup.lesson_setup import setup_to_judge
 from lessons.judge import Judge
-from lessons.lesson import read_lesson
+from lessons.lesson import Lesson, read_lesson
+from sim.engine.setup import RealRos
 
 _LARGEST_FILE = 1 << 28
 """The largest file in bytes that a program may write."""
@@ -63,22 +64,32 @@ class MarkingJob:
     launcher: Path | None
     environment: Mapping[str, str]
     confinement: Confinement
+    real: RealRos | None
+    timeout: float
+    """Real seconds until it must be judged."""
 
 
-def mark(submission: Submission, lesson: Path, limit: float, confinement: Confinement) -> Marks:
-    """Run a submission and judge it by the checks in a lesson's folder."""
+def mark(
+    submission: Submission, lesson: Lesson, limit: float, confinement: Confinement, real: RealRos | None
+) -> Marks:
+    """Run a submission, with ``real`` on that ROS 2, and judge it by a lesson's checks.
+
+    ``limit`` is that of ``real_limit``.
+    """
     with tempfile.TemporaryDirectory(prefix="cbtui-grade-", ignore_cleanup_errors=True) as place:
         folder = Path(place).resolve() / "copy"
         folder.mkdir()
         return _marks_by_supervisor(
             MarkingJob(
                 submission,
-                lesson,
+                lesson.folder,
                 limit,
                 folder,
                 confinement.launcher(folder, folder.with_name("launcher")),
                 confinement.environment(folder),
                 confinement,
+                real,
+                limit + lesson.run.seconds + _JUDGING_TIMEOUT,
             )
         )
 
@@ -90,7 +101,7 @@ def _marks_by_supervisor(assignment: MarkingJob) -> Marks:
     process.start()
     theirs.close()
     try:
-        if not ours.poll(assignment.limit + _JUDGING_TIMEOUT):
+        if not ours.poll(assignment.timeout):
             return Marks(trouble="what its run showed took too long to be judged")
         return msgspec.msgpack.decode(ours.recv_bytes(_MOST_BYTES), type=Marks)
     except (EOFError, OSError, msgspec.DecodeError):
@@ -128,7 +139,8 @@ def _marks(assignment: MarkingJob) -> Marks:
     judge = Judge(lesson)
     program = submission.write_to(assignment.folder)
     key = secrets.token_bytes(32)
-    setup = msgspec.structs.replace(setup_to_judge(lesson, program), packages=(), seal=key)
+    setup = setup_to_judge(lesson, program, real=assignment.real)
+    setup = msgspec.structs.replace(setup, packages=(), seal=key)
     libraries = assignment.confinement.libraries
     audit = TraceAudit(key, submission, assignment.folder, libraries, virtual=setup.clock == "virtual")
     run = observe(

@@ -8,11 +8,11 @@ from types import CodeType
 
 from cbtui.grading.submission import Submission
 from lessons.catalogue import ROOT as LESSONS
-from sim.trace.events import AnyEvent, EntityAppeared, decode
+from sim.trace.events import AnyEvent, EntityAppeared, Notice, NoticeKind, decode
 from sim.trace.integrity.plausibility import Plausibility
 from sim.trace.integrity.sealing import BrokenSealError, Seal
 
-_OURS = ("cbtui", "lessons", "sim")
+_OURS = ("cbtui", "cbtui_probe", "lessons", "sim")
 _WORD = re.compile(r"\w+")
 
 
@@ -20,7 +20,8 @@ class TraceAudit:
     """Audits the batches of one run.
 
     ``folder`` has the program's files, ``libraries`` are folders of other code. ``virtual`` tells that the
-    run is on virtual time, where all events are in order.
+    run is on virtual time, where all events are in order. On real ROS 2 a program tells of itself what it
+    did, and may lie; of what is measured outside it, such as the robot, it cannot.
     """
 
     def __init__(
@@ -57,6 +58,8 @@ class TraceAudit:
         for event in events:
             if isinstance(event, EntityAppeared) and event.file:
                 self._look_at_origin(event)
+            elif isinstance(event, Notice) and event.kind is NoticeKind.FORGED:
+                self._doubt(event.text)
         return events
 
     def doubts(self, *, ended_normally: bool) -> tuple[str, ...]:

@@ -31,7 +31,7 @@ from sim.real.programs import STOPPED, OnExit, Outcome, claimed_domain, environm
 from sim.real.ros2_lines import Ros2Lines
 from sim.real.translation import HOLD, Translation
 from sim.real.watched import WatchedProcesses
-from sim.real.wire import ProbeLine, Sent
+from sim.real.wire import OF_THE_RUN, ProbeLine, Sent
 from sim.robot.names import NAMES
 from sim.trace.events import (
     AnyEvent,
@@ -41,13 +41,16 @@ from sim.trace.events import (
     EntityAppeared,
     EntityKind,
     Notice,
+    NoticeKind,
     Printed,
     RunEnded,
     RunEnding,
     RunStarted,
     Severity,
     TimePassed,
+    encode,
 )
+from sim.trace.integrity.sealing import Seal
 
 _PERIOD = 0.01
 """Seconds between two looks at what is due."""
@@ -97,7 +100,13 @@ class RealEngine:
         self._pipe = pipe
         self._selector = DefaultSelector()
         self._folder = tempfile.TemporaryDirectory(prefix="cbtui-")
-        self._outbox = Outbox(pipe, may_wait=False, before_batch=_nothing, heartbeat=self._heartbeat)
+        self._outbox = Outbox(
+            pipe,
+            may_wait=False,
+            before_batch=_nothing,
+            pack=_sealed_with(setup.seal) if setup.seal else encode,
+            heartbeat=self._heartbeat,
+        )
         self._start = 0
         self._translation = Translation(self._outbox.record, self._begin)
         self._began_to_wait = time.monotonic_ns()
@@ -125,7 +134,7 @@ class RealEngine:
                 self._python,
                 probed,
                 self._keyboard,
-                self._take,
+                self._take_untrusted if setup.seal else self._take,
                 self._record,
                 self._print,
                 self._run_launched_line,
@@ -277,6 +286,14 @@ class RealEngine:
             self._robot_is_used = True
             self._translation.take(msgspec.structs.replace(line, t=lines[0].t) for line in self._of_the_robot)
 
+    def _take_untrusted(self, lines: list[ProbeLine], process: int = 0) -> None:
+        """Take what a program tells that may lie: of the run and of the robot it can know nothing."""
+        told = [line for line in lines if not isinstance(line, OF_THE_RUN)]
+        if len(told) < len(lines):
+            text = "the program tells, as if it were the run, of the run or of the robot"
+            self._record(Notice(0, Severity.ERROR, text, kind=NoticeKind.FORGED))
+        self._take(told, process)
+
     def _take_robot(self, lines: list[ProbeLine]) -> None:
         """Take what the robot tells; a robot that nothing uses moves nowhere and is not shown."""
         if self._robot_is_used:
@@ -365,6 +382,12 @@ def _name(line: ProbeLine) -> str:
             return name
         case _:
             return ""
+
+
+def _sealed_with(key: bytes) -> Callable[[list[AnyEvent]], bytes]:
+    """What packs batches so that a second writer is noticed."""
+    seal = Seal(key)
+    return lambda events: seal.close(encode(events))
 
 
 def _nothing() -> None:

@@ -13,7 +13,18 @@ from typing import Any, TypeAlias
 import msgspec
 
 from sim.engine import commands
-from sim.trace.events import AnyEvent, RobotMoved
+from sim.trace.events import (
+    AnyEvent,
+    ArenaShown,
+    CommandGiven,
+    RobotMoved,
+    RunEnded,
+    RunEnding,
+    RunStarted,
+    Scanned,
+    TimePassed,
+    VelocityCommanded,
+)
 from sim.trace.events.event import kinds
 
 
@@ -122,6 +133,12 @@ class Interrupted(msgspec.Struct, frozen=True, array_like=True, tag="interrupt")
 _Own: TypeAlias = Hello | Sent | Called | Taken | Replied | Uncaught | Left | ProgramWanted | Interrupted
 
 ProbeLine: TypeAlias = _Own | AnyEvent
+
+OF_THE_RUN = (
+    *(RunStarted, RunEnding, RunEnded, CommandGiven, TimePassed),
+    *(ArenaShown, RobotMoved, Scanned, VelocityCommanded),
+)
+"""What no program can tell, but the run itself, or its robot."""
 
 
 @cache

@@ -152,3 +152,10 @@ def test_a_broken_seal_a_replaced_function_and_a_changed_file_give_a_run_away(
         return data
 
     assert doubts(tamper=write_over) == ("node.py was changed while it ran",)
+
+
+def test_what_only_the_run_can_know_gives_a_program_away_that_tells_it(
+    doubts: Callable[..., tuple[str, ...]],
+) -> None:
+    told = ev.Notice(1, ev.Severity.ERROR, "the program tells of the robot", kind=ev.NoticeKind.FORGED)
+    assert doubts(told) == ("the program tells of the robot",)

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from cbtui import cli
+from cbtui.commands.grade import SUSPICIOUS
 from cbtui.commands.options import changes
 from cbtui.runs.judged.checking import real_limit
 from cbtui.runs.setup.lesson_setup import setup_to_judge
@@ -50,6 +51,42 @@ def test_on_the_real_clock_a_run_may_take_its_length_and_the_limit() -> None:
     lesson = find("split-groups")
     assert real_limit(setup_to_judge(lesson), 20) == 20
     assert real_limit(setup_to_judge(lesson, real=RealRos()), 20) == 20 + lesson.run.seconds
+
+
+FORGED = """
+import gc
+import threading
+import time
+import cbtui_probe
+import rclpy
+
+def lie(recorder):
+    while True:
+        recorder.put("cmd_vel", time.monotonic_ns(), 0.0, 0.5)
+        time.sleep(0.1)
+
+recorder = next(each for each in gc.get_objects() if type(each).__name__ == "Recorder")
+threading.Thread(target=lie, args=(recorder,), daemon=True).start()
+"""
+
+
+@needs_ros
+@pytest.mark.slow
+def test_submissions_are_graded_on_real_ros_and_liars_are_found(
+    lesson: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    solution = (lesson / "solution.py").read_text()
+    starter = (lesson / "starter.py").read_text()
+    for learner, text in (("ann", solution), ("bob", starter), ("eve", FORGED + solution)):
+        (tmp_path / "homework" / learner).mkdir(parents=True)
+        (tmp_path / "homework" / learner / "blinker.py").write_text(text)
+    capsys.readouterr()
+    assert cli.main(["grade", "homework", "--on", "ros2"]) == SUSPICIOUS
+    ann, bob, eve = capsys.readouterr().out.splitlines()
+    assert ann == "1/1  ann  blinker"
+    assert bob == "0/1  bob  blinker"
+    assert eve.startswith("0/1  eve  blinker  suspicious: blinker.py:5 imports cbtui_probe")
+    assert "the program tells, as if it were the run, of the run or of the robot" in eve
 
 
 @needs_ros

@@ -74,6 +74,8 @@ class NoticeKind(StrEnum):
     """A callback waits without a timeout for what may still come."""
     DEADLOCK = "deadlock"
     """Threads wait without a timeout for what can no longer come."""
+    FORGED = "forged"
+    """A program tells of itself what only the run can know."""
 
 
 class Notice(TraceEvent, frozen=True, tag="notice"):
