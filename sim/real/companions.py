@@ -63,6 +63,8 @@ class Companion:
     def stop(self) -> None:
         """End it."""
         if self._process is not None:
+            assert self._process.stdin is not None
+            self._process.stdin.close()
             self._process.kill()
             self._process.wait()
 

@@ -14,6 +14,10 @@ from sim.trace.events import AnyEvent, KeyboardAsked, Reading, Typed
 
 _READ = {"x86_64": "0", "aarch64": "63"}.get(platform.machine(), "")
 """The number of the system call ``read``."""
+_SELECTS = {"x86_64": ("7", "23", "232", "270", "271", "281"), "aarch64": ("22", "72", "73")}
+"""The numbers of ``poll``, ``select`` and their kin."""
+_UNSEEN = 1.0
+"""Seconds after which a program that wants keys, and was not seen to wait for them, is handed them."""
 _PERIOD = 0.05
 """Seconds between two looks at programs while nothing is to be handed on."""
 _BETWEEN = 0.3
@@ -59,34 +63,46 @@ class RealKeyboard:
         if now < self._look_at:
             return 0
         self._pair.drop_echo()
-        mode = self._pair.mode()
-        reader = next((each for each in programs if _reads_terminal(each, self.near)), 0)
-        if not reader and mode.takes_keys:
-            reader = next(iter(programs), 0)
-        if reader and not self._pair.feed(is_last=self._is_last) and self._is_last and not mode.takes_keys:
-            self._pair.send(END_OF_INPUT)
-        self._look_at = now + (0 if self._pair.has_more else _PERIOD)
+        # In this order: who reads now, though all had been read before, reads on.
+        has_unread, mode = self._pair.has_unread, self._pair.mode()
+        reader = next((each for each in programs if _reads(each, self.near, mode)), 0)
         if reader:
             self._read_at = now
-        return self._note(mode if reader else Reading.NOTHING, reader, programs)
+        elif mode.takes_keys and now > self._read_at + _UNSEEN:
+            reader = next(iter(programs), 0)  # it waits in a way that cannot be seen
+        self._look_at = now + (0 if self._pair.has_more else _PERIOD)
+        if self._note(mode if reader else Reading.NOTHING, reader, programs):
+            return reader
+        if reader and not has_unread:
+            fed = self._pair.feed(is_last=self._is_last)
+            if self._is_last and not fed and not mode.takes_keys:
+                self._pair.send(END_OF_INPUT)
+        return 0
 
-    def _note(self, asked: Reading, reader: int, programs: Mapping[int, str]) -> int:
+    def _note(self, asked: Reading, reader: int, programs: Mapping[int, str]) -> bool:
+        """Tell how a program reads, if that is new; returns whether it has begun to."""
         is_between = not reader and programs and time.monotonic() < self._read_at + _BETWEEN
         if asked is self._asked or is_between:
-            return 0
+            return False
         self._asked = asked
         self._record(KeyboardAsked(0, asked, programs.get(reader, "")))
-        return reader
+        return bool(reader)
 
 
-def _reads_terminal(process: int, near: int) -> bool:
-    """Whether a thread of a process is in a system call that reads from the terminal."""
+def _reads(process: int, near: int, mode: Reading) -> bool:
+    """Whether a thread of a process is in a system call that reads from the terminal, or waits for that.
+
+    A program that sets the terminal anew for each key loses those that are typed in between.
+    """
     terminal = os.ttyname(near)
-    with suppress(OSError):
-        for call in Path(f"/proc/{process}/task").glob("*/syscall"):
-            with suppress(OSError):
-                number, *arguments = call.read_text().split()
-                if number == _READ:
-                    found = Path(f"/proc/{process}/fd/{int(arguments[0], 16)}").readlink()
-                    return str(found) in (terminal, "/dev/tty")
+    for call in Path(f"/proc/{process}/task").glob("*/syscall"):
+        with suppress(OSError):
+            number, *arguments = call.read_text().split()
+            if number == _READ:
+                found = Path(f"/proc/{process}/fd/{int(arguments[0], 16)}").readlink()
+                if str(found) in (terminal, "/dev/tty"):
+                    return True
+            is_main = call.parent.name == str(process)
+            if mode.takes_keys and is_main and number in _SELECTS.get(platform.machine(), ()):
+                return True
     return False

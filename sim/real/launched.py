@@ -225,6 +225,7 @@ class LaunchedPrograms:
 
     def _end(self, program: Program) -> None:
         on_exit = self._running.pop(program)
+        program.show_rest()
         outcome = program.outcome()
         if program.number:
             self.record(ProcessEnded(0, program.number, outcome.reason, program.status))

@@ -40,6 +40,7 @@ class LineReader:
         self._take = take
         self._closed = closed
         self._rest = b""
+        self._is_open = True
         os.set_blocking(source.fileno(), False)
         selector.register(source, EVENT_READ, self.read)
 
@@ -55,13 +56,19 @@ class LineReader:
         if whole or end:
             self._take(whole + end)
         if not data:
+            self._is_open = False
             self._selector.unregister(self._source)
             self._source.close()
-            self.take_rest()
+            self._take_rest()
             self._closed()
 
-    def take_rest(self) -> None:
-        """Hand on what has come of a line that is not whole."""
+    def read_all(self) -> None:
+        """Read what is there, and hand it on though it is no whole line."""
+        if self._is_open:
+            self.read()
+        self._take_rest()
+
+    def _take_rest(self) -> None:
         rest, self._rest = self._rest, b""
         if rest:
             self._take(rest)

@@ -204,9 +204,9 @@ class Program:
         return Outcome(reason, failed=status != 0)
 
     def show_rest(self) -> None:
-        """Show what it has written of a line: it waits for an answer."""
+        """Show all that it has written so far, be it no whole line."""
         for reader in self._readers:
-            reader.take_rest()
+            reader.read_all()
 
     def interrupt(self) -> None:
         """Have it, and what it started, end as Ctrl-C would."""

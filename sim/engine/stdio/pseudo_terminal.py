@@ -60,7 +60,7 @@ class PseudoTerminal:
         then forgets what else it was sent, as ``tty.setraw`` does, would lose the others.
         ``is_last``: no more will be typed.
         """
-        while not (readable := self._is_readable()) and self.has_more:
+        while not (readable := self.has_unread) and self.has_more:
             takes_keys = self.mode().takes_keys
             found = (_KEY if takes_keys else _LINE).match(self._text, self._place, self._place + _LONGEST)
             assert found is not None
@@ -70,10 +70,12 @@ class PseudoTerminal:
         if self._line_begun and not readable and is_last:
             self._line_begun = False
             self.send(END_OF_INPUT)
-            readable = self._is_readable()
+            readable = self.has_unread
         return readable
 
-    def _is_readable(self) -> bool:
+    @property
+    def has_unread(self) -> bool:
+        """Whether something has been handed on that has not been read."""
         return bool(_select([self.near], [], [], 0)[0])
 
     def send(self, text: str) -> None:
