@@ -231,9 +231,12 @@ def test_a_socket_is_there_only_once_it_answers(
 ) -> None:
     found: list[list[Path]] = []
     listen = socket.socket.listen
-    monkeypatch.setattr(
-        socket.socket, "listen", lambda *each: (found.append(sockets_in(folder)), listen(*each))
-    )
+
+    def looked_at(listener: socket.socket, backlog: int) -> None:
+        found.append(sockets_in(folder))
+        listen(listener, backlog)
+
+    monkeypatch.setattr(socket.socket, "listen", looked_at)
     server = Server(recorder, lambda: None)
     server.start(str(folder))
     server.close()

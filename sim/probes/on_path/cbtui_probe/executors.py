@@ -29,6 +29,8 @@ class Spinner:
         self.threads = threads
         self.waits = False
         """Whether a thread waits in it for something to become ready."""
+        self.has_wait_set = True
+        """Whether it waits by a wait set, in which its entities are then."""
         self.busy: dict[int, int] = {}
         """The threads that run its callbacks, and the entities of these, by their ids on the trace."""
         self._spun_at = -_IDLE
@@ -117,6 +119,7 @@ class Executors:
         def spin_known(executor: Any, *args: Any, **kwargs: Any) -> Any:
             here = self._recorder.here
             spinner = self._spinners.get(executor) or self._know(executor, 1)
+            spinner.has_wait_set = False
             outer, here.spinner = here.spinner, spinner
             spinner.waits = True
             try:
