@@ -12,7 +12,7 @@ def ticks_during_one_call(run: Timeline) -> int:
     ticks = calls_of(run, "timer_callback", call)
     if not ticks:
         return 2
-    late = max(tick.age for tick in ticks) > SECOND // 20
+    late = max(tick.age for tick in ticks) > SECOND // 4
     return 1 if late or len(ticks) < 5 else 0
 
 

@@ -16,7 +16,13 @@ def sensors_while_rotating(run: Timeline) -> int:
 
 def first_after_the_rotation(run: Timeline) -> int:
     """Whether a sensor's callback or the timer's came first."""
-    ended = rotations(run)[0].end
+    turn = rotations(run)[0]
+    middle = (turn.start + turn.end) // 2
+    ended = next(
+        call.end_at(run.end)
+        for call in calls_of(run, "timer_callback")
+        if call.start <= middle < call.end_at(run.end)
+    )
     after = Window(ended, run.end)
     sensor = min(
         calls_of(run, topic, after)[0].start for topic in ("/odom", "/scan")

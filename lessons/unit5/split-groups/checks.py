@@ -16,7 +16,7 @@ from sim.trace.timeline import Timeline
 CHECKS = (
     keeps_coming("/odom", ROTATES, at_least=15),
     keeps_coming("/scan", ROTATES, at_least=15),
-    data_never_older("/scan", "timer_callback", 0.2),
+    data_never_older("/scan", "timer_callback", 0.3),
     turns(1),
     never_overlap("timer_callback"),
 )
@@ -37,7 +37,9 @@ def sensors_while_rotating(run: Timeline) -> int:
 def ticks_of_the_rotation(run: Timeline) -> int:
     """Whether ticks ran beside the rotation, all after it, or one."""
     turn = rotations(run)[0]
-    if calls_of(run, "timer_callback", Window(turn.start + 1, turn.end)):
+    # The command to stop comes a little later to the robot than to its end.
+    begun, ended = turn.start + SECOND // 10, turn.end - SECOND // 10
+    if calls_of(run, "timer_callback", Window(begun, ended)):
         return 0
-    soon = Window(turn.end, turn.end + SECOND // 4)
+    soon = Window(ended, turn.end + SECOND // 4)
     return 2 if len(calls_of(run, "timer_callback", soon)) == 1 else 1

@@ -34,7 +34,8 @@ def first_call_without_a_reply(run: Timeline) -> int:
         return 1
     if hung[0] is calls[0]:
         return 0
-    return 2 if len(hung) > 1 and hung[0].sent == hung[1].sent else 1
+    together = len(hung) > 1 and hung[1].sent - hung[0].sent < SECOND // 10
+    return 2 if together else 1
 
 
 def clamp_after_it_hangs(run: Timeline) -> int:

@@ -43,5 +43,5 @@ def watch_during_the_print(run: Timeline) -> int:
     meanwhile = Window(first.start + 1, first.end)
     if calls_of(run, "watch_callback", meanwhile):
         return 0
-    soon = Window(first.end, first.end + SECOND // 10)
+    soon = Window(first.end, first.end + SECOND // 20)
     return 2 if len(calls_of(run, "watch_callback", soon)) > 1 else 1

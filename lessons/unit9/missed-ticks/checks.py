@@ -62,6 +62,11 @@ def ticks_that_were_missed(run: Timeline) -> int:
 def rhythm_afterwards(run: Timeline) -> int:
     """Whether the ticks go on as before, or from the late one."""
     long, late, following, *_ = _ticks_from_delivery(run)
-    if (following.start - long.start) % SECOND < SECOND // 100:
+    if _is_whole(following.start - long.start):
         return 0
-    return 1 if following.start - late.start == SECOND else 2
+    return 1 if _is_whole(following.start - late.start) else 2
+
+
+def _is_whole(length: int) -> bool:
+    """Whether a length is one of whole seconds, but for a machine's jitter."""
+    return abs(length - round(length / SECOND) * SECOND) < SECOND // 10
