@@ -100,7 +100,7 @@ def attach(options: argparse.Namespace) -> int:
         refuse("no process can be watched: start one with cbtui probe -- COMMAND")
     if options.list:
         for hello in found:
-            say(f"{label_of(hello)}  Python {hello.python}  {' '.join(hello.command)}")
+            say(f"{label_of(hello)}  Python {hello.python}  {' '.join(hello.command)}\n")
         return 0
     watched = str(folder) if numbers or not addresses else ""
     real = RealRos(watched=watched, processes=numbers, addresses=addresses)
