@@ -1,9 +1,11 @@
 """Examines optional parts: an editor, the console in a browser, and an installed ROS 2."""
 
+import re
 import shlex
 import shutil
 import socket
 from collections.abc import Iterator, Mapping
+from importlib.metadata import distributions
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -50,7 +52,15 @@ def ros(environment: Mapping[str, str]) -> Iterator[Examination]:
         spec = find_spec("rclpy")
     except (ImportError, ValueError):
         spec = None
-    if spec is not None:
+    installed = (re.fullmatch(r"ros-(\w+)-rclpy", each.name) for each in distributions())
+    wheels = sorted({match[1] for match in installed if match is not None})
+    if len(wheels) > 1:
+        yield note(
+            "ROS 2",
+            f"the wheels of {' and '.join(wheels)} are in one Python, and have overwritten each other",
+            "make a venv for each, and name its interpreter with --on ros2 --python EXE",
+        )
+    elif spec is not None:
         place = Path(spec.origin).parent if spec.origin else "this Python's path"
         yield well("ROS 2", f"a real rclpy lies in {place}; --on ros2 runs programs on it")
     elif distribution:

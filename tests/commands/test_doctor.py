@@ -307,3 +307,15 @@ def test_doctor_says_which_real_ros_there_is(tmp_path: Path, monkeypatch: pytest
     [found] = ros({"ROS_DISTRO": "jazzy"})
     assert found.sign is Sign.WELL
     assert str(tmp_path / "rclpy") in found.what
+
+
+def test_wheels_of_two_distributions_in_one_python_are_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("ros-jazzy-rclpy", "ros-kilted-rclpy"):
+        about = tmp_path / f"{name.replace('-', '_')}-1.0.dist-info"
+        about.mkdir()
+        (about / "METADATA").write_text(f"Metadata-Version: 2.1\nName: {name}\nVersion: 1.0\n")
+    monkeypatch.setattr("sys.path", [str(tmp_path)])
+    [found] = ros({})
+    assert "the wheels of jazzy and kilted are in one Python" in found.what
