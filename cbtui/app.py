@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from cbtui.runs.compared_runs import ComparedRun, ComparisonTerms
     from cbtui.runs.setup.changes import Changes
     from cbtui.runs.setup.shown_program import ShownProgram
-    from sim.engine.setup import RunSetup
+    from sim.engine.setup import RealRos, RunSetup
     from sim.recording import Recording
 
 
@@ -159,7 +159,8 @@ class CbtuiApp(EndingApp):
         if self._start_lesson is not None:
             self.open_lesson(find(self._start_lesson), self._start_changes)
         elif self._start_exercise is not None:
-            self.open_exercise(find(self._start_exercise))
+            changes = self._start_changes
+            self.open_exercise(find(self._start_exercise), None if changes is None else changes.real)
         elif self._start_file is not None:
             path, arguments, clock = self._start_file
             self._run_file(path, arguments, clock, self._start_changes)
@@ -179,15 +180,18 @@ class CbtuiApp(EndingApp):
         self._show_program(of_lesson(lesson, lessons()), changes)
         self._remember(RecentKind.LESSON, lesson.id)
 
-    def open_exercise(self, lesson: Lesson) -> None:
-        """Run and check the exercise file in the current folder; created from the starter if missing."""
+    def open_exercise(self, lesson: Lesson, real: "RealRos | None" = None) -> None:
+        """Run and check the exercise file in the current folder; created from the starter if missing.
+
+        With ``real`` it runs on that ROS 2.
+        """
         from cbtui.learning.exercise_files import CannotPlaceError, own_file
         from cbtui.screens.exercise import ExerciseScreen
         from lessons.lesson import BadLesson
 
         try:
             file = own_file(lesson, Path().absolute())
-            screen = ExerciseScreen(lesson, lessons(), file.path, self._open_session, self.charset)
+            screen = ExerciseScreen(lesson, lessons(), file.path, self._open_session, self.charset, real)
         except FileNotFoundError:
             self.notify("The current folder is gone; start the console in another one.", severity="error")
             return

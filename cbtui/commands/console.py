@@ -1,6 +1,7 @@
 """``cbtui``, ``cbtui open`` and ``cbtui replay``: the commands that open the console."""
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 
 from cbtui.commands.check import exercise_of
@@ -59,11 +60,12 @@ def open_console(options: argparse.Namespace) -> int:
 
 def _open_exercise(options: argparse.Namespace) -> int:
     lesson = exercise_of(options.target)
-    if changes.seeded_changes_of(options).words:
+    changed = changes.seeded_changes_of(options)
+    if replace(changed, real=None).words:
         refuse("an exercise is run as your file says: change that, and leave the options on threads and such")
     look = appearance(options)
     need_terminal("cbtui check")
-    app = console_of(look, start_exercise=lesson.id)
+    app = console_of(look, start_exercise=lesson.id, start_changes=changed)
     app.run()
     return app.return_code or 0
 

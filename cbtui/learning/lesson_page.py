@@ -152,7 +152,7 @@ def _shown(lesson: Lesson, standing: PageState, signs: PageKeys) -> str:
         _verdict(prediction, answers[place] if place < len(answers) else None, true)
         for place, (prediction, true) in enumerate(zip(lesson.predictions, outcome.true, strict=True))
     ]
-    held = f"Read off {run_text(lesson)}."
+    held = f"Read off {run_text(lesson)}{' on real ROS 2' if outcome.is_real else ''}."
     return "\n\n".join((f"## What the run showed: {tally(lesson, standing)}", *told, held))
 
 

@@ -10,7 +10,7 @@ from sim.plural import counted
 
 if TYPE_CHECKING:
     from cbtui.runs.judged.checking import ObservedRun
-    from sim.engine.setup import RunSetup
+    from sim.engine.setup import RealRos, RunSetup
 
 Observe: TypeAlias = Callable[["RunSetup", str, Event], "ObservedRun"]
 """Runs a set-up to its end on the caller's thread; the event aborts the run."""
@@ -22,17 +22,21 @@ class PredictionOutcome:
 
     true: tuple[int, ...] = ()
     trouble: str | None = None
+    is_real: bool = False
+    """Whether they were read off a run on real ROS 2."""
 
 
 class OutcomeRun:
     """The run that predictions are compared with.
 
-    ``run`` blocks and needs a thread of its own; ``give_up`` may be called from any other.
+    ``run`` blocks and needs a thread of its own; ``give_up`` may be called from any other. With ``real`` it
+    is on that ROS 2, and takes its time.
     """
 
-    def __init__(self, lesson: Lesson, observe: Observe) -> None:
+    def __init__(self, lesson: Lesson, observe: Observe, real: "RealRos | None" = None) -> None:
         self._lesson = lesson
         self._observe = observe
+        self._real = real
         self._given_up = Event()
         self._ended = Event()
 
@@ -62,11 +66,13 @@ class OutcomeRun:
         from lessons.judge import Judge
 
         judge = Judge(self._lesson)
-        observed = self._observe(setup_to_judge(self._lesson), self._lesson.node_path.name, self._given_up)
+        setup = setup_to_judge(self._lesson, real=self._real)
+        observed = self._observe(setup, self._lesson.node_path.name, self._given_up)
         if observed.broken_off:
             return PredictionOutcome(trouble=observed.trouble)
         return PredictionOutcome(
-            tuple(judge.true_answer(each, observed.timeline) for each in self._lesson.predictions)
+            tuple(judge.true_answer(each, observed.timeline) for each in self._lesson.predictions),
+            is_real=self._real is not None,
         )
 
 

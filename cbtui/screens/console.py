@@ -5,9 +5,11 @@ from typing import Any, Protocol, cast
 from textual.screen import Screen
 
 from cbtui.learning.outcome import Observe
+from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.recent import RecentEntry
 from lessons.lesson import Lesson
 from lessons.progress import Progress
+from sim.engine.setup import RealRos
 
 
 class Console(Protocol):
@@ -18,11 +20,11 @@ class Console(Protocol):
     observe: Observe
     """Runs a lesson in the background, to find the true answers to its predictions."""
 
-    def open_lesson(self, lesson: Lesson) -> None:
-        """Run a lesson on screen, in place of another that may be open."""
+    def open_lesson(self, lesson: Lesson, changes: Changes | None = None) -> None:
+        """Run a lesson on screen, in place of another that may be open, as it is or with changes."""
 
-    def open_exercise(self, lesson: Lesson) -> None:
-        """Run and check the learner's file for a lesson's exercise."""
+    def open_exercise(self, lesson: Lesson, real: RealRos | None = None) -> None:
+        """Run and check the learner's file for a lesson's exercise, on the model or on that ROS 2."""
 
     def open_file(self, entry: RecentEntry) -> None:
         """Run a program or show a recording.

@@ -33,6 +33,7 @@ from cbtui.widgets.checks import ChecksSheet, CheckStatus, ChecksView
 from cbtui.widgets.checks.exercise_sheet import ExerciseKeys, ExerciseTexts
 from cbtui.widgets.diagnosis import Diagnosis, DiagnosisLevel
 from lessons.lesson import Lesson
+from sim.engine.setup import RealRos
 
 _BUDGET_INTERVAL = 0.2
 """Seconds between two checks of a run's budget."""
@@ -66,13 +67,14 @@ class ExerciseScreen(RunScreen[LiveRun]):
         file: Path,
         open_session: OpenSession,
         charset: Charset,
+        real: RealRos | None = None,
     ) -> None:
-        """Prepare the first run of the learner's file.
+        """Prepare the first run of the learner's file, on the model or on that ROS 2.
 
         Raises:
             BadLesson: its checks cannot be read.
         """
-        subject = of_exercise(lesson, lessons, file)
+        subject = of_exercise(lesson, lessons, file, real)
         self._open_session = open_session
         self._judging = Judging(lesson, subject.following, file)
         runs = RunController(self._make_run, self.post)
@@ -99,7 +101,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
                 is_readable=lambda _: True,
                 is_done=lambda: self._sheet.standing is CheckStatus.PASSED,
             ),
-            lesson=lambda: self.console.open_lesson(lesson),
+            lesson=lambda: self.console.open_lesson(lesson, Changes(real=real)),
         )
         runs.begin(speed=None)
 
@@ -114,9 +116,9 @@ class ExerciseScreen(RunScreen[LiveRun]):
         return self._judging.sheet is not None
 
     def _make_run(self, speed: float | None, deliver: Deliver, ended: Ended) -> LiveRun:
-        self._judging.begin()
         title = f"{self._judging.file.name}, run {self.runs.number}"
         setup = msgspec.structs.replace(self.subject.set_up(None, speed), title=title)
+        self._judging.begin(setup)
         return LiveRun(setup, self._open_session, deliver, ended)
 
     # what is shown

@@ -1,6 +1,7 @@
 """The screen of a lesson or of the user's own program."""
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import msgspec
 from textual import on
@@ -49,7 +50,7 @@ class LessonScreen(RunScreen[LiveRun]):
         self._predictions: Predictions | None = None
         lesson, more = subject.lesson, {}
         if lesson is not None and lesson.exercise is not None:
-            more["exercise"] = lambda: self.console.open_exercise(lesson)
+            more["exercise"] = lambda: self.console.open_exercise(lesson, runs.run.setup.real)
         self.add_parts(
             PaceKeys(self, runs),
             RecordingKey(self, runs, self.finisher),
@@ -98,7 +99,8 @@ class LessonScreen(RunScreen[LiveRun]):
     def start(self) -> None:
         """Start after the predictions, which are about the unchanged node."""
         predictions = self._predictions
-        if predictions is not None and predictions.can_predict and not self.changes.words:
+        unchanged = not replace(self.changes, real=None).words
+        if predictions is not None and predictions.can_predict and unchanged:
             predictions.ask(self._start_after)
         else:
             super().start()

@@ -107,7 +107,9 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
         """Add a screen's own parts, and actions by their ids, to the common ones."""
         following = self.subject.following
         if following is not None:
-            more["next_lesson"] = lambda: self.console.open_lesson(following)
+            more["next_lesson"] = lambda: self.console.open_lesson(
+                following, Changes(real=self.runs.run.setup.real)
+            )
         every = (self.navigation, self.panes, self.bars, self.selection, self._exports, self._copy)
         self._parts = ScreenParts(self, Scope.LESSON, *every, *parts, **more)
         self._keys = OfferedKeys(self, self._parts, self.charset)

@@ -1,16 +1,20 @@
 """Exercises are judged on real ROS 2 as on the model."""
 
 from pathlib import Path
+from threading import Event
 
 import pytest
 
 from cbtui import cli
 from cbtui.commands.grade import SUSPICIOUS
 from cbtui.commands.options import changes
-from cbtui.runs.judged.checking import real_limit
+from cbtui.learning.outcome import OutcomeRun
+from cbtui.runs.judged.checking import ObservedRun, real_limit
 from cbtui.runs.setup.lesson_setup import setup_to_judge
+from cbtui.runs.setup.shown_program import of_exercise
 from lessons.catalogue import find
-from sim.engine.setup import RealRos
+from sim.engine.setup import RealRos, RunSetup
+from sim.trace.timeline import Timeline
 from tests.real.programs import needs_ros
 
 
@@ -68,6 +72,27 @@ def lie(recorder):
 recorder = next(each for each in gc.get_objects() if type(each).__name__ == "Recorder")
 threading.Thread(target=lie, args=(recorder,), daemon=True).start()
 """
+
+
+def test_a_lessons_answers_are_read_off_a_run_on_the_ros_that_it_runs_on() -> None:
+    asked: list[RunSetup] = []
+
+    def observe(setup: RunSetup, _name: str, _given_up: Event) -> ObservedRun:
+        asked.append(setup)
+        return ObservedRun(Timeline(), "it was broken off", broken_off=True)
+
+    lesson = find("reentrant-1-thread")
+    for real in (None, RealRos("python3")):
+        assert OutcomeRun(lesson, observe, real).run().trouble == "it was broken off"
+    assert [setup.real for setup in asked] == [None, RealRos("python3")]
+    assert asked[1].calls == asked[0].calls
+    assert asked[1].until == asked[0].until
+
+
+def test_an_exercise_on_screen_runs_as_it_is_judged_on_real_ros() -> None:
+    lesson, real = find("split-groups"), RealRos()
+    shown = of_exercise(lesson, [lesson], Path(__file__), real)
+    assert shown.set_up(None, None) == setup_to_judge(lesson, Path(__file__), real=real)
 
 
 @needs_ros

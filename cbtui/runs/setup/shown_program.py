@@ -88,12 +88,15 @@ def of_lesson(lesson: Lesson, lessons: Sequence[Lesson]) -> ShownProgram:
     )
 
 
-def of_exercise(lesson: Lesson, lessons: Sequence[Lesson], file: Path) -> ShownProgram:
-    """Return a learner's file for a lesson's exercise; it runs as it is judged."""
+def of_exercise(
+    lesson: Lesson, lessons: Sequence[Lesson], file: Path, real: RealRos | None = None
+) -> ShownProgram:
+    """Return a learner's file for an exercise; it runs as it is judged, with ``real`` on that ROS 2."""
     subject = of_lesson(lesson, lessons)
 
     def set_up(threads: int | None, speed: float | None) -> RunSetup:
-        return replace(request_to_judge(lesson, file), changes=Changes(threads), speed=speed).setup()
+        changes = Changes(threads, real=real)
+        return replace(request_to_judge(lesson, file), changes=changes, speed=speed).setup()
 
     return replace(
         subject,

@@ -4,7 +4,7 @@ import asyncio
 from dataclasses import replace
 from pathlib import Path
 
-from cbtui.runs.judged.checking import CheckedFile, ObservedRun
+from cbtui.runs.judged.checking import LIMIT, CheckedFile, ObservedRun, real_limit
 from cbtui.runs.judged.run_budget import RunBudget
 from cbtui.runs.live.file_watch import content_of
 from cbtui.runs.live.live_run import LiveRun
@@ -12,6 +12,7 @@ from cbtui.widgets.checks import ChecksSheet, CheckStatus
 from cbtui.widgets.checks.exercise_sheet import ExerciseKeys, ExerciseTexts
 from lessons.judge import Judge
 from lessons.lesson import Lesson
+from sim.engine.setup import RunSetup
 from sim.trace.model import Nanoseconds
 
 
@@ -34,10 +35,10 @@ class Judging:
         self._judge = Judge(lesson)
         self._content: bytes | None = None
 
-    def begin(self) -> None:
+    def begin(self, setup: RunSetup) -> None:
         """Note that a run of the file's current content begins."""
         self._content = content_of(self.file)
-        self.budget = RunBudget()
+        self.budget = RunBudget(real_limit(setup, LIMIT))
         self.sheet = None
 
     def is_changed_by(self, content: bytes | None) -> bool:

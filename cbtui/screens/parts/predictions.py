@@ -128,7 +128,8 @@ class Predictions(ScreenPart):
             return
         if standing is not None and standing.outcome is not None and standing.outcome.trouble is None:
             return
-        run = self._run = OutcomeRun(self.learning.lesson, self.host.console.observe)
+        real = self.runs.run.setup.real
+        run = self._run = OutcomeRun(self.learning.lesson, self.host.console.observe, real)
         self.learning.outcome_pending = True
         self.screen.run_worker(
             lambda: self.screen.post_message(self.Found(run.run())), thread=True, group="outcome"
