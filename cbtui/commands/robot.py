@@ -98,7 +98,7 @@ class _Status:
 def _sentence(robot: "RobotMoved") -> str:
     ahead = f"{robot.front:.2f} m ahead" if math.isfinite(robot.front) else "free ahead"
     said = [
-        f"at {robot.x:.2f} {robot.y:.2f} m, {round(math.degrees(robot.yaw)) + 0} deg",
+        f"at {_rounded(robot.x)} {_rounded(robot.y)} m, {round(math.degrees(robot.yaw)) + 0} deg",
         f"{_rounded(robot.linear)} m/s, {_rounded(robot.angular)} rad/s",
         ahead,
     ]

@@ -12,12 +12,22 @@ import pytest
 from cbtui import cli
 from cbtui.engines.control_socket import runtime_folder
 from cbtui.engines.session import ProcessSession
-from cbtui.runs.setup.shown_program import of_processes
-from sim.engine.commands import Stop
+from cbtui.runs.setup.shown_program import of_processes, of_robot
+from sim.engine.commands import CallService, RunLine, Stop
 from sim.engine.setup import RealRos
 from sim.real.probe_link import processes_in
 from sim.real.wire import Hello
-from sim.trace.events import AnyEvent, CallbackEnded, ProcessAppeared, RunEnded
+from sim.trace.events import (
+    AnyEvent,
+    CallbackEnded,
+    EntityAppeared,
+    LineEnded,
+    LineSaid,
+    ProcessAppeared,
+    RunEnded,
+    ServiceCalled,
+    VelocityCommanded,
+)
 from tests.real import programs
 from tests.real.programs import needs_ros
 
@@ -95,6 +105,45 @@ def watched(folder: Path, found: list[Hello]) -> list[AnyEvent]:
         session.stop()
     assert batch is None
     return events
+
+
+@needs_ros
+@pytest.mark.slow
+def test_lines_and_calls_act_on_the_graph_of_what_is_watched(
+    tmp_path: Path, folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", "93")
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    file = tmp_path / "tried.py"
+    body = programs.CALLS_ITSELF.replace("self.client.call(", "self.client.call_async(")
+    file.write_text(programs.HEAD + body + programs.TAIL.format(executor="SingleThreadedExecutor()"))
+    probe = [sys.executable, "-m", "cbtui", "probe", "--", sys.executable, str(file)]
+    news: Queue[list[AnyEvent] | str | None] = Queue()
+    session = ProcessSession(of_robot(folder, 5.0).set_up(None, 1.0), news.put, news.put)
+    session.start()
+    said: list[str] = []
+    called: set[str] = set()
+    moved = 0
+    is_there = False
+    with subprocess.Popen(probe, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
+        try:
+            while isinstance(batch := news.get(timeout=60), list):
+                if not is_there and any(isinstance(event, EntityAppeared) for event in batch):
+                    is_there = True
+                    session.send(RunLine(1, "ros2 topic pub -w 1 -t 3 -r 5 /cmd_vel geometry_msgs/Twist"))
+                    session.send(CallService("/switch", data=True))
+                said += [event.text for event in batch if isinstance(event, LineSaid)]
+                called |= {e.service for e in batch if isinstance(e, ServiceCalled) and e.entity == 0}
+                moved += sum(isinstance(event, VelocityCommanded) for event in batch)
+                if any(isinstance(event, LineEnded) for event in batch):
+                    session.send(Stop())
+        finally:
+            session.stop()
+            process.kill()
+    assert batch is None
+    assert sum(each.startswith("publishing #") for each in said) == 3
+    assert moved == 3
+    assert called == {"/switch"}
 
 
 def test_the_runtime_folder_is_the_users_alone(folder: Path) -> None:
