@@ -29,15 +29,15 @@ class Spinner:
         self.threads = threads
         self.waits = False
         """Whether a thread waits in it for something to become ready."""
-        self.has_wait_set = True
-        """Whether it waits by a wait set, in which its entities are then."""
         self.busy: dict[int, int] = {}
         """The threads that run its callbacks, and the entities of these, by their ids on the trace."""
+        self.spins = 0
+        """How many calls that spin it until something happens have not returned."""
         self._spun_at = -_IDLE
 
     def is_spun(self) -> bool:
-        """Whether it waits or runs a callback, or did just now."""
-        return self.waits or bool(self.busy) or now() - self._spun_at < _IDLE
+        """Whether such a call goes on, it waits or runs a callback, or did just now."""
+        return self.spins > 0 or self.waits or bool(self.busy) or now() - self._spun_at < _IDLE
 
     def spun(self) -> None:
         """It is being spun now."""
@@ -56,8 +56,9 @@ class Executors:
         """What is known of an executor."""
         return None if executor is None else self._spinners.get(executor)
 
-    def watch(self, executors: Any, rclpy_implementation: Any) -> None:
-        """Come to know the executors of the module ``rclpy.executors``, and those made of C++."""
+    def watch(self, rclpy: Any, rclpy_implementation: Any) -> None:
+        """Come to know the executors of rclpy, and those made of C++."""
+        executors = rclpy.executors
         base, pool_class = executors.Executor, executors.MultiThreadedExecutor
         make, make_pool, wait = base.__init__, pool_class.__init__, base.wait_for_ready_callbacks
         add = base.add_node
@@ -103,6 +104,9 @@ class Executors:
         base.add_node = add_node
         pool_class.__init__ = init_pool
         base.wait_for_ready_callbacks = wait_for_ready_callbacks
+        self._watch_spinning(base, "spin", _itself)
+        self._watch_spinning(base, "spin_until_future_complete", _itself)
+        self._watch_spinning(rclpy, "spin", lambda _, executor=None: executor or rclpy.get_global_executor())
         if hasattr(rclpy_implementation, "EventsExecutor"):
             for name in (
                 "spin",
@@ -110,31 +114,36 @@ class Executors:
                 "spin_until_future_complete",
                 "spin_once_until_future_complete",
             ):
-                self._watch_spinning(rclpy_implementation.EventsExecutor, name)
+                self._watch_spinning(rclpy_implementation.EventsExecutor, name, _itself)
 
-    def _watch_spinning(self, executor_class: Any, name: str) -> None:
-        """Of an executor made of C++ only who spins it can be known, and when."""
-        spin = getattr(executor_class, name)
+    def _watch_spinning(self, owner: Any, name: str, executor_of: Callable[..., Any]) -> None:
+        """Know that an executor is spun while a function that spins it goes on.
 
-        def spin_known(executor: Any, *args: Any, **kwargs: Any) -> Any:
-            here = self._recorder.here
+        Of one made of C++ no more can be known.
+        """
+        spin = getattr(owner, name)
+
+        @wraps(spin)
+        def spin_known(*args: Any, **kwargs: Any) -> Any:
+            executor = executor_of(*args, **kwargs)
             spinner = self._spinners.get(executor) or self._know(executor, 1)
-            spinner.has_wait_set = False
+            here = self._recorder.here
             outer, here.spinner = here.spinner, spinner
-            spinner.waits = True
+            spinner.spins += 1
             try:
-                return spin(executor, *args, **kwargs)
+                return spin(*args, **kwargs)
             finally:
-                spinner.waits = False
+                spinner.spins -= 1
                 spinner.spun()
                 here.spinner = outer
 
-        setattr(executor_class, name, spin_known)
+        setattr(owner, name, spin_known)
 
     def _serves(self, executor: Any, node: Any) -> bool:
         """Whether an executor has a node, and is being spun at this moment."""
         spinner = self.spinner_of(executor)
-        return spinner is not None and (spinner.waits or bool(spinner.busy)) and node in executor.get_nodes()
+        is_spun = spinner is not None and bool(spinner.spins or spinner.waits or spinner.busy)
+        return is_spun and node in executor.get_nodes()
 
     def _know(self, executor: Any, threads: int) -> Spinner:
         spinner = Spinner(self._recorder.new_id(), threads)
@@ -160,3 +169,7 @@ def _call_into_rclpy() -> tuple[str, str, int]:
             return function, "", 0
         frame = frame.f_back
     return function, frame.f_code.co_filename, frame.f_lineno
+
+
+def _itself(executor: Any, *_args: Any, **_kwargs: Any) -> Any:
+    return executor

@@ -35,7 +35,7 @@ def install(folder: str) -> None:
     executors, entities = Executors(recorder, tuning), Entities(recorder, tuning)
     server = Server(recorder, Waits(recorder, entities, executors, rclpy_implementation).look)
     server.start(folder)
-    executors.watch(rclpy.executors, rclpy_implementation)
+    executors.watch(rclpy, rclpy_implementation)
     entities.watch(rclpy.node.Node)
     entities.watch_publishing(rclpy.publisher.Publisher)
     watch_clients(recorder, rclpy.client.Client)

@@ -66,12 +66,7 @@ class Waits:
                         found[entity] = now() - late
                 elif made._executor_event:
                     found[entity] = now()
-                elif (
-                    spinner is None
-                    or not spinner.waits
-                    or not spinner.has_wait_set
-                    or reason[0] == GROUP_HELD
-                ):
+                elif spinner is None or not spinner.waits or reason[0] == GROUP_HELD:
                     unsure.append((kind, made, entity))
         for entity in self._ready_of(node, unsure):
             found[entity] = now()
