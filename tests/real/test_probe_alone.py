@@ -180,7 +180,9 @@ def test_what_has_appeared_is_told_to_everybody_who_comes(recorder: Recorder, co
 def test_a_process_that_ends_says_farewell(recorder: Recorder, folder: Path, come: Come) -> None:
     server = Server(recorder, lambda: None)
     server.start(str(folder))
+    say(recorder, "to who follows")
     console = come().follow()
+    assert text_of(console.next()) == "to who follows"
     server.close()
     assert isinstance(console.next(), Left)
 

@@ -165,8 +165,8 @@ _LINES = {
 def test_lines_act_on_the_real_graph(tmp_path: Path) -> None:
     path = tmp_path / "tried.py"
     path.write_text(programs.HEAD + _TALKS + programs.TAIL.format(executor="SingleThreadedExecutor()"))
-    lines = tuple(TimedLine(round((3 + 0.2 * n) * SECOND), text) for n, text in enumerate(_LINES))
-    setup = program_setup(path, 15.0, clock="real")
+    lines = tuple(TimedLine(round((8 + 0.2 * n) * SECOND), text) for n, text in enumerate(_LINES))
+    setup = program_setup(path, 20.0, clock="real")
     run = run_to_end(msgspec.structs.replace(setup, real=RealRos(), lines=lines))
     for number, (text, wanted) in enumerate(_LINES.items(), start=1):
         said = [e.text for e in run.events if isinstance(e, LineSaid) and e.line == number]

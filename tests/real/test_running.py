@@ -63,7 +63,8 @@ def test_what_a_full_queue_loses_is_counted(starved: Run) -> None:
 
 def test_log_and_output_are_told_of_once(starved: Run) -> None:
     logs = [event.text for event in starved.events if isinstance(event, Logged)]
-    prints = [event.text for event in starved.events if isinstance(event, Printed)]
+    own = ("works", "worked")  # rclpy itself may print at Ctrl-C that it could not publish any more
+    prints = [event.text for event in starved.events if isinstance(event, Printed) and event.text in own]
     assert set(logs) == {"works"}
     assert set(prints) == {"worked"}
     assert abs(len(logs) - len(prints)) <= 1
