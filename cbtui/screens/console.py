@@ -12,7 +12,7 @@ from lessons.progress import Progress
 from sim.engine.setup import RealRos
 
 
-class Console(Protocol):
+class ConsoleApp(Protocol):
     """The app as its screens see it."""
 
     progress: Progress
@@ -37,6 +37,6 @@ class Console(Protocol):
         """Report what was saved as a screen closed."""
 
 
-def console_of(screen: Screen[Any]) -> Console:
+def console_of(screen: Screen[Any]) -> ConsoleApp:
     """Return the console that shows a screen."""
-    return cast("Console", screen.app)
+    return cast("ConsoleApp", screen.app)

@@ -21,7 +21,7 @@ from cbtui.runs.live.live_recording import LiveRecording
 from cbtui.runs.live.live_run import LiveRun
 from cbtui.runs.setup.changes import Changes
 from cbtui.runs.setup.shown_program import ShownProgram
-from cbtui.screens.console import Console, console_of
+from cbtui.screens.console import ConsoleApp, console_of
 from cbtui.screens.diagnoses import problems_note
 from cbtui.screens.layout import Layout
 from cbtui.screens.parts import exporting
@@ -121,7 +121,7 @@ class RunScreen(SizedScreen[None], Generic[RunT_co]):
     # the interface for parts
 
     @property
-    def console(self) -> Console:
+    def console(self) -> ConsoleApp:
         """The app."""
         return console_of(self)
 

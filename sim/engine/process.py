@@ -34,7 +34,7 @@ from sim.engine.programs.program import ProgramOutcome
 from sim.engine.programs.programs import ProgramSupervisor
 from sim.engine.programs.ros2_lines import Lines
 from sim.engine.programs.set_up_programs import run_programs
-from sim.engine.programs.starting import Starter
+from sim.engine.programs.starting import ProgramStarter
 from sim.engine.programs.workspace_imports import use_workspace
 from sim.engine.requests import Requests
 from sim.engine.robot import provide_robot
@@ -98,7 +98,7 @@ class Engine:
         self._endless = None if virtual is None else EndlessWaits(virtual, self._host, record)
         self._descriptors = Descriptors(lambda text, error: record(Printed(clock.now(), text, error)))
         self._programs = ProgramSupervisor(self._host, record)
-        self._starter = Starter(self._programs, setup, _launch)
+        self._starter = ProgramStarter(self._programs, setup, _launch)
         self._lines = Lines(self._host, record, self._starter, self._programs.look)
         self._terminal = Terminal(clock, record, setup.keyboard, len(setup.typed))
         self._shutdown = RunShutdown(
@@ -221,11 +221,15 @@ def _ignore(_what: object) -> None:
 
 
 def _launch(
-    programs: ProgramSupervisor, starter: Starter, path: Path, arguments: Sequence[str], on_exit: "OnExit"
+    programs: ProgramSupervisor,
+    starter: ProgramStarter,
+    path: Path,
+    arguments: Sequence[str],
+    on_exit: "OnExit",
 ) -> "Running":
-    from sim.engine.programs.launching import Launching  # most runs launch nothing, and begin the sooner
+    from sim.engine.programs.launching import ModelLaunch  # most runs launch nothing, and begin the sooner
 
-    return Launching(programs, starter, path, arguments, on_exit).start()
+    return ModelLaunch(programs, starter, path, arguments, on_exit).start()
 
 
 def run(packed_setup: bytes, pipe: Connection, crash_dump: Connection) -> None:

@@ -14,7 +14,7 @@ from sim.engine.outbox import Outbox
 from sim.engine.programs.ending import GRACE, VIRTUAL_GRACE, flush_files_soon
 from sim.engine.programs.program import STOPPED, ProgramOutcome, threads_left_by
 from sim.engine.programs.programs import ProgramSupervisor
-from sim.engine.programs.starting import Starter
+from sim.engine.programs.starting import ProgramStarter
 from sim.engine.stdio.descriptors import Descriptors
 from sim.engine.stdio.output import finish_lines
 from sim.engine.time_control import RealControl, VirtualControl
@@ -53,7 +53,7 @@ class RunShutdown:
         outbox: Outbox,
         control: RealControl | VirtualControl,
         programs: ProgramSupervisor,
-        starter: Starter,
+        starter: ProgramStarter,
         descriptors: Descriptors,
         endless: EndlessWaits | None,
     ) -> None:

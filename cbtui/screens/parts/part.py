@@ -8,7 +8,7 @@ from textual.screen import Screen, ScreenResultCallbackType, ScreenResultType
 from cbtui.keys.action import Scope, method_of
 from cbtui.keys.actions import ACTIONS
 from cbtui.looks.theme import Charset
-from cbtui.screens.console import Console
+from cbtui.screens.console import ConsoleApp
 
 
 class ScreenPart:
@@ -38,7 +38,7 @@ class ScreenHost(WindowHost, Protocol):
     """A screen as its parts see it."""
 
     @property
-    def console(self) -> Console:
+    def console(self) -> ConsoleApp:
         """The app; available once the screen is shown."""
 
     def tell(self, sentence: str | None) -> None:

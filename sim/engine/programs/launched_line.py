@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from sim.engine.programs.line_tools import LineTools
 from sim.engine.programs.programs import ProgramSupervisor
-from sim.engine.programs.starting import Starter
+from sim.engine.programs.starting import ProgramStarter
 from sim.shell import OnExit, ShellLine
 from sim.shell.model_ground import ModelGround
 from sim.trace.events import Printed, ProcessEnded
@@ -15,7 +15,12 @@ class LaunchedLine:
     """Carries out the line from the moment of making on."""
 
     def __init__(
-        self, programs: ProgramSupervisor, starter: Starter, label: str, words: Sequence[str], on_exit: OnExit
+        self,
+        programs: ProgramSupervisor,
+        starter: ProgramStarter,
+        label: str,
+        words: Sequence[str],
+        on_exit: OnExit,
     ) -> None:
         self._programs = programs
         self._on_exit = on_exit

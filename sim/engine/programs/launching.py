@@ -7,14 +7,14 @@ from pathlib import Path
 from sim.engine.programs.launched_line import LaunchedLine
 from sim.engine.programs.program import ProgramOutcome, ProgramSpec
 from sim.engine.programs.programs import ProgramSupervisor, RunningProgram
-from sim.engine.programs.starting import Starter
+from sim.engine.programs.starting import ProgramStarter
 from sim.launch import LaunchRun, ProcessSpec, RunningProcess
 from sim.shell import OnExit
 from sim.trace.events import Printed
 from sim.units import wait_ns
 
 
-class Launching:
+class ModelLaunch:
     """Carries out one launch file. It counts as running until the launch is over.
 
     Everything that the launch does, it does one thing at a time: on whatever thread, under one lock.
@@ -23,7 +23,7 @@ class Launching:
     def __init__(
         self,
         programs: ProgramSupervisor,
-        starter: Starter,
+        starter: ProgramStarter,
         path: Path,
         arguments: Sequence[str],
         on_exit: OnExit,
@@ -36,7 +36,7 @@ class Launching:
         packages = starter.packages()
         self._run = LaunchRun(path, arguments, self, packages=packages, on_finish=self._over)
 
-    def start(self) -> "Launching":
+    def start(self) -> "ModelLaunch":
         """Begin.
 
         Raises:

@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from sim.engine.programs.starting import Starter, StartError
+from sim.engine.programs.starting import ProgramStarter, StartError
 
 if TYPE_CHECKING:
     from sim.packages import Packages
@@ -21,7 +21,7 @@ class LineTools:
     ``take`` gets text and whether it belongs on standard error, ``end`` the exit status.
     """
 
-    starter: Starter
+    starter: ProgramStarter
     take: Callable[[str, bool], None]
     end: Callable[[int], None]
 

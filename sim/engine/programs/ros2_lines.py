@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from sim.engine.programs.line_tools import LineTools
-from sim.engine.programs.starting import Starter
+from sim.engine.programs.starting import ProgramStarter
 from sim.engine.setup import TimedLine
 from sim.ros.middleware.host import Host
 from sim.trace.events import AnyEvent, LineCompleted, LineEnded, LineGiven, LineId, LineSaid
@@ -22,7 +22,11 @@ class Lines:
     """
 
     def __init__(
-        self, host: Host, record: Callable[[AnyEvent], None], starter: Starter, changed: Callable[[], None]
+        self,
+        host: Host,
+        record: Callable[[AnyEvent], None],
+        starter: ProgramStarter,
+        changed: Callable[[], None],
     ) -> None:
         self._host = host
         self._record = record

@@ -6,12 +6,12 @@ from pathlib import Path
 from sim.engine.programs.program import STOPPED, ProgramOutcome, script
 from sim.engine.programs.programs import ProgramSupervisor
 from sim.engine.programs.ros2_lines import Lines
-from sim.engine.programs.starting import Starter, StartError
+from sim.engine.programs.starting import ProgramStarter, StartError
 from sim.engine.setup import ProgramSetup
 
 
 def run_programs(
-    setup: tuple[ProgramSetup, ...], programs: ProgramSupervisor, starter: Starter, lines: Lines
+    setup: tuple[ProgramSetup, ...], programs: ProgramSupervisor, starter: ProgramStarter, lines: Lines
 ) -> ProgramOutcome:
     """Run all to their ends, and a run without programs to that of its lines; return how that went."""
     if len(setup) == 1 and not setup[0].is_launch_file:

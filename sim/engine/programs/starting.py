@@ -22,14 +22,14 @@ if TYPE_CHECKING:
     from sim.shell import OnExit, Running
 
 
-Launch: TypeAlias = "Callable[[ProgramSupervisor, Starter, Path, Sequence[str], OnExit], Running]"
+Launch: TypeAlias = "Callable[[ProgramSupervisor, ProgramStarter, Path, Sequence[str], OnExit], Running]"
 
 
 class StartError(Exception):
     """Something that cannot be started; the text is a sentence that says why, and where."""
 
 
-class Starter:
+class ProgramStarter:
     """Knows the packages around the run's programs, and starts what is in them. Thread-safe.
 
     ``launch`` carries out a launch file.
