@@ -16,7 +16,7 @@ from cbtui.runs.live.findings import ExplainedFinding, problem_count_text
 from cbtui.screens.window import WindowScreen
 from cbtui.text.cells import visible
 from cbtui.widgets.key_bar import KeyBar
-from sim.diagnosis import sentence, whereabouts
+from sim.diagnosis import location_text, sentence
 from sim.durations import timestamp
 from sim.plural import counted
 
@@ -112,7 +112,7 @@ def details_of(each: ExplainedFinding, charset: Charset) -> Content:
         (f"\n{visible(sentence(explained.why), charset)}", ""),
         (f"\n→ {visible(explained.cure, charset)}.", "$text-success"),
     ]
-    where = whereabouts(each.finding, explained)
+    where = location_text(each.finding, explained)
     if where:
         parts.append((f"\n{visible(where, charset)}", "$text-muted"))
     return Content.assemble(*parts)

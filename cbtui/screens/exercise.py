@@ -130,7 +130,7 @@ class ExerciseScreen(RunScreen[LiveRun]):
 
     def on_mount(self) -> None:
         """Watch the file and the run."""
-        self.set_interval(_BUDGET_INTERVAL, self.look_at_budget)
+        self.set_interval(_BUDGET_INTERVAL, self.check_budget)
         self.run_worker(self._watch_file(), group="file")
 
     def draw_pane(self, pane: Widget) -> None:
@@ -182,13 +182,13 @@ class ExerciseScreen(RunScreen[LiveRun]):
     @on(RunController.Over)
     def _judge_when_over(self, message: RunController.Over) -> None:
         if message.run == self.runs.number:
-            self._come_to_an_end(ended_run(self.runs.timeline, self._judging.file.name, message.trouble))
+            self._start_judging(ended_run(self.runs.timeline, self._judging.file.name, message.trouble))
 
     def allow(self, budget: RunBudget) -> None:
         """Replace the budget of the run on screen."""
         self._judging.budget = budget
 
-    def look_at_budget(self) -> None:
+    def check_budget(self) -> None:
         """Abort the run if it exceeds its budget."""
         sentence = self._judging.spent(self.runs.run)
         if sentence is not None:
@@ -200,9 +200,9 @@ class ExerciseScreen(RunScreen[LiveRun]):
         run = self.runs.run
         self.finisher.finish(run.over(sentence))
         self.run_worker(asyncio.to_thread(run.stop), group="stop")
-        self._come_to_an_end(ObservedRun(run.timeline, sentence, broken_off=True))
+        self._start_judging(ObservedRun(run.timeline, sentence, broken_off=True))
 
-    def _come_to_an_end(self, observed: ObservedRun) -> None:
+    def _start_judging(self, observed: ObservedRun) -> None:
         self.run_worker(self._judge(self.runs.number, observed), group="judge", exclusive=True)
 
     async def _judge(self, number: int, observed: ObservedRun) -> None:

@@ -92,12 +92,10 @@ class Camera:
             try:
                 answer = decoder.decode(self._pipe.recv_bytes())
             except (EOFError, OSError):
-                self._tell_of_the_end(
-                    "The camera's process has ended; show the camera again to start another."
-                )
+                self._report_end("The camera's process has ended; show the camera again to start another.")
                 return
             if isinstance(answer, NoCamera):
-                self._tell_of_the_end(answer.why)
+                self._report_end(answer.why)
                 return
             self._deliver(answer)
             with self._lock:
@@ -106,6 +104,6 @@ class Camera:
             if shot is not None:
                 self._send(shot)
 
-    def _tell_of_the_end(self, why: str) -> None:
+    def _report_end(self, why: str) -> None:
         if not self._stopping:
             self._lost(why)

@@ -178,7 +178,7 @@ class VirtualLock:
         self.holder = None
 
 
-def _tell_nobody(_what: str) -> None:
+def _ignore_report(_what: str) -> None:
     """Ignore a report."""
 
 
@@ -186,7 +186,7 @@ _ENTERS = VirtualLock.__enter__.__code__
 _LIBRARY = {__file__, _RLOCK_TAKES.co_filename, queue.Queue.get.__code__.co_filename}
 
 
-def live_on(clock: VirtualClock, tell: Callable[[str], None] = _tell_nobody) -> None:
+def live_on(clock: VirtualClock, tell: Callable[[str], None] = _ignore_report) -> None:
     """Replace Python's waits, its clocks and its random numbers for this process, for good.
 
     Call it on the clock's main thread. ``tell`` is called on a program's thread with a clause about each

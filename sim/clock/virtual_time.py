@@ -84,12 +84,12 @@ class VirtualTime:
         By then every deadline of the moment is served, each thread waits and ``before_jump`` was called, and
         the inputs given before have had all their effects on that moment. A long moment takes one input in
         each recess. So the moments and recesses of its inputs and their order determine a run, whatever their
-        real times were: ``give_at`` repeats it. The action must not wait.
+        real times were: ``schedule_input`` repeats it. The action must not wait.
         """
         self._inputs.given.append(action)
         self._inbox.ring()
 
-    def give_at(self, moment: int, action: Callable[[], None], recess: int = 0) -> None:
+    def schedule_input(self, moment: int, action: Callable[[], None], recess: int = 0) -> None:
         """Have an input carried out at the end of ``moment``, or in a recess of it.
 
         Call it in the order of the moments and recesses.
@@ -162,7 +162,7 @@ class VirtualTime:
             return
         assert target is not None
         if target > self.now:
-            self._come_to(target)
+            self._advance_to(target)
             if self.pace.steps:
                 self.stand_in_moment()
         if target == deadline:
@@ -173,7 +173,7 @@ class VirtualTime:
         while self.deadlines.first() == self.now and self.deadlines.first_is_thread():
             self._serve_deadline()
 
-    def _come_to(self, moment: int) -> None:
+    def _advance_to(self, moment: int) -> None:
         if moment > self.now:
             self.now = moment
             self.recesses.begin_moment()
@@ -197,7 +197,7 @@ class VirtualTime:
     def _goal_is_reached_before(self, target: int | None) -> bool:
         goal = self.pace.goal_before(target)
         if goal is not None:
-            self._come_to(goal)
+            self._advance_to(goal)
         elif target is not None or not self.pace.steps:
             return False
         self.pace.halt()
@@ -227,7 +227,7 @@ class VirtualTime:
             if delay is not None and delay <= 0:
                 return True
             self._inbox.rest(min(delay, _CHECK_PERIOD) if works and delay is not None else delay)
-        self._come_to(self.pace.reached(self.now, target))
+        self._advance_to(self.pace.reached(self.now, target))
         self._inbox.run_all()
         return False
 

@@ -3,7 +3,7 @@
 from sim.diagnosis.diagnoses import Diagnoses, diagnose
 from sim.diagnosis.rule import CodeLocation, Explanation, Finding, Rule, Weight
 from sim.diagnosis.rules import RULES
-from sim.diagnosis.text import findings_text, sentence, whereabouts
+from sim.diagnosis.text import findings_text, location_text, sentence
 from sim.diagnosis.timeline_view import TimelineView
 
 __all__ = [
@@ -18,5 +18,5 @@ __all__ = [
     "diagnose",
     "findings_text",
     "sentence",
-    "whereabouts",
+    "location_text",
 ]

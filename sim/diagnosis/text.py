@@ -30,7 +30,7 @@ def _lines(found: Finding, timeline: Timeline) -> Iterator[str]:
     yield from _wrapped(f"  {SIGNS[weight]} ", f"{explanation.what}.")
     yield from _wrapped("    ", sentence(explanation.why))
     yield from _wrapped("    → ", f"{explanation.cure}.")
-    where = whereabouts(found, explanation)
+    where = location_text(found, explanation)
     if where:
         yield f"      {where}"
 
@@ -40,7 +40,7 @@ def sentence(text: str) -> str:
     return f"{text[:1].upper()}{text[1:]}."
 
 
-def whereabouts(found: Finding, explanation: Explanation) -> str:
+def location_text(found: Finding, explanation: Explanation) -> str:
     """The source line and time of a finding: ``node.py:58, at 4.006 s``."""
     place = [] if explanation.place is None else [str(explanation.place)]
     time = [f"at {timestamp(found.at)}"] if found.at else []

@@ -53,7 +53,7 @@ class Obstacle:
 
 
 @dataclass(frozen=True, slots=True)
-class Stuck:
+class StuckCallback:
     """A callback that can never go on: since when it waits, and for what."""
 
     waiter: Waiter
@@ -73,7 +73,7 @@ class WaitForGraph:
         self._queued_at = dict(self._queue_owners())
         self.stuck = self._permanently_stuck(dict(self._waiting()))
 
-    def deadlocks(self) -> Iterator[tuple[Stuck, ...]]:
+    def deadlocks(self) -> Iterator[tuple[StuckCallback, ...]]:
         """The sets of callbacks that wait only for each other, each in waiting order."""
         reach = {waiter: self._reachable(waiter) for waiter in self.stuck}
         seen: set[Waiter] = set()
@@ -93,7 +93,7 @@ class WaitForGraph:
                     pending.append(other)
         return frozenset(reached)
 
-    def _in_order(self, deadlock: frozenset[Waiter]) -> tuple[Stuck, ...]:
+    def _in_order(self, deadlock: frozenset[Waiter]) -> tuple[StuckCallback, ...]:
         """Sort by waiting: the last to wait first, each followed by one that it waits for, if possible."""
         left = sorted((self.stuck[waiter] for waiter in deadlock), key=lambda each: -each.since)
         order = [left.pop(0)]
@@ -104,7 +104,7 @@ class WaitForGraph:
             order.append(following)
         return tuple(order)
 
-    def _permanently_stuck(self, waiting: dict[Waiter, Stuck]) -> dict[Waiter, Stuck]:
+    def _permanently_stuck(self, waiting: dict[Waiter, StuckCallback]) -> dict[Waiter, StuckCallback]:
         stuck = waiting
         while True:
             left = {
@@ -118,18 +118,21 @@ class WaitForGraph:
 
     # who waits for a reply
 
-    def _waiting(self) -> Iterator[tuple[Waiter, Stuck]]:
+    def _waiting(self) -> Iterator[tuple[Waiter, StuckCallback]]:
         for thread, blocked in self._moment.blocked.items():
             call = self._call(blocked.call)
             obstacle = None if call is None else self._obstacle(call, blocked.entity)
             if obstacle is not None:
-                yield OnThread(thread), Stuck(OnThread(thread), blocked.entity, blocked.start, obstacle)
+                yield (
+                    OnThread(thread),
+                    StuckCallback(OnThread(thread), blocked.entity, blocked.start, obstacle),
+                )
         for entity in self._suspended():
             calls = [call for call in self._outstanding() if call.caller == entity]
             obstacles = [self._obstacle(call, entity) for call in calls]
             kept = [each for each in obstacles if each is not None]
             if kept and len(kept) == len(obstacles) >= self._suspended_in(entity):
-                yield Suspended(entity), Stuck(Suspended(entity), entity, calls[-1].sent, kept[-1])
+                yield Suspended(entity), StuckCallback(Suspended(entity), entity, calls[-1].sent, kept[-1])
 
     def _suspended(self) -> list[EntityId]:
         holders = {entity for holding in self._moment.holders.values() for entity in holding}

@@ -66,7 +66,7 @@ class CommandLoop:
         if self._virtual is not None:
             for given in setup.inputs:
                 command = commands.input_of(given.command)
-                self._virtual.time.give_at(given.at, partial(self._carry_out, command), given.recess)
+                self._virtual.time.schedule_input(given.at, partial(self._carry_out, command), given.recess)
 
     def _read(self) -> None:
         while True:

@@ -48,7 +48,7 @@ from sim.engine.watchdogs.endless_waits import EndlessWaits
 from sim.engine.watchdogs.hung_callbacks import HungCallbacks
 from sim.engine.watchdogs.outside_time import Watchdog
 from sim.engine.watchdogs.repeatability import Repeatability
-from sim.engine.watchdogs.standstill import Standstill
+from sim.engine.watchdogs.standstill import StandstillDetector
 from sim.probes.probe import Probe
 from sim.robot.bullet import WorldUnavailable
 from sim.ros import importing
@@ -186,10 +186,12 @@ class Engine:
         assert self._endless is not None
         clock.time.before_jump = self._look_at_waits
         clock.on_lock_wait = self._endless.begins
-        give_up_computing = _ignore if is_watched else partial(self._shutdown.give_up_computing, clock)
+        end_computation = _ignore if is_watched else partial(self._shutdown.end_computation, clock)
         be_back_in = _ignore if is_watched else partial(exit_unless_renewed, self._crash_dump)
-        Watchdog(clock, record, give_up_computing, be_back_in).start()
-        clock.time.on_recess = Standstill(clock, record, _ignore if is_watched else self._shutdown.fail).look
+        Watchdog(clock, record, end_computation, be_back_in).start()
+        clock.time.on_recess = StandstillDetector(
+            clock, record, _ignore if is_watched else self._shutdown.fail
+        ).look
         live_on(clock, Repeatability(clock, record).lose)
 
     def _end(self, outcome: ProgramOutcome) -> NoReturn:

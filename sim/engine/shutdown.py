@@ -134,7 +134,7 @@ class RunShutdown:
         finish_lines()
         self.leave()
 
-    def give_up_computing(self, clock: VirtualClock, sentence: str) -> None:
+    def end_computation(self, clock: VirtualClock, sentence: str) -> None:
         """End a program of which a thread comes to no wait: the main thread by a signal, another by force."""
         if not self.conclude(Cause(sentence, failed=True)):
             return
@@ -194,14 +194,14 @@ class RunShutdown:
 
     def _end_by_force(self, seconds: float) -> None:
         self.conclude(Cause(STOPPED, failed=False))
-        text = f"{self._title} had not ended {seconds:g} s after it was told to{self._where_it_stands()}"
+        text = f"{self._title} had not ended {seconds:g} s after it was told to{self._blocking_threads()}"
         self._tell(Severity.WARN, f"{text}: it was ended by force")
         try:
             flush_files_soon()
         finally:
             self.leave()
 
-    def _where_it_stands(self) -> str:
+    def _blocking_threads(self) -> str:
         """Return what keeps the program from ending, as " (worker: node.py:12, in work)"."""
         frames = sys._current_frames()
         left = [thread for process in self._programs.processes for thread in threads_left_by(process)]

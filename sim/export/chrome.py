@@ -8,7 +8,7 @@ from typing import IO
 
 import msgspec
 
-from sim.export.trace_sink import NO_ARGS, NO_LINKS, Args, FlowId, Links, Track, TrackId, TrackKind
+from sim.export.trace_sink import NO_ARGS, NO_LINKS, Args, Arrows, FlowId, Track, TrackId, TrackKind
 from sim.trace.model import Nanoseconds
 
 _LINES_AT_ONCE = 4096
@@ -45,7 +45,7 @@ class ChromeFile:
             self._name("thread_name", "thread_sort_index", root, track.id, track)
 
     def begin(
-        self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Links = NO_LINKS
+        self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Arrows = NO_LINKS
     ) -> None:
         """Begin a slice."""
         self._put(track, t, {"ph": "B", "name": name, "cat": category, "args": args})
@@ -56,7 +56,7 @@ class ChromeFile:
         self._put(track, t, {"ph": "E", "args": args} if args else {"ph": "E"})
 
     def instant(
-        self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Links = NO_LINKS
+        self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Arrows = NO_LINKS
     ) -> None:
         """Add an instant; one with flows as a slice of no length, since flows bind to slices."""
         about: dict[str, object] = {"name": name, "cat": category, "args": args}
@@ -82,7 +82,7 @@ class ChromeFile:
         self._add({**about, "name": name, "args": {"name": track.name}})
         self._add({**about, "name": sort, "args": {"sort_index": track.id}})
 
-    def _link(self, track: TrackId, t: Nanoseconds, links: Links) -> None:
+    def _link(self, track: TrackId, t: Nanoseconds, links: Arrows) -> None:
         for phase, flows in zip("stf", links, strict=True):
             for flow in flows:
                 self._flow(track, t, phase, flow)

@@ -3,7 +3,7 @@
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
 
-from sim.diagnosis import diagnose, sentence, whereabouts
+from sim.diagnosis import diagnose, location_text, sentence
 from sim.durations import duration
 from sim.export.texts import markdown as plain
 from sim.export.texts import seconds
@@ -98,7 +98,7 @@ def _diagnosis(timeline: Timeline) -> Iterator[str]:
     for found in findings:
         told = found.rule.explain(found, timeline)
         weight = found.rule.weigh(found, timeline) or found.rule.weight
-        where = whereabouts(found, told)
+        where = location_text(found, told)
         yield f"- **{weight.value.capitalize()}**{f' ({plain(where)})' if where else ''}: {plain(told.what)}."
         yield f"  {plain(sentence(told.why))} What to do: {plain(told.cure)}."
     yield ""

@@ -8,7 +8,7 @@ from typing import IO
 
 import perfetto.protos.perfetto.trace.perfetto_trace_pb2 as pb
 
-from sim.export.trace_sink import NO_ARGS, NO_LINKS, Args, Links, Track, TrackId, TrackKind
+from sim.export.trace_sink import NO_ARGS, NO_LINKS, Args, Arrows, Track, TrackId, TrackKind
 from sim.trace.model import Nanoseconds
 
 _SEQUENCE = 1
@@ -60,7 +60,7 @@ class PerfettoFile:
             about.child_ordering = pb.TrackDescriptor.EXPLICIT
 
     def begin(
-        self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Links = NO_LINKS
+        self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Arrows = NO_LINKS
     ) -> None:
         """Begin a slice."""
         _fill(self._event(track, t, _BEGIN, name, category), args, links)
@@ -70,7 +70,7 @@ class PerfettoFile:
         _fill(self._event(track, t, _END), args, NO_LINKS)
 
     def instant(
-        self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Links = NO_LINKS
+        self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Arrows = NO_LINKS
     ) -> None:
         """Add an instant."""
         _fill(self._event(track, t, _INSTANT, name, category), args, links)
@@ -106,7 +106,7 @@ class PerfettoFile:
         return packet
 
 
-def _fill(event: pb.TrackEvent, args: Args, links: Links) -> None:
+def _fill(event: pb.TrackEvent, args: Args, links: Arrows) -> None:
     if args:
         add = event.debug_annotations.add
         for name, value in args.items():

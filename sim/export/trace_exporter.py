@@ -7,7 +7,7 @@ from sim.export.flows import Flows
 from sim.export.open_calls import CallSegment, OpenCalls
 from sim.export.reorder_buffer import PayloadKind, ReorderBuffer
 from sim.export.texts import printable
-from sim.export.trace_sink import NO_ARGS, NO_LINKS, Args, Links, TraceSink, TrackId
+from sim.export.trace_sink import NO_ARGS, NO_LINKS, Args, Arrows, TraceSink, TrackId
 from sim.export.track_layout import TrackLayout
 from sim.trace import events as ev
 from sim.trace.descriptions import why_waiting
@@ -139,7 +139,7 @@ class TraceExporter:
 
     def _lose(self, entity: EntityId, t: Nanoseconds, what: str, flows: tuple[int, ...]) -> None:
         track = self._layout.waits(self._layout.entity(entity))
-        self._sink.instant(track, t, what, "queue", NO_ARGS, Links(end=flows))
+        self._sink.instant(track, t, what, "queue", NO_ARGS, Arrows(end=flows))
 
     def _show_depth(self, entity: EntityId, t: Nanoseconds, depth: int) -> None:
         shown = self._layout.entity(entity)
@@ -196,7 +196,7 @@ class TraceExporter:
         }
         through = self._flows.served(event.message) if entity.kind is EntityKind.SERVICE else ()
         taken = self._flows.take(event.message, event.entity)
-        links = Links((), through, taken) if through or taken else NO_LINKS
+        links = Arrows((), through, taken) if through or taken else NO_LINKS
         self._sink.begin(self._layout.thread(event.thread), event.t, entity.name, "callback", args, links)
         segment.lane = self._layout.enter(entity.group)
         on = {"thread": self._layout.thread_name(event.thread)}
@@ -261,7 +261,7 @@ class TraceExporter:
         if track is None:
             track = self._layout.node(event.node)
         name = f"publish {printable(event.topic)}"
-        self._sink.instant(track, event.t, name, "publish", {"message": event.message}, Links(begin=flows))
+        self._sink.instant(track, event.t, name, "publish", {"message": event.message}, Arrows(begin=flows))
 
     def _qos_mismatched(self, event: ev.QosMismatched) -> None:
         args: Args = {"topic": printable(event.topic), "policy": event.policy}
@@ -282,14 +282,14 @@ class TraceExporter:
             track = self._layout.service(event.service)
         args: Args = {"call": event.call, "request": printable(event.request)}
         self._sink.instant(
-            track, event.t, f"call {printable(event.service)}", "call", args, Links(begin=flows)
+            track, event.t, f"call {printable(event.service)}", "call", args, Arrows(begin=flows)
         )
 
     def _service_replied(self, event: ev.ServiceReplied) -> None:
         to_client = self._flows.send(event.call, self._reordered.receivers(PayloadKind.REPLY, event.call))
         track = self._serving(event.service)
         args: Args = {"call": event.call, "response": printable(event.response)}
-        links = Links(begin=to_client, end=self._flows.reply(event.call))
+        links = Arrows(begin=to_client, end=self._flows.reply(event.call))
         self._sink.instant(track, event.t, f"reply {printable(event.service)}", "call", args, links)
 
     def _serving(self, service: str) -> TrackId:
@@ -382,4 +382,4 @@ class TraceExporter:
         unanswered = self._flows.unanswered()
         if unanswered:
             track = self._layout.text_lane("notices")
-            self._sink.instant(track, t, "calls without a reply", "call", NO_ARGS, Links(end=unanswered))
+            self._sink.instant(track, t, "calls without a reply", "call", NO_ARGS, Arrows(end=unanswered))

@@ -37,7 +37,7 @@ class Track:
     unit: str = ""
 
 
-class Links(NamedTuple):
+class Arrows(NamedTuple):
     """The flows (arrows) that begin, pass and end at a slice or instant."""
 
     begin: tuple[FlowId, ...] = ()
@@ -45,7 +45,7 @@ class Links(NamedTuple):
     end: tuple[FlowId, ...] = ()
 
 
-NO_LINKS = Links()
+NO_LINKS = Arrows()
 
 
 class TraceSink(Protocol):
@@ -61,7 +61,7 @@ class TraceSink(Protocol):
         """Add a track."""
 
     def begin(
-        self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Links = NO_LINKS
+        self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Arrows = NO_LINKS
     ) -> None:
         """Begin a slice."""
 
@@ -69,7 +69,7 @@ class TraceSink(Protocol):
         """End the innermost slice; ``args`` are those that became known since its start."""
 
     def instant(
-        self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Links = NO_LINKS
+        self, track: TrackId, t: Nanoseconds, name: str, category: str, args: Args, links: Arrows = NO_LINKS
     ) -> None:
         """Add an event without a duration."""
 

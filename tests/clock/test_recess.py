@@ -61,9 +61,9 @@ def test_an_input_is_repeated_in_its_recess_and_one_of_the_end_comes_at_the_end(
         def note(name: str) -> Callable[[], None]:
             return lambda: done.append((name, clock.now(), clock.time.recess))
 
-        clock.time.give_at(5 + 2 * RECESS, note("third"), 3)
-        clock.time.give_at(end, note("end"))
-        clock.time.give_at(end + 2, note("first"), 1)
+        clock.time.schedule_input(5 + 2 * RECESS, note("third"), 3)
+        clock.time.schedule_input(end, note("end"))
+        clock.time.schedule_input(end + 2, note("first"), 1)
         clock.sleep(5)
         for _ in range(WAITS_TO_RECESS * 4):
             clock.sleep(0)

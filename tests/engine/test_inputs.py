@@ -121,7 +121,7 @@ def again(system: System, recorded: list[AnyEvent]) -> list[AnyEvent]:
         keyboard = Keyboard(simulation, simulation.events.append)
         for event in recorded:
             if isinstance(event, InputGiven):
-                clock.time.give_at(event.t, lambda what=event.command: keyboard.press(what))  # type: ignore[misc]
+                clock.time.schedule_input(event.t, lambda what=event.command: keyboard.press(what))  # type: ignore[misc]
         program_of(system)(simulation)
 
     return simulate(program, SECONDS).events
@@ -172,8 +172,8 @@ def test_an_input_comes_when_its_moment_ends_and_after_the_effects_of_the_one_be
             signal.set()
 
         clock.start_thread(hear, "ear")
-        clock.time.give_at(ns(1.0), first)
-        clock.time.give_at(ns(1.0), lambda: happened.append("second"))
+        clock.time.schedule_input(ns(1.0), first)
+        clock.time.schedule_input(ns(1.0), lambda: happened.append("second"))
         for number in range(2):
             clock.call_at(ns(1.0), lambda n=number: happened.append(f"deadline {n}"))  # type: ignore[misc]
         clock.call_at(ns(1.5), lambda: happened.append("later"))

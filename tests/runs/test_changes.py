@@ -134,9 +134,9 @@ def test_a_setting_comes_and_goes() -> None:
 
 def test_what_is_beyond_others_is_what_they_do_not_say() -> None:
     more = WHOLE.with_group(TIMER, "own")
-    assert more.beyond(WHOLE) == Changes(groups={TIMER: "own"})
-    assert WHOLE.beyond(Changes()) == WHOLE
-    assert WHOLE.beyond(WHOLE) == Changes()
+    assert more.without(WHOLE) == Changes(groups={TIMER: "own"})
+    assert WHOLE.without(Changes()) == WHOLE
+    assert WHOLE.without(WHOLE) == Changes()
 
 
 @pytest.mark.parametrize(
@@ -294,4 +294,4 @@ def test_a_seed_is_a_change_that_set_ups_keep_and_lanes_tell() -> None:
     assert setup.seed == 17
     assert Changes(threads=2).applied(setup).seed == 17
     assert changes_in(setup).words == "seed 17"
-    assert Changes(seed=17).beyond(Changes(seed=17)) == Changes()
+    assert Changes(seed=17).without(Changes(seed=17)) == Changes()

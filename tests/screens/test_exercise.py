@@ -318,7 +318,7 @@ async def test_a_paused_run_may_stand_as_long_as_it_likes() -> None:
         await settle(pilot)
         app.exercise.runs.run.pause()
         app.exercise.allow(RunBudget(limit=0))
-        app.exercise.look_at_budget()
+        app.exercise.check_budget()
         await settle(pilot)
         assert app.exercise.runs.run.alive
 

@@ -65,13 +65,13 @@ class Changes:
         """The period that was chosen for a timer of a node, in nanoseconds."""
         return self.periods.get(place, self.periods.get(("", place[1])))
 
-    def beyond(self, others: Changes) -> Changes:
+    def without(self, others: Changes) -> Changes:
         """The changes that are not among others."""
         return Changes(
             None if self.threads == others.threads else self.threads,
-            _beyond(self.groups, others.groups),
-            _beyond(self.periods, others.periods),
-            _beyond(self.settings, others.settings),
+            _without(self.groups, others.groups),
+            _without(self.periods, others.periods),
+            _without(self.settings, others.settings),
             None if self.sensor_rate == others.sensor_rate else self.sensor_rate,
             None if self.seed == others.seed else self.seed,
             None if self.real == others.real else self.real,
@@ -136,7 +136,7 @@ def changes_in(setup: RunSetup) -> Changes:
     )
 
 
-def _beyond(ours: Mapping[Key, Value], theirs: Mapping[Key, Value]) -> dict[Key, Value]:
+def _without(ours: Mapping[Key, Value], theirs: Mapping[Key, Value]) -> dict[Key, Value]:
     return {key: value for key, value in ours.items() if theirs.get(key) != value}
 
 

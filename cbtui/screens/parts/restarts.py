@@ -148,7 +148,7 @@ class SetUpKeys(ScreenPart):
 
     async def _run_with(self, changes: Changes | None) -> None:
         if changes is not None:
-            code = code_of(changes.beyond(self.restarts.changes), self._changeable)
+            code = code_of(changes.without(self.restarts.changes), self._changeable)
             await self.restarts.again(changes)
             if 0 < len(code) <= _TOLD:
                 self.host.tell("\n".join(code))

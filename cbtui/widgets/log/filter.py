@@ -39,7 +39,7 @@ class Filter:
     groups: tuple[str, ...] = ()
 
     @property
-    def lets_all_through(self) -> bool:
+    def passes_all(self) -> bool:
         """Whether it passes every line."""
         return self == _EVERYTHING
 

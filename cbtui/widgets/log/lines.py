@@ -87,7 +87,7 @@ class LogLines(FollowingView):
             self.picked = None
         self._search = LogSearch(timeline, wanted)
         self._widest = 0
-        self._look_on()
+        self._scan_new_lines()
 
     def show(self, timeline: Timeline, now: Nanoseconds) -> None:
         """Show the log of a timeline up to a moment."""
@@ -96,11 +96,11 @@ class LogLines(FollowingView):
             self.picked = self._kept = None
             self._widest = 0
         self._now = now
-        self._look_on()
+        self._scan_new_lines()
 
     # what is shown
 
-    def _look_on(self) -> None:
+    def _scan_new_lines(self) -> None:
         """Look at some new lines, show what was found, and go on when others have had their turn."""
         more = self._search.go_on(_SEARCH_BATCH)
         self._grow_to_what_was_found()
@@ -112,7 +112,7 @@ class LogLines(FollowingView):
 
     def _search_on(self) -> None:
         self._searching = False
-        self._look_on()
+        self._scan_new_lines()
 
     def _grow_to_what_was_found(self) -> None:
         timeline = self._search.timeline

@@ -106,7 +106,7 @@ class LogView(Vertical):
         lines = self.query_one(LogLines)
         shown, every = lines.counts
         many = f"{every:,} {plural(every, 'line')}"
-        part = many if lines.wanted.lets_all_through else f"{shown:,} of {many}"
+        part = many if lines.wanted.passes_all else f"{shown:,} of {many}"
         self.note = f"{part} · {'follows' if lines.follows else 'stays'}"
 
 

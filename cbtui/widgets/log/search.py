@@ -28,7 +28,7 @@ class LogSearch:
     @property
     def places(self) -> Sequence[int]:
         """The indices of the lines, in order."""
-        return range(len(self.timeline.logs)) if self.wanted.lets_all_through else self._found
+        return range(len(self.timeline.logs)) if self.wanted.passes_all else self._found
 
     def until(self, count: int) -> int:
         """The number of found lines among the first ``count`` of the log."""
@@ -36,7 +36,7 @@ class LogSearch:
 
     def go_on(self, most: int) -> bool:
         """Search a limited number of further lines; returns whether there are more."""
-        if self.wanted.lets_all_through:
+        if self.wanted.passes_all:
             return False
         logs = self.timeline.logs
         self._go_back_to_late_ones()

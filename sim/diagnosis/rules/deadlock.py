@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 
 from sim.diagnosis.rule import Explanation, Finding, Rule, place_of
 from sim.diagnosis.timeline_view import TimelineView
-from sim.diagnosis.wait_for_graph import Stuck, WaitForGraph
+from sim.diagnosis.wait_for_graph import StuckCallback, WaitForGraph
 from sim.diagnosis.words import listed, often, threads_for, who, with_threads
 from sim.trace.events import EntityKind, Reason
 from sim.trace.model import Blocked, Nanoseconds
@@ -77,7 +77,7 @@ class NeedsOneMoreWorker(Rule):
         )
 
 
-def _deadlocks(view: TimelineView) -> Iterator[tuple[Sequence[Stuck], Nanoseconds]]:
+def _deadlocks(view: TimelineView) -> Iterator[tuple[Sequence[StuckCallback], Nanoseconds]]:
     """The sets of callbacks that wait for each other, and the end of their waiting."""
     seen: set[tuple[Nanoseconds, ...]] = set()
     for moment, until in _moments(view):
@@ -115,11 +115,11 @@ def _call_waits_for_group(view: TimelineView) -> bool:
     return False
 
 
-def _lacks_worker(deadlock: Sequence[Stuck]) -> bool:
+def _lacks_worker(deadlock: Sequence[StuckCallback]) -> bool:
     return any(each.obstacle.needs_worker and len(each.obstacle.by) > 1 for each in deadlock)
 
 
-def _found(rule: Rule, deadlock: Sequence[Stuck], until: Nanoseconds) -> Finding:
+def _found(rule: Rule, deadlock: Sequence[StuckCallback], until: Nanoseconds) -> Finding:
     closing = deadlock[0]
     detail = "; ".join(dict.fromkeys(each.obstacle.text for each in deadlock))
     others = [each.entity for each in deadlock if each.entity != closing.entity]

@@ -41,24 +41,24 @@ class LineTools:
         self, package: str, executable: str, arguments: Sequence[str], on_exit: OnExit
     ) -> Running:
         """Start a program of a package."""
-        with _as_the_line_says_it():
+        with _as_command_failures():
             return self.starter.start_executable(package, executable, arguments, on_exit)
 
     def launch(
         self, package: str | None, launch_file: str, arguments: Sequence[str], on_exit: OnExit
     ) -> Running:
         """Start a launch file."""
-        with _as_the_line_says_it():
+        with _as_command_failures():
             return self.starter.launch(package, launch_file, arguments, on_exit)
 
     def describe_launch(self, package: str | None, launch_file: str) -> str:
         """What ``ros2 launch --show-args`` prints of a launch file."""
-        with _as_the_line_says_it():
+        with _as_command_failures():
             return self.starter.describe_launch(package, launch_file)
 
 
 @contextmanager
-def _as_the_line_says_it() -> Iterator[None]:
+def _as_command_failures() -> Iterator[None]:
     from sim.shell import CommandFailed
 
     try:

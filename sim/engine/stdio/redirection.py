@@ -12,7 +12,7 @@ from sim.trace.events import AnyEvent, Notice, Printed, Severity
 def redirect_output(clock: RunClock, record: Callable[[AnyEvent], None]) -> None:
     """Replace Python's streams by such as record what each program writes."""
 
-    def tell_of_hidden_output() -> None:
+    def report_hidden_output() -> None:
         text = (
             f"{current_process().label} prints to stdout, which ros2 launch only shows with output='screen'; "
             "its log goes to stderr and is shown"
@@ -26,7 +26,7 @@ def redirect_output(clock: RunClock, record: Callable[[AnyEvent], None]) -> None
             elif error or process.shows_stdout:
                 record(Printed(clock.now(), text, error, process.number, ends))
             else:
-                process.keep(tell_of_hidden_output)
+                process.keep(report_hidden_output)
 
         return take
 

@@ -17,7 +17,7 @@ _LAST_PATIENCE = 3.5
 """Real seconds from then on after which ``give_up`` is called."""
 
 
-class Standstill:
+class StandstillDetector:
     """Counts the recesses of a moment; the person is told once a run.
 
     Threads that hand something to each other, and so come to ever new waits, may still do so to an end: they

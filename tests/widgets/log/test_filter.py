@@ -95,5 +95,5 @@ def test_an_address_and_quoted_words_with_a_colon_are_words() -> None:
 
 
 def test_only_an_empty_filter_lets_all_through() -> None:
-    assert filter_of(" ").lets_all_through
-    assert not filter_of("x").lets_all_through
+    assert filter_of(" ").passes_all
+    assert not filter_of("x").passes_all
