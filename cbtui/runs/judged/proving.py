@@ -178,8 +178,7 @@ def _of_first_calls(name: str, one: _Calls, other: _Calls) -> Iterator[Differenc
 
 def _of_returns(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
     for hung, fine in ((one, other), (other, one)):
-        longest = max(fine.longest, fine.unfinished.length)
-        if hung.unfinished.length > longest + _LONG:
+        if hung.unfinished.length - fine.longest > _LONG > fine.unfinished.length:
             at = hung.unfinished.start
             text = f"on {hung.ground} {name} does not return from its call at {duration(at)}"
             yield Difference(at, f"{text}, on {fine.ground} it does")
@@ -284,26 +283,28 @@ def _of_ends(model: Timeline, real: Timeline) -> Iterator[Difference]:
 
 def _of_diagnoses(model: Timeline, real: Timeline) -> Iterator[Difference]:
     """What is wrong on one ground alone."""
-    model_finds, real_finds = (
-        {
-            (each.rule.id, timeline.entities[each.subject].spoken_name if each.subject else ""): each
-            for each in diagnose(timeline)
-            if each.rule.weigh(each, timeline) is Weight.PROBLEM
-            and not (each.subject and _is_own(timeline.entities[each.subject]))
-        }
-        for timeline in (model, real)
-    )
-    for ground, timeline, ours, theirs in (
-        (GROUNDS[0], model, model_finds, real_finds),
-        (GROUNDS[1], real, real_finds, model_finds),
-    ):
+    found = [dict(_problems(timeline)) for timeline in (model, real)]
+    for ground, ours, theirs in zip(GROUNDS, found, found[::-1], strict=True):
         for key in ours.keys() - theirs.keys():
-            what = ours[key].rule.explain(ours[key], timeline).what
-            yield Difference(ours[key].at, f"the diagnosis finds on {ground} alone: {what}")
+            at, what = ours[key]
+            yield Difference(at, f"the diagnosis finds on {ground} alone: {what}")
+
+
+def _problems(timeline: Timeline) -> Iterator[tuple[tuple[str, str], tuple[Nanoseconds, str]]]:
+    """Rules and the callbacks in which they find a problem, with when and what.
+
+    Those of a deadlock wait for each other: who comes last into it may differ.
+    """
+    for each in diagnose(timeline):
+        entity = timeline.entities.get(each.subject)
+        if each.rule.weigh(each, timeline) is Weight.PROBLEM and not (entity and _is_own(entity)):
+            told = each.rule.explain(each, timeline)
+            name = "" if entity is None or told.for_ever else entity.spoken_name
+            yield (each.rule.id, name), (each.at, told.what)
 
 
 def _of_orders(model: Timeline, real: Timeline, window: Window) -> Iterator[Difference]:
-    """In which order a thread served callbacks that it had kept waiting."""
+    """In which order the only thread of an executor served callbacks that it had kept waiting."""
     for (at, first), (_, second) in zip(_served(model, window), _served(real, window), strict=False):
         if first != second and set(first) == set(second):
             said = (
@@ -315,13 +316,14 @@ def _of_orders(model: Timeline, real: Timeline, window: Window) -> Iterator[Diff
 
 
 def _served(timeline: Timeline, window: Window) -> Iterator[tuple[Nanoseconds, list[str]]]:
-    """The callbacks that one thread ran after each other when all had waited for long, and from when on."""
+    """What such a thread ran, one after the other, when all had waited for long, and from when on."""
     waited = [
         (span.thread, span, timeline.entities[entity].spoken_name)
         for entity in timeline.entities
         for wait in timeline.waits_of(entity, window)
         if wait.end is not None and wait.end - wait.since >= _LONG
         for span in timeline.calls_begun(entity, Window(wait.end, wait.end + JITTER))[:1]
+        if not timeline.threads[span.thread].executor
     ]
     waited.sort(key=lambda each: (each[0], each[1].start))
     for _, of_thread in groupby(waited, key=lambda each: each[0]):
