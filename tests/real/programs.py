@@ -114,6 +114,23 @@ class Tried(Node):
         response.message = "well"
         return response
 """
+NEVER_MATCHES = """
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        best_effort = QoSProfile(depth=5, reliability=ReliabilityPolicy.BEST_EFFORT)
+        self.publisher = self.create_publisher(String, "news", best_effort)
+        self.create_subscription(String, "news", self.hear, 10)
+        self.create_timer(0.2, self.tell)
+
+    def tell(self):
+        self.publisher.publish(String(data="x"))
+
+    def hear(self, message):
+        pass
+"""
 MISSES_TICKS = """
 class Tried(Node):
     def __init__(self):

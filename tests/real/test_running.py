@@ -83,10 +83,11 @@ def test_the_run_ends_when_its_time_is_up_and_nothing_had_to_be_forced(starved: 
         (programs.CALLS_ITSELF, "SingleThreadedExecutor()", "self-made-deadlock"),
         (programs.CALLS_ITSELF, "MultiThreadedExecutor(num_threads=2)", "self-made-deadlock"),
         (programs.WANTS_ONE_MORE, "MultiThreadedExecutor(num_threads=2)", "needs-one-more-worker"),
+        (programs.NEVER_MATCHES, "SingleThreadedExecutor()", "qos-mismatch"),
     ],
-    ids=["one thread", "two threads", "no thread left"],
+    ids=["one thread", "two threads", "no thread left", "no match"],
 )
-def test_a_deadlock_is_the_same_on_both_grounds(tmp_path: Path, body: str, executor: str, rule: str) -> None:
+def test_a_problem_is_the_same_on_both_grounds(tmp_path: Path, body: str, executor: str, rule: str) -> None:
     found = {}
     for ground in ("ros2", "model"):
         timeline = programs.run(tmp_path, body, executor, ground=ground, seconds=2.0).timeline

@@ -10,16 +10,19 @@ from functools import wraps
 from typing import TYPE_CHECKING, Any
 
 from rclpy.callback_groups import MutuallyExclusiveCallbackGroup, ReentrantCallbackGroup
+from rclpy.qos import QoSPolicyKind
 
 from .callbacks import Calls, is_own, written_at
 from .recorder import now
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from types import FrameType
 
     from .recorder import Recorder
     from .tuning import Tuning
 
+_INCOMPATIBLE = "RCL_SUBSCRIPTION_REQUESTED_INCOMPATIBLE_QOS"
 STATE = "_cbtui"
 """The attribute in which an entity, node, publisher or group of rclpy's has what the probe knows of it."""
 
@@ -117,6 +120,8 @@ class Entities:
                 bound.arguments["callback"] = self._traced(entity, callback)
             made = make(*bound.args, **bound.kwargs)
             self._know(node, made, entity, callback)
+            if kind == "subscription":
+                self._watch_matching(made, entity.number, _place(sys._getframe(1)))
             return made
 
         setattr(node_class, f"create_{kind}", create)
@@ -149,6 +154,25 @@ class Entities:
             entity.due = now() + made.time_until_next_call()
         setattr(made, STATE, entity)
         entity.made = weakref.ref(made)
+
+    def _watch_matching(self, subscription: Any, number: int, place: tuple[str, int]) -> None:
+        """Tell of publishers whose quality of service does not match a subscription's, made at ``place``."""
+        topic = subscription.topic_name
+        for handler in subscription.event_handlers:
+            if handler.event_type.name == _INCOMPATIBLE:
+
+                def tell(info: Any, callback: Callable[[Any], Any] = handler.callback) -> Any:
+                    policy = QoSPolicyKind(info.last_policy_kind).name
+                    node, _, publisher = self._publisher_of(topic)
+                    self._recorder.put("qos_mismatch", now(), topic, node, number, policy, publisher, place)
+                    return callback(info)
+
+                handler.callback = tell
+
+    def _publisher_of(self, topic: str) -> tuple[int, str, tuple[str, int]]:
+        """What is known of the first publisher of a topic here; without one it is another process's."""
+        known = (state_of(publisher) for node in list(self.nodes) for publisher in node.publishers)
+        return next((each for each in known if each is not None and each[1] == topic), (0, "", ("", 0)))
 
     def _group_id(self, group: Any, node: int) -> int:
         if state_of(group) is None:
@@ -183,7 +207,7 @@ class Entities:
         def create_publisher(node: Any, *args: Any, **kwargs: Any) -> Any:
             made = make(node, *args, **kwargs)
             if is_own(sys._getframe(1)):
-                setattr(made, STATE, (self.node_made(node), made.topic_name))
+                setattr(made, STATE, (self.node_made(node), made.topic_name, _place(sys._getframe(1))))
             return made
 
         node_class.create_publisher = create_publisher
@@ -198,7 +222,7 @@ class Entities:
             if known is None:
                 publish(publisher, msg)
                 return
-            node, topic = known
+            node, topic, _ = known
             began, before = now(), time.time_ns()
             publish(publisher, msg)
             entity = recorder.here.entity
@@ -222,6 +246,11 @@ class Entities:
             add(node, waitable)
 
         node_class.add_waitable = add_waitable
+
+
+def _place(frame: FrameType) -> tuple[str, int]:
+    """File and line at which a frame is."""
+    return frame.f_code.co_filename, frame.f_lineno
 
 
 def _name_of(kind: str, made: Any) -> str:
