@@ -211,9 +211,7 @@ def _of_gaps(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
 
 def _of_counts(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
     fewer, more = sorted((one, other), key=lambda calls: calls.count)
-    lives = [each.window.end - each.first for each in (fewer, more)]
-    at_most = 1 + abs(lives[0] - lives[1]) / max(JITTER, more.usual_gap) + more.count // _PACE
-    if more.count - fewer.count > at_most:
+    if more.count - fewer.count > 1 + _begun_between(fewer, more) + more.count // _PACE:
         times = counted(more.count - fewer.count, "time")
         counts = f"{more.count} against {fewer.count} on {fewer.ground}"
         yield Difference(fewer.window.end, f"on {more.ground} {name} runs {times} more: {counts}")
@@ -245,7 +243,7 @@ def _of_reasons(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
 def _of_losses(name: str, one: _Calls, other: _Calls) -> Iterator[Difference]:
     fewer, more = sorted((one, other), key=lambda calls: calls.figures.figures.drops)
     lost, kept = more.figures.figures.drops, fewer.figures.figures.drops
-    if lost - kept > 2 + lost // 20:
+    if lost - kept > 2 + _begun_between(fewer, more) + lost // 20:
         text = f"on {more.ground} {name} loses {counted(lost, 'message')}, on {fewer.ground} {kept}"
         yield Difference(more.timeline.losses_of(more.figures.figures.entity.id, more.window)[0], text)
 
@@ -338,6 +336,12 @@ def _served(timeline: Timeline, window: Window) -> Iterator[tuple[Nanoseconds, l
             ends = span.end_at(window.end)
         if len(names) > 1:
             yield began, names
+
+
+def _begun_between(one: _Calls, other: _Calls) -> float:
+    """How many calls usually begin in the time by which its first call came later on one ground."""
+    usual = max(one, other, key=lambda calls: calls.count).usual_gap
+    return abs(one.first - other.first) / max(JITTER, usual)
 
 
 def _shared(one: Window, other: Window) -> Nanoseconds:
