@@ -306,17 +306,22 @@ class RealEngine:
 
     # the end
 
-    def _stop(self, reason: str) -> None:
-        """Have the programs end as by Ctrl-C, by force if that takes too long; what is watched goes on."""
+    def _stop(self, reason: str, at: int | None = None) -> None:
+        """Have the programs end as by Ctrl-C, by force if that takes too long; what is watched goes on.
+
+        The trace has it at the monotonic time ``at``, or now.
+        """
         if self._cause is None:
             self._cause = Outcome(reason, failed=False)
-            self._record(RunEnding(0, reason))
+            self._translation.take([RunEnding(time.monotonic_ns() if at is None else at, reason)])
             self._given_up_at = time.monotonic_ns() + int(_GRACE * 1e9)
             self._programs.interrupt()
 
     def _time_is_up(self) -> None:
+        """End the run at its very end: what began after that is none of it."""
+        assert self._setup.until is not None
         self._time_was_up = self._cause is None
-        self._stop("its time was up")
+        self._stop("its time was up", self._start + self._setup.until)
 
     def _kill(self) -> None:
         for name in self._programs.kill():

@@ -16,6 +16,7 @@ from sim.trace.events import (
     Printed,
     Published,
     Reason,
+    RunEnding,
     ServiceCalled,
     ServiceReplied,
     WaitStarted,
@@ -73,6 +74,7 @@ def test_log_and_output_are_told_of_once(starved: Run) -> None:
 def test_the_run_ends_when_its_time_is_up_and_nothing_had_to_be_forced(starved: Run) -> None:
     assert starved.ending.time_was_up
     assert not starved.ending.failed
+    assert next(event.t for event in starved.events if isinstance(event, RunEnding)) == 3.3 * SECOND
     assert [event.text for event in starved.events if isinstance(event, Notice)] == []
     assert starved.loss is None
 
