@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from sim.engine.setup import ProgramSetup, RealRos
 from sim.real.keyboard import RealKeyboard
-from sim.real.programs import ON_PATH, STOPPED, OnExit, Outcome, Program, Start
+from sim.real.programs import ON_PATH, OnExit, Outcome, Program, Start
 from sim.real.watched import WatchedProcesses
 from sim.trace.events import AnyEvent, ProcessAppeared, ProcessEnded
 
@@ -249,8 +249,6 @@ class LaunchedPrograms:
         """How they ended, taken together."""
         if self._failure is not None:
             return self._failure
-        if not self._programs:
-            return Outcome(STOPPED, failed=False)
         if len(self._programs) == 1:
             return self._programs[0].outcome()
         return Outcome("every program returned", failed=False)
