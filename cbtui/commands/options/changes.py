@@ -63,8 +63,8 @@ def add_on(parser: argparse.ArgumentParser, side: str = "") -> None:
         f"--on{side}",
         choices=("model", "ros2"),
         default="model",
-        help=f"what runs {what}: cbtui's model of rclpy, or real ROS 2, on the real clock (model); there, ros2 "
-        "lines and launch files are left to the command ros2 of a sourced ROS, else cbtui carries them out",
+        help=f"what runs {what}: cbtui's model of rclpy, or real ROS 2, on the real clock (model); there, "
+        "ros2 lines and launch files are left to the command ros2 of a sourced ROS, or else to cbtui's own",
     )
     add_python(parser, f"with --on{side} ros2: the Python that has it", side)
 
