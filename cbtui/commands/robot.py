@@ -3,6 +3,7 @@
 import argparse
 import math
 import os
+import shutil
 import sys
 import time
 from importlib.util import find_spec
@@ -56,7 +57,8 @@ def robot(options: argparse.Namespace) -> int:
     tf = transforms()
     topics = "/odom, /scan" if tf is None else "/odom, /scan, /tf"
     domain = os.environ.get("ROS_DOMAIN_ID", "0")
-    say(f"a robot on ROS domain {domain}: {topics}, /cmd_vel, /reset_world, /motor_power; ctrl+c ends it\n")
+    say(f"a robot is on ROS domain {domain}; ctrl+c ends it\n")
+    say(f"topics and services: {topics}, /cmd_vel, /reset_world, /motor_power\n")
     if tf is None:
         say("there is no /tf: tf2_msgs is not installed\n")
     status = _Status()
@@ -88,6 +90,7 @@ class _Status:
 
     def _show(self, text: str) -> None:
         if self._in_place:
+            text = text[: shutil.get_terminal_size().columns - 1]
             sys.stdout.write(f"\r{text.ljust(len(self._shown))}")
             sys.stdout.flush()
         elif text != self._shown:

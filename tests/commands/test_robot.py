@@ -44,13 +44,14 @@ def test_what_it_lacks_is_told_in_a_sentence(
 def test_a_terminal_shows_where_it_is_in_one_line(monkeypatch: pytest.MonkeyPatch) -> None:
     terminal = _Terminal()
     monkeypatch.setattr(sys, "stdout", terminal)
+    monkeypatch.setenv("COLUMNS", "70")
     monkeypatch.setattr(robot, "_PERIOD", 0.0)
     status = robot._Status()
     status.take(moved(10.0, motors=False))
     status.take(moved(2.0))
     status.take("something else")
     status.end()
-    first = "at 10.00 0.00 m, 90 deg   0.20 m/s, 0.00 rad/s   1.50 m ahead   motors off"
+    first = "at 10.00 0.00 m, 90 deg   0.20 m/s, 0.00 rad/s   1.50 m ahead   motor"
     second = "at 2.00 0.00 m, 90 deg   0.20 m/s, 0.00 rad/s   1.50 m ahead".ljust(len(first))
     assert terminal.getvalue() == f"\r{first}\r{second}\n"
 
