@@ -121,7 +121,7 @@ class RealEngine:
                 self._selector, setup.real, self._take, self._record, count(1), lambda _process: False
             )
             self._keyboard = None
-            lines = graph, [Path.cwd()], None
+            lines = {**graph, FOLDER: setup.real.watched}, [Path.cwd()], None
         else:
             domain, self._claim = claimed_domain()
             probed = environment(setup, self._python, folder, domain)

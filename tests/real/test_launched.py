@@ -5,11 +5,15 @@ import sys
 import time
 from pathlib import Path
 
+import msgspec
 import pytest
 
-from sim.engine.setup import Keyboard, ProgramSetup
-from sim.trace.events import KeyboardAsked, ProcessAppeared, ProcessEnded, Reading, Typed
+from sim.engine.setup import Keyboard, ProgramSetup, RealRos
+from sim.trace.events import CallbackEnded, KeyboardAsked, ProcessAppeared, ProcessEnded, Reading, Typed
+from tests.real import programs
 from tests.real.launching import Launched
+from tests.real.programs import needs_ros
+from tests.support.engine_runs import program_setup, run_to_end
 
 _LAUNCH = """
 from launch import LaunchDescription
@@ -44,12 +48,12 @@ def launch_file(folder: Path, actions: str, *arguments: str) -> ProgramSetup:
 def test_a_program_has_ended_though_its_child_keeps_its_output_open(launched: Launched) -> None:
     began = time.monotonic()
     text = "import subprocess, sys\nsubprocess.Popen(['sleep', '40'])\nprint('done')\n"
-    programs = launched.start(sys.executable, program(launched.folder, text))
+    started = launched.start(sys.executable, program(launched.folder, text))
     launched.to_end()
     assert time.monotonic() - began < 30
-    assert programs.outcome().reason == "the program returned"
+    assert started.outcome().reason == "the program returned"
     assert launched.printed == ["done"]
-    (only,) = programs._programs
+    (only,) = started._programs
     only.kill()
 
 
@@ -127,7 +131,7 @@ def test_a_launch_file_starts_processes_and_its_handlers_follow_them(launched: L
              respawn=True, respawn_max_retries=1),
         ExecuteProcess(cmd=["ros2", "topic", "list"]),
     """
-    programs = launched.start(sys.executable, launch_file(launched.folder, actions, "speed:=7"))
+    started = launched.start(sys.executable, launch_file(launched.folder, actions, "speed:=7"))
     launched.to_end()
     (arguments, again) = [each for each in launched.printed if each.startswith("['--ros-args'")]
     assert arguments == again
@@ -139,20 +143,20 @@ def test_a_launch_file_starts_processes_and_its_handlers_follow_them(launched: L
     assert labels == ["a.py-1", "ros2-2", "a.py-1"]
     ended = sorted(event.status for event in launched.of(ProcessEnded))  # type: ignore[attr-defined]
     assert ended == [0, 3, 3]
-    assert programs.outcome() == ("a.py-1: the program ended with exit code 3", True, "")
+    assert started.outcome() == ("a.py-1: the program ended with exit code 3", True, "")
 
 
 def test_ctrl_c_ends_a_launch_as_it_would_in_a_terminal(launched: Launched) -> None:
     program(launched.folder, "import time\nprint('waits')\ntime.sleep(60)\n", "a.py")
     action = f"ExecuteProcess(cmd=['python3', {str(launched.folder / 'a.py')!r}], output='screen')"
-    programs = launched.start(sys.executable, launch_file(launched.folder, f"{action}, {action}"))
+    started = launched.start(sys.executable, launch_file(launched.folder, f"{action}, {action}"))
     launched.until(lambda: launched.printed.count("waits") == 2)
-    programs.interrupt()
+    started.interrupt()
     launched.to_end()
     assert "[WARNING] [launch]: user interrupted with ctrl-c (SIGINT)" in launched.printed
     ended = [event.status for event in launched.of(ProcessEnded)]  # type: ignore[attr-defined]
     assert ended == [-signal.SIGINT] * 2
-    assert not programs.outcome().failed
+    assert not started.outcome().failed
 
 
 def test_a_shutdown_after_some_time_ends_all(launched: Launched) -> None:
@@ -174,9 +178,9 @@ def test_a_shutdown_after_some_time_ends_all(launched: Launched) -> None:
 def test_a_launch_file_that_cannot_be_carried_out_is_placed(
     launched: Launched, actions: str, said: str
 ) -> None:
-    programs = launched.start(sys.executable, launch_file(launched.folder, actions))
+    started = launched.start(sys.executable, launch_file(launched.folder, actions))
     launched.to_end()
-    outcome = programs.outcome()
+    outcome = started.outcome()
     assert outcome.failed
     assert outcome.reason.startswith(said)
 
@@ -195,8 +199,8 @@ def test_a_package_runs_from_its_sources(launched: Launched) -> None:
         (root / name).parent.mkdir(parents=True, exist_ok=True)
         (root / name).write_text(text)
     statuses: list[int] = []
-    programs = launched.start(sys.executable, program(launched.folder, ""))
-    programs.start_executable("demo", "tell", ["--ros-args"], statuses.append)
+    started = launched.start(sys.executable, program(launched.folder, ""))
+    started.start_executable("demo", "tell", ["--ros-args"], statuses.append)
     launched.to_end()
     assert launched.printed == ["found --ros-args"]
     assert statuses == [0]
@@ -210,3 +214,19 @@ def test_where_ros_is_sourced_its_own_launch_is_used(launched: Launched) -> None
     launched.start(sys.executable, launch_file(launched.folder, "1 / 0", "speed:=7"))
     launched.to_end()
     assert launched.printed == [f"ros2 launch {launched.folder / 'all.launch.py'} speed:=7"]
+
+
+@needs_ros
+@pytest.mark.slow
+def test_what_a_program_starts_itself_is_watched_too(tmp_path: Path) -> None:
+    node = tmp_path / "child.py"
+    text = programs.HEAD + programs.STARVED + programs.TAIL.format(executor="SingleThreadedExecutor()")
+    node.write_text(text)
+    parent = tmp_path / "parent.py"
+    parent.write_text(f"import subprocess, sys\nsubprocess.run([sys.executable, {str(node)!r}])\n")
+    setup = program_setup(parent, 2.0, clock="real")
+    run = run_to_end(msgspec.structs.replace(setup, real=RealRos()))
+    (child,) = [event for event in run.events if isinstance(event, ProcessAppeared)]
+    assert child.label.startswith("child.py-")
+    assert set(run.timeline.nodes.values()) == {"/tried"}
+    assert any(isinstance(event, CallbackEnded) for event in run.events)
