@@ -24,6 +24,14 @@ class RunClock(Protocol):
     def now(self) -> int:
         """Nanoseconds since the run began; never goes back."""
 
+    @property
+    def turn(self) -> int:
+        """Another number once the running thread has waited, or may have been left for another one."""
+
+    @property
+    def able(self) -> int:
+        """How many threads can run as soon as the running one lets them, where they take turns; else 0."""
+
     def sleep(self, duration: int) -> None:
         """Let ``duration`` nanoseconds pass on the calling thread."""
 

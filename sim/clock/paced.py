@@ -148,6 +148,16 @@ class PacedClock:
     def switch_point(self) -> None:
         """Nothing: the machine switches at will."""
 
+    @property
+    def turn(self) -> int:
+        """The millisecond: Python leaves a thread that does not wait after some of them."""
+        return self.now() // 1_000_000
+
+    @property
+    def able(self) -> int:
+        """None: threads do not take turns."""
+        return 0
+
     def poll(self) -> None:
         """Nothing: asking takes time."""
 

@@ -40,6 +40,8 @@ class VirtualClock:
         self._schedule = schedule or FirstCome()
         self.explores = self._schedule.explores
         """Whether its schedule chooses among the orders that are possible."""
+        self.turn = 0
+        """How often the running thread has waited, or was left for another one."""
         self.no_switching = 0
         """How many callers have disabled thread switches at switch points."""
         self._ready: deque[VirtualThread] = deque()
@@ -62,6 +64,11 @@ class VirtualClock:
     def now(self) -> int:
         """Virtual nanoseconds since the run began."""
         return self.time.now
+
+    @property
+    def able(self) -> int:
+        """How many threads can run as soon as the running one lets them."""
+        return len(self._ready)
 
     @property
     def threads(self) -> Set[VirtualThread]:
@@ -205,6 +212,7 @@ class VirtualClock:
             self._pass_baton(self._next_thread())
 
     def _hand_on(self, me: VirtualThread) -> None:
+        self.turn += 1
         recesses = self._recesses
         recesses.steps += 1
         if recesses.steps >= recesses.due:

@@ -75,7 +75,7 @@ class GuardCondition:
 
 
 class NodeGuardCondition(Entity, GuardCondition):
-    """Calls back once after ``trigger``, however often it was triggered meanwhile."""
+    """Calls back once after ``trigger``, however often it was triggered before an executor saw that."""
 
     kind = EntityKind.GUARD
     rank = 2
@@ -86,12 +86,18 @@ class NodeGuardCondition(Entity, GuardCondition):
         super().__init__(node, "", callback_group)
         self.callback = callback
         self._host = node.context.host
+        self._triggered_again = False
 
     def trigger(self) -> None:
         """Have the callback run; InvalidHandle if it was destroyed."""
         self.require_alive()
         with self._host.lock:
+            self._triggered_again = True
             self.become_ready(self._host.clock.now())
+
+    def noticed(self) -> None:
+        """A snapshot names it: from here on a trigger has it run once more."""
+        self._triggered_again = False
 
     def shown_callback(self) -> Callable[..., Any] | None:
         """The callback."""
@@ -103,6 +109,8 @@ class NodeGuardCondition(Entity, GuardCondition):
             return None
         late = now - self.ready_since
         self.nothing_left()
+        if self._triggered_again:
+            self.become_ready(now)
         return Taken(None, 0, late, 0)
 
     def invoke(self, taken: Taken) -> Any:

@@ -186,10 +186,13 @@ class Timer(Entity):
         return not (self._canceled or self.destroyed) and self.due <= now
 
     def take(self, now: int) -> Taken | None:
-        """Count this call and move on to the next due time."""
-        if not self.still_ready(now):
+        """Count this call and move on to the next due time.
+
+        A timer that was reset while it waited for its turn is called all the same, one period too early.
+        """
+        if self._canceled or self.destroyed:
             return None
-        late = now - self.due
+        late = max(now - self.due, 0)
         if self._ros_schedule is not None:
             return Taken(self._take_of_ros_time(self._ros_schedule), 0, late, 0)
         info = None if self._info_parameter is None else self._info(now)

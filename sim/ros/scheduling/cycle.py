@@ -1,4 +1,9 @@
-"""What an executor serves next: the tasks that are due, then one snapshot of what is ready, to its end."""
+"""What an executor serves next: the tasks that are due, then one snapshot of what is ready, to its end.
+
+A cycle begins with a gathering: whatever is not handed out and let in by its group is waited for. What
+becomes ready first ends the waiting, and is served before the executor gathers again. So what was left out,
+because its group was busy or it was still handed out, comes a snapshot later, even if it could run by then.
+"""
 
 from __future__ import annotations
 
@@ -7,9 +12,10 @@ from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from sim.ros.scheduling.entity import Entity
-from sim.ros.scheduling.wait_set import WaitSet
+from sim.ros.scheduling.wait_set import snapshot
 
 if TYPE_CHECKING:
+    from sim.clock import Clock
     from sim.ros.scheduling.entity import OwnerNode
     from sim.ros.scheduling.task import Task
 
@@ -27,32 +33,39 @@ class Cycle:
     def __init__(
         self,
         nodes: list[OwnerNode],
+        clock: Clock,
         entity_of: Callable[[Task[Any]], Entity | None],
         chosen: Callable[[Entity], bool] | None,
     ) -> None:
         self.view = nodes
         """The nodes that are waited for."""
+        self.may_serve: Callable[[], bool] | None = None
+        """Whether what was just found may be served yet; None: always, for nothing runs while this waits."""
         self._nodes = nodes
+        self._clock = clock
         self._entity_of = entity_of
         self._is_chosen = chosen
         self.wanted: tuple[Any, ...] = ()
         """What is waited for: how long, over which nodes, and until which condition holds."""
-        self._wait_set = WaitSet()
+        self._snapshot: deque[Entity] = deque()
         self._tasks: deque[Task[Any]] = deque()
         self._due_tasks: deque[Task[Any]] = deque()
         self.foreign_awaits: list[Task[Any]] = []
         """Tasks that await something unknown: they ask again after the executor is next woken."""
-        self._looked = True
-
-    @property
-    def served(self) -> bool:
-        """Whether this cycle has been served to its end."""
-        return self._looked and self._wait_set.exhausted and not self._due_tasks
+        self._gathers_next = False
+        self._held = False
+        self._yielded = False
+        self.waits = False
+        """Whether all that was found is served, and what was gathered is waited for."""
+        self._gatherings = 0
+        self._left_out: set[object] = set()
+        self._woken_in: int | None = None
 
     @property
     def about_to_look(self) -> bool:
         """Whether the next thing to do is to take a new snapshot."""
-        return not self._due_tasks and self._wait_set.exhausted and not (self._looked and self._tasks)
+        is_served = not (self._due_tasks or self._snapshot)
+        return is_served and (self.waits or self._gathers_next or not self._tasks)
 
     def want(self, wanted: tuple[Any, ...], nodes: Iterable[OwnerNode] | None) -> None:
         """Wait for something else than until now: the rest of the snapshot is let go.
@@ -64,8 +77,9 @@ class Cycle:
         self.view = self._nodes if nodes is None else self._chosen(nodes)
         self._tasks.extendleft(reversed(self._due_tasks))
         self._due_tasks.clear()
-        self._wait_set.clear()
-        self._looked = True
+        self._snapshot.clear()
+        self._gathers_next = self._yielded = False
+        self.stop_waiting()
 
     def _chosen(self, nodes: Iterable[OwnerNode]) -> list[OwnerNode]:
         chosen = list(nodes)
@@ -76,12 +90,134 @@ class Cycle:
                 )
         return chosen
 
-    def begin(self) -> None:
-        """Begin a new cycle, with the tasks that are there now."""
+    # What is served next
+
+    def next(self, now: int) -> Work | None:
+        """The next to serve, an entity marked as handed out; None: nothing is ready, or may be served yet."""
+        if self._held:
+            if self.may_serve is not None and not self.may_serve():
+                return None
+            self._held = False
+        for _ in _STAGES:
+            work = self._serve(now)
+            if work is not None:
+                return work
+            if not self._find(now):
+                return None
+            if self.may_serve is not None and not self.may_serve():
+                self._held = True
+                return None
+        work = self._serve(now)
+        self.waits = work is None
+        return work
+
+    def rest(self, now: int) -> Work | None:
+        """The next to serve of what is found already; None: that is served, or may not be served yet."""
+        return None if self._held else self._serve(now)
+
+    def ends(self, now: int) -> bool:
+        """Whether a snapshot of which something was served has come to its end; asked once for each.
+
+        If not, the rest is still there.
+        """
+        if self._due_tasks:
+            return False
+        if self._gathers_next:
+            return not self._gather(self._ready(now))
+        ends = self._yielded and not self._holds(now)
+        if ends:
+            self._yielded = False
+        return ends
+
+    def gather(self, now: int) -> bool:
+        """Gather at once if all that was found is served; whether something is to be served."""
+        if not (self._due_tasks or self._snapshot):
+            self._held = self._find(now)
+        return not self.waits
+
+    def would_find(self, now: int) -> bool:
+        """Whether there is something to serve, or would be after gathering now."""
+        return bool(self._due_tasks or self._tasks or self._snapshot or snapshot(self.view, now))
+
+    def hold(self) -> None:
+        """Have the rest of what was found wait until it may be served."""
+        self._held = True
+
+    def _serve(self, now: int) -> Work | None:
+        if self._due_tasks:
+            return self._due_tasks.popleft()
+        if not self._holds(now):
+            return None
+        entity = self._snapshot.popleft()
+        entity.handed_out = self._yielded = True
+        return entity
+
+    def _holds(self, now: int) -> bool:
+        """Whether there is another one in the snapshot that still holds; those before it are let go."""
+        found = self._snapshot
+        while found:
+            entity = found[0]
+            if (
+                not entity.handed_out
+                and entity.still_ready(now)
+                and entity.callback_group.can_execute(entity)
+            ):
+                return True
+            found.popleft()
+        return False
+
+    def _find(self, now: int) -> bool:
+        """Find what is served next: what was waited for, else tasks, else what a new gathering finds."""
+        waited, self.waits = self.waits, False
+        tasks_first = not self._gathers_next
+        if tasks_first and not waited and self._take_tasks():
+            return True
+        found = self._ready(now)
+        if waited and found and (awaited := self._awaited(found)):
+            found = awaited
+        elif tasks_first and waited and self._take_tasks():
+            return True
+        elif not self._gather(found) and self._take_tasks():
+            self.waits = False  # those that came meanwhile end the waiting as it begins
+            return True
+        else:
+            return not self.waits
+        self._name(found)
+        return True
+
+    def _ready(self, now: int) -> deque[Entity]:
+        found = snapshot(self.view, now)
+        return found if self._is_chosen is None else deque(filter(self._is_chosen, found))
+
+    def _gather(self, found: deque[Entity]) -> bool:
+        """Wait for all that can run, of which ``found`` is ready; whether that is something."""
+        self._gathers_next = self._yielded = False
+        self._regather()
+        self._name(found)
+        self.waits = not found
+        return not self.waits
+
+    def _name(self, found: deque[Entity]) -> None:
+        for each in found:
+            each.noticed()
+        self._snapshot = found
+
+    def _awaited(self, found: deque[Entity]) -> deque[Entity]:
+        """Those of what is ready that the waiting in progress has not left out."""
+        left_out = self._left_out
+        if not left_out:
+            return found
+        return deque(each for each in found if each not in left_out and each.callback_group not in left_out)
+
+    def _take_tasks(self) -> bool:
+        """Serve the tasks that are there now, those of nodes in view; whether there are any."""
+        if not self._tasks:
+            return False
         self._due_tasks, self._tasks = self._tasks, self._due_tasks
         if self.view is not self._nodes:
             self._put_tasks_off()
-        self._looked = False
+        self._gathers_next = bool(self._due_tasks)
+        return self._gathers_next
 
     def _put_tasks_off(self) -> None:
         """Leave the callbacks of nodes that are out of view for another cycle."""
@@ -92,16 +228,47 @@ class Cycle:
             (in_view if is_seen else self._tasks).append(task)
         self._due_tasks = in_view
 
-    def next(self, now: int) -> Work | None:
-        """The next of this cycle, an entity marked as handed out; None: it has been served to its end."""
-        if self._due_tasks:
-            return self._due_tasks.popleft()
-        if not self._looked:
-            self._looked = True
-            self._wait_set.look(self.view, now)
-            if self._is_chosen is not None:
-                self._wait_set.keep(self._is_chosen)
-        return self._wait_set.next(now)
+    # What the waiting in progress has left out
+
+    def stop_waiting(self) -> None:
+        """Wait no longer for what was gathered."""
+        self.waits = self._held = False
+
+    def entered(self, entity: Entity) -> None:
+        """A handler has begun to run: what it is for was handed out, and the executor is woken."""
+        if self._clock.turn != self._woken_in:
+            self.woken()
+        self._left_out.add(entity)
+        entity.entered_in = self._gatherings
+
+    def leaves(self, entity: Entity) -> None:
+        """A callback is about to free its group, and to wake the executor."""
+        if self._clock.turn != self._woken_in:
+            self.woken()
+        if entity.entered_in != self._gatherings:
+            group = entity.callback_group
+            if not group.can_execute(entity):
+                self._left_out.add(group)
+
+    def woken(self) -> None:
+        """The executor gathers again as soon as the running thread lets it.
+
+        Where it did so unseen, because there was nothing to find, this catches up on it.
+        """
+        self.catch_up()
+        self._woken_in = self._clock.turn
+
+    def catch_up(self) -> None:
+        """Gather again if the executor was woken since, and the running thread has let it."""
+        if self._woken_in is not None and self._woken_in != self._clock.turn:
+            self._regather()
+
+    def _regather(self) -> None:
+        self._gatherings += 1
+        self._left_out.clear()
+        self._woken_in = None
+
+    # Tasks
 
     def add_task(self, task: Task[Any]) -> None:
         """Serve a task in the next cycle."""
@@ -111,3 +278,7 @@ class Cycle:
         """The executor is woken: have the tasks that await something unknown ask again."""
         self._tasks.extend(self.foreign_awaits)
         self.foreign_awaits.clear()
+
+
+_STAGES = ("the rest", "what was waited for")
+"""What is served before a new gathering."""

@@ -79,8 +79,9 @@ class Entity:
     """Base of timers, subscriptions, guard conditions, clients and services.
 
     All attributes are guarded by the host's lock. ``handed_out`` is set from the moment an executor yields
-    the entity until its handler runs; meanwhile no executor yields it again. ``pending`` tells that there
-    is something to take.
+    the entity until its handler runs; meanwhile no executor yields it again. ``entered_in`` is the number of
+    the executor's last gathering when its callback last began. ``pending`` tells that there is something to
+    take.
     """
 
     kind: ClassVar[EntityKind]
@@ -101,6 +102,7 @@ class Entity:
         self.callback_group = callback_group
         self.order = node._agenda.next_order()
         self.handed_out = False
+        self.entered_in = 0
         self.pending = False
         self.destroyed = False
         self.ready_since = 0
@@ -158,6 +160,9 @@ class Entity:
     def falls_due(self, due: int) -> bool:
         """Whether it still becomes ready at ``due``, by the passing of time alone."""
         return self.due == due and not (self.pending or self.destroyed)
+
+    def noticed(self) -> None:
+        """A snapshot names this entity."""
 
     def still_ready(self, now: int) -> bool:
         """Whether a snapshot that names this entity still holds when its turn comes."""

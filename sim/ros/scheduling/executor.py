@@ -51,7 +51,9 @@ class Executor:
         self._nodes: list[OwnerNode] = []
         self._runner = Runner(self)
         chooses = type(self).can_execute is not Executor.can_execute
-        self._cycle = Cycle(self._nodes, self._runner.entity_of, self.can_execute if chooses else None)
+        self._cycle = self._runner.cycle = Cycle(
+            self._nodes, self._clock, self._runner.entity_of, self.can_execute if chooses else None
+        )
         self._signal = self._clock.auto_reset_event()
         self._asks_waitables = False
         self._waitables_due: int | None = None
@@ -225,41 +227,39 @@ class Executor:
             asked = self._asks_waitables and self._cycle.about_to_look and self._ask_waitables()
             with self._lock:
                 self._waiting = False
-                if self._is_shutdown:
-                    raise ShutdownException
-                if not self._context.ok():
-                    raise ExternalShutdownException
-                if condition():
-                    raise ConditionReachedException
                 now = self._clock.now()
-                work = self._next_work(now)
+                self._raise_if_over(condition)
+                if nanoseconds == 0 and self._cycle.ends(now):
+                    raise TimeoutException
+                work = self._cycle.next(now)
                 if work is not None:
                     return on_found(work, now)
-                if deadline is not None and now >= deadline:
+                if deadline is not None and now >= deadline and self._cycle.waits:
                     self._wake()
+                    self._cycle.stop_waiting()
                     raise TimeoutException
                 if self._asks_waitables and not asked and self._cycle.about_to_look:
                     continue
                 dues = (node._agenda.next_due() for node in self._cycle.view)
-                until = _earliest((deadline, self._waitables_due, *dues))
+                until = _earliest((deadline, self._waitables_due, *dues)) if self._cycle.waits else None
                 self._waits_until = until
                 self._waiting = True
-            self._signal.wait(until)
+            if not self._signal.wait(until):
+                with self._lock:
+                    self._cycle.catch_up()
 
-    def _next_work(self, now: int) -> Work | None:
-        """Yield the next of this cycle, of a new one once it is served to its end. With the lock held."""
-        cycle = self._cycle
-        if not cycle.served:
-            work = cycle.next(now)
-            if work is not None:
-                return work
-        if not self._may_begin_cycle():
-            return None
-        cycle.begin()
-        return cycle.next(now)
-
-    def _may_begin_cycle(self) -> bool:
-        return True
+    def _raise_if_over(self, condition: Callable[[], bool]) -> None:
+        """Raise what says why nothing more is waited for. With the lock held."""
+        if self._is_shutdown:
+            over: type[Exception] = ShutdownException
+        elif not self._context.ok():
+            over = ExternalShutdownException
+        elif condition():
+            over = ConditionReachedException
+        else:
+            return
+        self._cycle.stop_waiting()
+        raise over
 
     def _ask_waitables(self) -> bool:
         """Ask a program's waitables, for a cycle that is about to begin; True."""

@@ -11,6 +11,7 @@ from typing import Any, Self
 from sim.ros.context.context import Context
 from sim.ros.context.utilities import get_available_threads, get_default_context
 from sim.ros.scheduling.cycle import Work
+from sim.ros.scheduling.entity import Entity
 from sim.ros.scheduling.executor import Executor
 from sim.ros.scheduling.running import Started
 from sim.ros.scheduling.task import Future
@@ -95,6 +96,7 @@ class MultiThreadedExecutor(Executor):
             )
         super().__init__(context=chosen)
         self._pool = WorkerPool(self)
+        self._cycle.may_serve = self._pool.all_begun
         self._spinning_on = False
 
     @property
@@ -159,10 +161,16 @@ class MultiThreadedExecutor(Executor):
             self._await_work(
                 timeout_sec, lambda: wait_condition() or self._pool.error_surfaces, self._pool.submit
             )
+            self._pool.await_start()
         self._pool.raise_surfacing()
 
-    def _may_begin_cycle(self) -> bool:
-        return self._pool.all_begun()
+    def _entity_ready(self, entity: Entity) -> None:
+        self._cycle.catch_up()
+        super()._entity_ready(entity)
+
+    def _wake(self) -> None:
+        self._cycle.woken()
+        super()._wake()
 
     def _work_came(self) -> None:
         """An idle worker looks for it, which saves the way over the thread that spins."""

@@ -15,7 +15,7 @@ from sim.trace.events import Reason
 
 if TYPE_CHECKING:
     from sim.clock import AutoResetEvent
-    from sim.ros.scheduling.cycle import Work
+    from sim.ros.scheduling.cycle import Cycle, Work
     from sim.ros.scheduling.executor import Executor
 
 Begun: TypeAlias = "tuple[Entity, Taken] | Task[Any]"
@@ -32,6 +32,8 @@ class Runner:
         self._executor = weakref.ref(executor)
         self.lock = executor.context.host.lock
         self.clock = executor.context.host.clock
+        self.cycle: Cycle
+        """What the executor serves."""
         self._probe = executor.context.probe
         self._coroutines: dict[Task[Any], Entity] = {}
         self._running: list[Entity] = []
@@ -66,6 +68,9 @@ class Runner:
     def enter(self, entity: Entity, now: int) -> Taken | None:
         """Do as ``begin`` for an entity."""
         entity.handed_out = False
+        cycle = self.cycle
+        if cycle.may_serve is not None:
+            cycle.entered(entity)
         if self.refuses or entity.destroyed or not entity.callback_group.beginning_execution(entity):
             self.executor.wake()
             return None
@@ -162,9 +167,12 @@ class Runner:
         with self.lock:
             self._running.remove(entity)
             self._probe.callback_ended(entity, outer)
+            cycle = self.cycle
+            if cycle.may_serve is not None:
+                cycle.leaves(entity)
             entity.callback_group.ending_execution(entity)
             executor = self._executor()
-            if executor is not None and (executor._waiting or executor._cycle.foreign_awaits):
+            if executor is not None and (executor._waiting or cycle.foreign_awaits):
                 executor._look_again()
             self._wake_sharers(entity)
             self._leave()

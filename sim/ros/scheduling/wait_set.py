@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -36,40 +36,3 @@ def snapshot(nodes: Iterable[OwnerNode], now: int) -> deque[Entity]:
             ready.extend(let_in)
     ready.extendleft(reversed(waitables))
     return ready
-
-
-class WaitSet:
-    """The one snapshot that an executor serves at a time. Used with the host's lock held."""
-
-    def __init__(self) -> None:
-        self._snapshot: deque[Entity] = deque()
-
-    @property
-    def exhausted(self) -> bool:
-        """Whether the snapshot has been served to its end."""
-        return not self._snapshot
-
-    def look(self, nodes: Iterable[OwnerNode], now: int) -> None:
-        """Take a new snapshot."""
-        self._snapshot = snapshot(nodes, now)
-
-    def clear(self) -> None:
-        """Let go of what is left of the snapshot."""
-        self._snapshot.clear()
-
-    def keep(self, wanted: Callable[[Entity], bool]) -> None:
-        """Let go of what is not wanted."""
-        self._snapshot = deque(filter(wanted, self._snapshot))
-
-    def next(self, now: int) -> Entity | None:
-        """Yield the next of the snapshot that still holds, marked as handed out; None: it is exhausted."""
-        while self._snapshot:
-            entity = self._snapshot.popleft()
-            if (
-                not entity.handed_out
-                and entity.still_ready(now)
-                and entity.callback_group.can_execute(entity)
-            ):
-                entity.handed_out = True
-                return entity
-        return None

@@ -29,11 +29,13 @@ _join = threading.Thread.join
 class Worker:
     """A thread of the pool; ``called`` while it is on its way to begin something."""
 
-    __slots__ = ("called", "signal", "thread")
+    __slots__ = ("began_in", "called", "signal", "thread")
 
     def __init__(self, signal: AutoResetEvent) -> None:
         self.signal = signal
         self.called = False
+        self.began_in = -1
+        """The clock's turn in which it began its first callback."""
         self.thread: threading.Thread | None = None
 
 
@@ -58,6 +60,8 @@ class WorkerPool:
         self._coming = 0
         self._called_at = 0
         self._look_owed = False
+        self._starting: Worker | None = None
+        self._started = self._clock.auto_reset_event()
         self._errors: list[BaseException] = []
         self._dismissed = False
         self._living = 0
@@ -76,7 +80,7 @@ class WorkerPool:
 
     def all_begun(self) -> bool:
         """Whether all that workers were called for has begun; if not, the executor is woken when it has."""
-        self._look_owed = self._claimed()
+        self._look_owed = self._starting is not None or self._claimed()
         return not self._look_owed
 
     def _claimed(self) -> bool:
@@ -109,8 +113,15 @@ class WorkerPool:
             worker = Worker(self._clock.auto_reset_event())
             self._workers.append(worker)
             self._living += 1
+            self._starting = worker
+            self._executor._cycle.hold()
             self._expect(worker, now)
             self._clock.start_thread(lambda: self._work(worker), f"{self._name}_{len(self._workers) - 1}")
+
+    def await_start(self) -> None:
+        """If a worker was just started, let it go first: it begins, and works until it has to wait."""
+        while self._starting is not None:
+            self._started.wait(None)
 
     def _expect(self, worker: Worker, now: int) -> None:
         worker.called = True
@@ -126,27 +137,36 @@ class WorkerPool:
         self._executor._probe.works_for(self._executor.trace_id)
         try:
             while (started := self._next(worker)) is not None:
-                self._run(started)
+                self._run(started, worker)
         finally:
             self._leave()
 
     def _next(self, worker: Worker) -> Started | None:
         """Wait for the worker's next callback and start it; None once the pool is dismissed."""
+        may_find = False
         while True:
             with self._lock:
                 now = self._clock.now()
-                begun = self._begin_claimed(worker, now) or self._begin_queued(now) or self._begin_found(now)
+                begun = self._begin_claimed(worker, now) or self._begin_queued(now)
+                others_go_first = begun is None and not may_find and self._clock.able > self._coming
+                if begun is None and not others_go_first:
+                    begun = self._begin_found(now)
                 if begun is not None:
                     return self._runner.start(begun)
-                if self._dismissed:
+                if others_go_first:
+                    self._expect(worker, now)
+                elif self._dismissed:
                     return None
-                others_go_first = len(self._queue) > self._coming
-                if not others_go_first:
-                    self._idle.append(worker)
+                else:
+                    others_go_first = len(self._queue) > self._coming
+                    if not others_go_first:
+                        self._idle.append(worker)
             if others_go_first:
                 self._clock.sleep(0)
+                may_find = True
             else:
                 worker.signal.wait(None)
+                may_find = True
 
     def _begin_claimed(self, worker: Worker, now: int) -> Begun | None:
         """Begin what this worker was called for, or what others were called for and are late for."""
@@ -157,11 +177,21 @@ class WorkerPool:
         begun = None
         while begun is None and may_take and self._queue:
             work = self._queue.popleft()
-            if self._look_owed and not self._claimed():
-                self._executor.wake()
             begun = self._runner.begin(work, now)
             may_take = self._others_are_late(now)
+        if self._starting is not None or self._look_owed:
+            self._tell_begun(worker)
         return begun
+
+    def _tell_begun(self, worker: Worker) -> None:
+        """Have the executor serve what it has found meanwhile, if it waits for workers to begin."""
+        if self._starting is worker:
+            worker.began_in = self._clock.turn
+        if self._starting is worker or not self._claimed():
+            self._starting = None
+            self._started.set()
+        if self._look_owed and self._starting is None and not self._claimed():
+            self._executor.wake()
 
     def _others_are_late(self, now: int) -> bool:
         """Whether time has passed since a worker was called that has not come yet."""
@@ -172,45 +202,43 @@ class WorkerPool:
         begun = None
         while begun is None and self._queue and self._coming == 0:
             begun = self._runner.begin(self._queue.popleft(), now)
-        if begun is not None and self._may_look():
-            self._give_out(self._executor._next_work, now)
+        if begun is not None and self._executor._cycle.would_find(now):
+            self._executor.wake()
         return begun
 
     def _begin_found(self, now: int) -> Begun | None:
         """Begin the first of what is ready, and give the rest of its cycle to others."""
         if len(self._queue) > self._coming or not self._may_look():
             return None
-        own = self._executor._next_work(now)
+        cycle = self._executor._cycle
+        own = cycle.next(now)
         if own is None:
             return None
         self._surface_errors()
-        self._give_out(self._executor._cycle.next, now)
+        while not (self.error_surfaces or self._starting) and (work := cycle.rest(now)) is not None:
+            self.submit(work, now)
+        if self.error_surfaces or cycle.gather(now):
+            self._executor.wake()
         return self._runner.begin(own, now)
 
     def _may_look(self) -> bool:
         """Whether a worker may look for what is ready; else the thread that spins is told to."""
-        if not self.dispatches_itself or self.enough():
+        if not self.dispatches_itself:
             return False
         executor = self._executor
-        if self.error_surfaces or executor._is_shutdown or not executor._context.ok():
+        if self.enough() or self.error_surfaces or executor._is_shutdown or not executor._context.ok():
             executor.wake()
             return False
         return True
 
-    def _give_out(self, following: Callable[[int], Work | None], now: int) -> None:
-        while not self.error_surfaces:
-            work = following(now)
-            if work is None:
-                return
-            self.submit(work, now)
-        self._executor.wake()
-
-    def _run(self, started: Started) -> None:
+    def _run(self, started: Started, worker: Worker) -> None:
         try:
             self._runner.run(started)
         except Exception as error:  # noqa: BLE001 -- kept for the thread that spins
             with self._lock:
                 self._errors.append(error)
+                # Who started the worker has been waiting for it, and only now looks for errors.
+                self.error_surfaces |= worker.began_in == self._clock.turn
         except (KeyboardInterrupt, SystemExit):
             return  # lost, as in rclpy: a pool's thread has nobody to tell
 

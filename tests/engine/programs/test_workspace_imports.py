@@ -113,10 +113,10 @@ main()
 
 def test_asyncio_lives_on_virtual_time_and_awaits_rclpys_futures(tmp_path: Path) -> None:
     run = run_in_workspace(tmp_path, {"a.py": ASYNCIO}, "a.py")
-    assert printed(run) == ["answer 1.25"]
+    assert printed(run) == ["answer 1.5"]
     assert not run.ending.failed
 
 
 def test_each_of_several_programs_has_an_event_loop_of_its_own(tmp_path: Path) -> None:
     run = run_in_workspace(tmp_path, {"a.py": ASYNCIO, "b.py": ASYNCIO.replace("ask", "beg")}, "a.py", "b.py")
-    assert printed(run) == ["answer 1.25"] * 2
+    assert printed(run) == ["answer 1.5"] * 2

@@ -298,6 +298,7 @@ def test_goals_of_different_clients_never_share_an_id() -> None:
                 assert goal_handle.accepted
                 ids.add(bytes(goal_handle.goal_id.uuid))
         assert len(ids) == 9
+        simulation.sleep(0.1)  # until the last goal has run, too
 
     simulate(program)
 

@@ -65,7 +65,7 @@ def test_a_subscription_may_ask_for_the_info_of_a_message() -> None:
         publisher.publish(Int32(data=1))
         simulation.sleep(0.5)
         publisher.publish(Int32(data=2))
-        for _ in range(2):
+        for _ in range(3):
             rclpy.spin_once(node, timeout_sec=0.0)
 
     simulate(program)

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from sim.ros.middleware.host import current_host
 from sim.ros.scheduling.callback_groups import MutuallyExclusiveCallbackGroup
-from sim.ros.scheduling.executor import Executor
+from sim.ros.scheduling.cycle import Cycle
 from sim.ros.scheduling.running import Runner
 from tests.ros.scheduling.schedules import broken_rules, first_trouble, play_seeded
 from tests.ros.scheduling.systems import System, play, systems
@@ -93,15 +93,15 @@ def test_a_group_that_asks_and_enters_in_two_steps_is_found(monkeypatch: pytest.
 
 
 def test_a_wake_up_that_is_lost_between_looking_and_waiting_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    looks = Executor._next_work
+    looks = Cycle.next
 
-    def look(executor: Executor, now: int) -> Any:
-        work = looks(executor, now)
+    def look(cycle: Cycle, now: int) -> Any:
+        work = looks(cycle, now)
         if work is None:
             let_go_of_the_lock()  # what becomes ready here finds nobody waiting, and wakes nobody
         return work
 
-    monkeypatch.setattr(Executor, "_next_work", look)
+    monkeypatch.setattr(Cycle, "next", look)
     assert_only_exploring_finds("a wake-up was lost")
 
 

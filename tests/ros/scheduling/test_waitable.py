@@ -151,6 +151,7 @@ def test_futures_added_to_a_waitable_belong_to_its_executor() -> None:
         future.set_result(1)
         other.set_result(1)
         assert ran == ["waitable", "at once"]
+        executor.spin_once(timeout_sec=0)  # ends the cycle of the waitable
         executor.spin_once(timeout_sec=0)
         assert ran == ["waitable", "at once", "as a task"]
 
