@@ -15,7 +15,7 @@ from sim.ros.scheduling.entity import Entity
 from sim.ros.scheduling.wait_set import snapshot
 
 if TYPE_CHECKING:
-    from sim.clock import Clock
+    from sim.clock import RunClock
     from sim.ros.scheduling.entity import OwnerNode
     from sim.ros.scheduling.task import Task
 
@@ -33,7 +33,7 @@ class Cycle:
     def __init__(
         self,
         nodes: list[OwnerNode],
-        clock: Clock,
+        clock: RunClock,
         entity_of: Callable[[Task[Any]], Entity | None],
         chosen: Callable[[Entity], bool] | None,
     ) -> None:

@@ -1,0 +1,40 @@
+"""What plain programs were measured to say on real rclpy, they say on the model, too, and do so still."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from sim.trace.events import Printed
+from tests.real.programs import needs_ros
+from tests.ros.measured.orders import ORDERS, Order
+from tests.support.engine_runs import run_program
+
+each_order = pytest.mark.parametrize("order", ORDERS, ids=lambda order: order.what)
+
+
+@each_order
+def test_the_model_keeps_the_measured_order(order: Order, tmp_path: Path) -> None:
+    run = run_program(tmp_path, order.source)
+    assert [event.text for event in run.events if isinstance(event, Printed)] == order.lines.split(", ")
+
+
+@needs_ros
+@pytest.mark.slow
+@each_order
+def test_real_rclpy_keeps_the_measured_order(order: Order, tmp_path: Path) -> None:
+    program = tmp_path / "node.py"
+    program.write_text(order.source)
+    alone = {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST", "ROS_DOMAIN_ID": str(os.getpid() % 100 + 1)}
+    done = subprocess.run(
+        [sys.executable, program],
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+        cwd=tmp_path,
+        env={**os.environ, **alone},
+    )
+    assert done.stdout.splitlines() == order.lines.split(", ")
