@@ -1,4 +1,4 @@
-"""Plain programs, and what each was measured to say on real rclpy: Jazzy (7.1.6) and Kilted (9.1.2) alike."""
+"""Plain programs, and what each was measured to say on real rclpy: Jazzy 7.1.6 and Kilted 9.1.2."""
 
 from dataclasses import dataclass
 
@@ -42,11 +42,15 @@ def spin(executor, seconds):
 
 @dataclass(frozen=True)
 class Order:
-    """A program, and its lines; ``what`` says what they show."""
+    """A program, and its lines; ``what`` says what they show.
+
+    ``also`` is what some real runs said, where a thread that is woken may be quicker than the one that runs.
+    """
 
     what: str
     program: str
     lines: str
+    also: str = ""
 
     @property
     def source(self) -> str:
@@ -71,6 +75,8 @@ threading.Thread(target=send, daemon=True).start()
 spin(MultiThreadedExecutor(1), 3.2)
 """
 
+_CALLED = "begins, ends, begins, ends, begins, calls, ends, begins, ends, served, begins, ends"
+
 ORDERS = (
     Order(
         "what a callback sends as its last act comes before the timer of its own group",
@@ -85,9 +91,10 @@ spin(MultiThreadedExecutor(1), 2.0)
         "begins, ends, heard, begins, ends, heard, begins, ends, heard, begins",
     ),
     Order(
-        "what a queued callback sends before it waits comes before what its predecessor's group was left out of",
+        "what a queued callback sends before it waits comes before what had to wait for its predecessor",
         _QUEUED.replace("BODY", 'c.publish(Int32()); lasts(0.3, "b begins", "b ends")'),
         "a1 begins, a ends, b begins, b ends, c, a2 begins, a ends",
+        also="a1 begins, a ends, b begins, b ends, a2 begins, a ends, c",
     ),
     Order(
         "what a queued callback sends after it has waited comes later",
@@ -111,7 +118,8 @@ def call():
 timer = node.create_timer(1.2, call, Exclusive())
 spin(MultiThreadedExecutor(2), 2.4)
 """,
-        "begins, ends, begins, ends, begins, calls, ends, begins, ends, served, begins, ends, answered True, begins",
+        f"{_CALLED}, answered True, begins",
+        also=f"{_CALLED}, begins, answered True",
     ),
     Order(
         "a pool's spin_until_future_complete comes back with the reply",
