@@ -4,14 +4,18 @@ Each is a process of its own that tells on standard output, line by line, what a
 """
 
 import subprocess
-from collections.abc import Callable, Mapping, Sequence
+import sys
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from selectors import BaseSelector
 
 import msgspec
 
+from sim.engine.setup import RobotUse
 from sim.real.probe_link import LineReader
-from sim.real.wire import ProbeLine, decode_lines
+from sim.real.wire import ProbeLine, Sent, decode_lines
+from sim.robot.names import NAMES
+from sim.trace.events import ArenaShown, EntityAppeared, EntityKind
 
 
 class Companion:
@@ -74,3 +78,110 @@ class Companion:
     def _told(self, data: bytes) -> None:
         self.has_spoken = True
         self._take(decode_lines(data))
+
+
+class ServiceCaller:
+    """Calls services for the person who watches; ``python`` has the rclpy to do it with."""
+
+    def __init__(
+        self,
+        selector: BaseSelector,
+        python: str,
+        environment: Mapping[str, str],
+        take: Callable[[list[ProbeLine]], None],
+    ) -> None:
+        self._process = Companion(selector, [python, "-m", "cbtui_probe.caller"], environment, take)
+        self._offered: list[str] = []
+        self.start = self._process.start
+        self.stop = self._process.stop
+
+    def hear(self, lines: Iterable[ProbeLine]) -> None:
+        """Note which services the programs offer."""
+        self._offered += [
+            line.name
+            for line in lines
+            if isinstance(line, EntityAppeared) and line.kind is EntityKind.SERVICE
+        ]
+
+    def set_bool(self, name: str | None, data: bool) -> str | None:
+        """Call a service of type SetBool, without a name the first that is offered; returns which, if any."""
+        names = self._offered if name is None else [name]
+        if not names:
+            return None
+        self._process.say(["std_srvs/srv/SetBool", names, {"data": data}])
+        return names[0]
+
+    def reset_world(self) -> None:
+        """Have the robot begin anew."""
+        self._process.say(["std_srvs/srv/Empty", ["/reset_world"], {}])
+
+
+class RunRobot:
+    """The robot of a run, which is shown from its first use on, or from the beginning.
+
+    ``take`` gets what it tells: one that nothing uses moves nowhere.
+    """
+
+    def __init__(
+        self,
+        use: RobotUse,
+        sensor_rate: float | None,
+        selector: BaseSelector,
+        environment: Mapping[str, str],
+        take: Callable[[Iterable[ProbeLine]], None],
+    ) -> None:
+        rate = [] if sensor_rate is None else [str(sensor_rate)]
+        command = [sys.executable, "-m", "sim.real.robot", *rate]
+        self._process = Companion(selector, command, environment, self._told)
+        self._take = take
+        self._use = use
+        self._is_used = use is RobotUse.ALWAYS
+        self._arena: list[ProbeLine] = []
+        """What it told of its world before something used it."""
+        self.stop = self._process.stop
+
+    def start(self) -> None:
+        """Start it, if there is to be one."""
+        if self._use is not RobotUse.NEVER:
+            self._process.start()
+
+    @property
+    def drives(self) -> bool:
+        """Whether it has told something."""
+        return self._process.has_spoken
+
+    @property
+    def is_gone(self) -> bool:
+        """Whether it was started and has ended: there is no rclpy for it."""
+        return self._process.is_over
+
+    @property
+    def is_running(self) -> bool:
+        """Whether it was started, and has not ended."""
+        return self._process.is_running
+
+    @property
+    def is_awaited(self) -> bool:
+        """Whether it was started, and has neither ended nor told anything."""
+        return self.is_running and not self.drives
+
+    def hear(self, lines: Sequence[ProbeLine]) -> None:
+        """Note whether something uses it."""
+        if not self._is_used and any(_name(line) in NAMES for line in lines):
+            self._is_used = True
+            self._take(msgspec.structs.replace(line, t=lines[0].t) for line in self._arena)
+
+    def _told(self, lines: list[ProbeLine]) -> None:
+        if self._is_used:
+            self._take(lines)
+        else:
+            self._arena += [line for line in lines if isinstance(line, ArenaShown)]
+
+
+def _name(line: ProbeLine) -> str:
+    """The topic or service that something is made for or sent to."""
+    match line:
+        case EntityAppeared(name=name) | Sent(topic=name):
+            return name
+        case _:
+            return ""

@@ -21,25 +21,21 @@ import msgspec
 from sim.engine import commands
 from sim.engine.failures.failure import breakdown
 from sim.engine.outbox import Outbox
-from sim.engine.setup import RobotUse, RunSetup
+from sim.engine.setup import RunSetup
 from sim.engine.stdio.descriptors import leave_terminal
 from sim.probes.on_path.cbtui_probe import FOLDER
-from sim.real.companions import Companion
+from sim.real.companions import RunRobot, ServiceCaller
 from sim.real.keyboard import RealKeyboard
 from sim.real.launched import LaunchedPrograms
 from sim.real.programs import STOPPED, OnExit, Outcome, claimed_domain, environment, unbootstrapped
 from sim.real.ros2_lines import Ros2Lines
 from sim.real.translation import HOLD, Translation
 from sim.real.watched import WatchedProcesses
-from sim.real.wire import OF_THE_RUN, ProbeLine, Sent
-from sim.robot.names import NAMES
+from sim.real.wire import OF_THE_RUN, ProbeLine
 from sim.trace.events import (
     AnyEvent,
-    ArenaShown,
     CommandGiven,
     CommandKind,
-    EntityAppeared,
-    EntityKind,
     Notice,
     NoticeKind,
     Printed,
@@ -141,16 +137,8 @@ class RealEngine:
             )
             lines = probed, launched.folders, launched
         self._lines = Ros2Lines(self._selector, *lines[:2], self._take, self._record, lines[2])
-        self._caller = Companion(
-            self._selector, [self._python, "-m", "cbtui_probe.caller"], graph, self._take
-        )
-        rate = [] if setup.sensor_rate is None else [str(setup.sensor_rate)]
-        robot = [sys.executable, "-m", "sim.real.robot", *rate]
-        self._robot = Companion(self._selector, robot, graph, self._take_robot)
-        self._robot_is_used = setup.robot is RobotUse.ALWAYS
-        self._of_the_robot: list[ProbeLine] = []
-        """What the robot told of itself before something used it."""
-        self._services: list[str] = []
+        self._caller = ServiceCaller(self._selector, self._python, graph, self._take)
+        self._robot = RunRobot(setup.robot, setup.sensor_rate, self._selector, graph, self._translation.take)
         self._cause: Outcome | None = None
         self._time_was_up = False
         self._given_up_at: int | None = None
@@ -177,10 +165,10 @@ class RealEngine:
         self._start_companions()
         while self._robot_is_awaited():
             self._turn()
-        if self._robot.is_over:
+        if self._robot.is_gone:
             text = f"there is no robot: cbtui's own Python has no rclpy ({sys.executable})"
             self._tell(Severity.WARN, f"{text}; install cbtui[ros] there, or give --no-robot")
-        if self._robot.has_spoken and self._keyboard is None:  # who only watches may wait for long
+        if self._robot.drives and self._keyboard is None:  # who only watches may wait for long
             self._translation.begin_at(time.monotonic_ns())
         if self._cause is None:
             self._programs.start()
@@ -191,8 +179,7 @@ class RealEngine:
         self._finish()
 
     def _start_companions(self) -> None:
-        if self._setup.robot is not RobotUse.NEVER:
-            self._robot.start()
+        self._robot.start()
         if self._setup.calls:
             self._caller.start()
         if self._setup.lines:
@@ -201,8 +188,7 @@ class RealEngine:
     def _robot_is_awaited(self) -> bool:
         """Whether there is to be a robot, and it does not drive yet."""
         is_late = time.monotonic_ns() > self._began_to_wait + _TO_BEGIN
-        is_settled = self._setup.robot is RobotUse.NEVER or self._robot.has_spoken or self._robot.is_over
-        return not (is_settled or is_late or self._cause is not None)
+        return self._robot.is_awaited and not is_late and self._cause is None
 
     def _robot_is_all(self) -> bool:
         """Whether the run is there for its robot, who drives whoever else comes and goes."""
@@ -276,15 +262,9 @@ class RealEngine:
         self._record(Notice(0, severity, text))
 
     def _take(self, lines: list[ProbeLine], process: int = 0) -> None:
-        self._services += [
-            line.name
-            for line in lines
-            if isinstance(line, EntityAppeared) and line.kind is EntityKind.SERVICE
-        ]
+        self._caller.hear(lines)
         self._translation.take(lines, process)
-        if not self._robot_is_used and any(_name(line) in NAMES for line in lines):
-            self._robot_is_used = True
-            self._translation.take(msgspec.structs.replace(line, t=lines[0].t) for line in self._of_the_robot)
+        self._robot.hear(lines)
 
     def _take_untrusted(self, lines: list[ProbeLine], process: int = 0) -> None:
         """Take what a program tells that may lie: of the run and of the robot it can know nothing."""
@@ -293,13 +273,6 @@ class RealEngine:
             text = "the program tells, as if it were the run, of the run or of the robot"
             self._record(Notice(0, Severity.ERROR, text, kind=NoticeKind.FORGED))
         self._take(told, process)
-
-    def _take_robot(self, lines: list[ProbeLine]) -> None:
-        """Take what the robot tells; a robot that nothing uses moves nowhere and is not shown."""
-        if self._robot_is_used:
-            self._translation.take(lines)
-        else:
-            self._of_the_robot += [line for line in lines if isinstance(line, ArenaShown)]
 
     def _print(self, text: str, error: bool, process: int) -> None:
         self._record(Printed(0, text, error, process))
@@ -347,7 +320,7 @@ class RealEngine:
                 self._call(name, data)
             case commands.ResetWorld():
                 self._record(CommandGiven(0, "reset the world", CommandKind.CALL))
-                self._caller.say(["std_srvs/srv/Empty", ["/reset_world"], {}])
+                self._caller.reset_world()
             case commands.TerminalInput(text=text, ends=ends):
                 self._type(text, ends=ends)
             case commands.RunLine(line=line, text=text):
@@ -364,12 +337,11 @@ class RealEngine:
                 )
 
     def _call(self, name: str | None, data: bool) -> None:
-        names = self._services if name is None else [name]
-        if not names:
+        called = self._caller.set_bool(name, data)
+        if called is None:
             self._tell(Severity.WARN, "the program offers no service yet, so the call is lost")
-            return
-        self._record(CommandGiven(0, f"call {names[0]} {str(data).lower()}", CommandKind.CALL))
-        self._caller.say(["std_srvs/srv/SetBool", names, {"data": data}])
+        else:
+            self._record(CommandGiven(0, f"call {called} {str(data).lower()}", CommandKind.CALL))
 
     def _type(self, text: str, *, ends: bool) -> None:
         if self._keyboard is None:
@@ -378,15 +350,6 @@ class RealEngine:
             self._stop("it was interrupted from the keyboard")
         else:
             self._keyboard.type(text, ends=ends)
-
-
-def _name(line: ProbeLine) -> str:
-    """The topic or service that something is made for or sent to."""
-    match line:
-        case EntityAppeared(name=name) | Sent(topic=name):
-            return name
-        case _:
-            return ""
 
 
 def _sealed_with(key: bytes) -> Callable[[list[AnyEvent]], bytes]:
