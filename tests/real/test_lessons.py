@@ -1,7 +1,10 @@
 """Every lesson is judged on real ROS 2 as on the model: its predictions, its solution and its starter.
 
-The runs take as long as the lessons' runs do, so all of this takes half an hour.
+The runs take as long as the lessons' runs do: half an hour for all, ``pytest -m bulk tests/real/test_lessons.py``.
+A few short ones are among the slow tests.
 """
+
+from typing import Any
 
 import pytest
 
@@ -13,19 +16,28 @@ from lessons.lesson import Lesson
 from sim.engine.setup import RealRos
 from tests.real.programs import needs_ros
 
-pytestmark = [needs_ros, pytest.mark.slow]
+pytestmark = needs_ros
+
+_SHORT = ("reentrant-1-thread", "service-in-a-service", "rate-sleep-in-a-callback")
 
 
-@pytest.mark.parametrize("lesson", lessons(), ids=lambda lesson: lesson.id)
+def _cases(*, exercises: bool) -> list[Any]:
+    """The lessons, or those with an exercise."""
+    return [
+        pytest.param(each, id=each.id, marks=pytest.mark.slow if each.id in _SHORT else pytest.mark.bulk)
+        for each in lessons()
+        if each.exercise is not None or not exercises
+    ]
+
+
+@pytest.mark.parametrize("lesson", _cases(exercises=False))
 def test_the_right_answers_are_right(lesson: Lesson) -> None:
     outcome = OutcomeRun(lesson, observe_engine, RealRos()).run()
     right = tuple(prediction.right for prediction in lesson.predictions)
     assert outcome == PredictionOutcome(right, is_real=True)
 
 
-@pytest.mark.parametrize(
-    "lesson", [each for each in lessons() if each.exercise is not None], ids=lambda lesson: lesson.id
-)
+@pytest.mark.parametrize("lesson", _cases(exercises=True))
 def test_the_solution_passes_and_the_starter_fails(lesson: Lesson) -> None:
     assert lesson.solution_path is not None
     assert lesson.starter_path is not None
