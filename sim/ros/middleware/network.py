@@ -8,6 +8,9 @@ from __future__ import annotations
 from collections import defaultdict
 from collections.abc import Callable, Iterable
 
+import msgspec
+
+from sim.interfaces import copy_message
 from sim.ros.middleware.delivery import Request
 from sim.ros.middleware.endpoints import NetworkNode, PublisherEndpoint, ServiceEndpoint, SubscriptionEndpoint
 from sim.ros.qos.qos import mismatches
@@ -98,12 +101,13 @@ class Network:
         self._services[service.name].remove(service)
 
     def send_request(self, name: str, srv_type: type, request: Request) -> bool:
-        """Deliver a request to the service; False if there is none, and the request is lost."""
-        service = self._service(name, srv_type)
-        if service is None:
-            return False
-        service.deliver(request)
-        return True
+        """Deliver a request to every server of the service; False if there is none, and it is lost."""
+        self.announce_use(name)
+        servers = [each for each in self._services.get(name, ()) if each.srv_type is srv_type]
+        for number, each in enumerate(servers):
+            own = copy_message(request.data) if number else request.data
+            each.deliver(msgspec.structs.replace(request, data=own))
+        return bool(servers)
 
     def _service(self, name: str, srv_type: type) -> ServiceEndpoint | None:
         self.announce_use(name)

@@ -2,10 +2,12 @@
 
 from collections.abc import Callable
 from functools import partial
+from typing import Any
 
 import pytest
 
 import sim.ros.rclpy as rclpy
+from sim.clock.schedule import Seeded
 from sim.interfaces import message, service
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
@@ -250,3 +252,61 @@ def test_entities_handed_out_wait_in_the_pool_once_each() -> None:
 
 def _appending(to: list[str], text: str) -> Callable[[object], None]:
     return lambda _: to.append(text)
+
+
+def test_a_request_goes_to_every_server_of_its_name_and_the_first_reply_counts() -> None:
+    served: list[str] = []
+
+    def program(simulation: Simulation) -> None:
+        nodes = Node("n"), Node("m")
+        executor = SingleThreadedExecutor()
+        for node in nodes:
+            node.create_service(SetBool, "s", _serving(served, node.get_name()))
+            executor.add_node(node)
+        client = nodes[1].create_client(SetBool, "s")
+        future: Any = client.call_async(SetBool.Request())
+        executor.spin_until_future_complete(future)
+        assert future.result().message == "n"
+        executor.spin_once(timeout_sec=0.1)
+
+    simulate(program)
+    assert served == ["n", "m"]
+
+
+def _serving(served: list[str], name: str) -> Callable[[Any, Any], Any]:
+    def serve(request: Any, response: Any) -> Any:
+        assert not request.data
+        request.data = True  # everyone has a request of his own
+        served.append(name)
+        response.message = name
+        return response
+
+    return serve
+
+
+def test_either_of_two_arrivals_at_an_idle_executor_may_come_first() -> None:
+    heard: list[str] = []
+
+    def program(simulation: Simulation) -> None:
+        node = Node("n")
+        for topic in "ab":
+            node.create_subscription(Int32, topic, lambda _, topic=topic: heard.append(topic), 10)
+        publishers = [node.create_publisher(Int32, topic, 10) for topic in "ba"]
+
+        def publish() -> None:
+            for _ in range(19):
+                simulation.sleep(1.0)
+                for each in publishers:
+                    each.publish(Int32())
+
+        simulation.start(publish, "publisher")
+        executor = SingleThreadedExecutor()
+        executor.add_node(node)
+        executor.spin()
+
+    simulate(program, until=20.0)
+    assert heard == ["a", "b"] * 19
+    heard.clear()
+    for seed in range(1, 5):
+        simulate(program, until=20.0, schedule=Seeded(seed))
+    assert {*zip(heard[::2], heard[1::2], strict=True)} == {("a", "b"), ("b", "a")}
