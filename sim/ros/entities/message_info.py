@@ -20,18 +20,19 @@ def wants_message_info(callback: Callable[..., Any]) -> bool:
     """Whether a subscription's callback takes the message's info as well.
 
     Raises:
-        RuntimeError: it takes neither one argument nor two.
+        RuntimeError: it takes neither one argument nor two, or cannot be called.
     """
-    try:
-        signature = inspect.signature(callback)
-    except ValueError:  # some functions written in C do not tell theirs
-        return False
-    for count in (1, 2):
+    if callable(callback):
         try:
-            signature.bind(*[None] * count)
-        except TypeError:
-            continue
-        return count == 2
+            signature = inspect.signature(callback)
+        except ValueError:  # some functions written in C do not tell theirs
+            return False
+        for count in (1, 2):
+            try:
+                signature.bind(*[None] * count)
+            except TypeError:
+                continue
+            return count == 2
     raise RuntimeError(
         "Subscription.__init__(): callback should be either be callable with one argument "
         "(to get only the message) or two (to get message and message info)"

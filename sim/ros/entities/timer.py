@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from sim.ros.clocks.clock import Clock, ROSClock
 from sim.ros.clocks.ros_time_schedule import RosTimeSchedule, after_change
-from sim.ros.exceptions import ROSInterruptException
+from sim.ros.exceptions import RCLError, ROSInterruptException
 from sim.ros.scheduling.entity import NEVER, Entity, OwnerNode, Taken
 from sim.ros.time.clock_type import ClockType
 from sim.ros.time.time import Time
@@ -71,7 +71,7 @@ class Timer(Entity):
     Whatever is asked of it or done with it after it was destroyed raises InvalidHandle.
 
     Raises:
-        ValueError: the period is negative.
+        RCLError: the period is negative.
     """
 
     kind = EntityKind.TIMER
@@ -88,7 +88,7 @@ class Timer(Entity):
         autostart: bool = True,
     ) -> None:
         if timer_period_ns < 0:
-            raise ValueError("timer period must be non-negative")
+            raise RCLError("failed to create timer: timer period must be non-negative")
         super().__init__(node, "", callback_group)
         self.callback = callback
         self.clock = clock

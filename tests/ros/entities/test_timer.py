@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 
 import sim.ros.rclpy as rclpy
 from sim.ros.entities.timer import next_due
-from sim.ros.exceptions import ROSInterruptException
+from sim.ros.exceptions import RCLError, ROSInterruptException
 from sim.ros.node.node import Node
 from sim.ros.scheduling.callback_groups import ReentrantCallbackGroup
 from sim.ros.scheduling.executors import MultiThreadedExecutor, SingleThreadedExecutor
@@ -93,7 +93,7 @@ def test_a_timer_of_period_zero_and_a_subscription_share_the_executor() -> None:
 def test_a_negative_period_is_an_error() -> None:
     def program(simulation: Simulation) -> None:
         node = Node("n")
-        with pytest.raises(ValueError, match="timer period must be non-negative"):
+        with pytest.raises(RCLError, match="timer period must be non-negative"):
             node.create_timer(-0.1, lambda: None)
         timer = node.create_timer(0.1, lambda: None)
         with pytest.raises(ValueError, match="timer period must be non-negative"):
