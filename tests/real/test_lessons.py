@@ -1,7 +1,7 @@
 """Every lesson is judged on real ROS 2 as on the model: its predictions, its solution and its starter.
 
-The runs take as long as the lessons' runs do: half an hour for all, ``pytest -m bulk tests/real/test_lessons.py``.
-A few short ones are among the slow tests.
+The runs take as long as the lessons' runs do: half an hour for all, by ``pytest -m bulk`` of this file. A few
+short ones are among the slow tests.
 """
 
 from typing import Any
