@@ -151,7 +151,7 @@ class PacedClock:
     @property
     def turn(self) -> int:
         """The millisecond: Python leaves a thread that does not wait after some of them."""
-        return self.now() // 1_000_000
+        return _monotonic_ns() // 1_000_000
 
     @property
     def able(self) -> int:

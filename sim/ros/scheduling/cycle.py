@@ -146,7 +146,7 @@ class Cycle:
     def _serve(self, now: int) -> Work | None:
         if self._due_tasks:
             return self._due_tasks.popleft()
-        if not self._holds(now):
+        if not (self._snapshot and self._holds(now)):
             return None
         entity = self._snapshot.popleft()
         entity.handed_out = self._yielded = True
@@ -170,14 +170,14 @@ class Cycle:
         """Find what is served next: what was waited for, else tasks, else what a new gathering finds."""
         waited, self.waits = self.waits, False
         tasks_first = not self._gathers_next
-        if tasks_first and not waited and self._take_tasks():
+        if self._tasks and tasks_first and not waited and self._take_tasks():
             return True
         found = self._ready(now)
         if waited and found and (awaited := self._awaited(found)):
             found = awaited
-        elif tasks_first and waited and self._take_tasks():
+        elif self._tasks and tasks_first and waited and self._take_tasks():
             return True
-        elif not self._gather(found) and self._take_tasks():
+        elif not self._gather(found) and self._tasks and self._take_tasks():
             self.waits = False  # those that came meanwhile end the waiting as it begins
             return True
         else:
@@ -210,9 +210,7 @@ class Cycle:
         return deque(each for each in found if each not in left_out and each.callback_group not in left_out)
 
     def _take_tasks(self) -> bool:
-        """Serve the tasks that are there now, those of nodes in view; whether there are any."""
-        if not self._tasks:
-            return False
+        """Serve the tasks that are there now, those of nodes in view; whether there are any of these."""
         self._due_tasks, self._tasks = self._tasks, self._due_tasks
         if self.view is not self._nodes:
             self._put_tasks_off()
