@@ -153,6 +153,32 @@ class Tried(Node):
     def tick(self):
         raise ValueError("no more")
 """
+ACTS = """
+from rclpy.action import ActionClient, ActionServer
+from test_msgs.action import Fibonacci
+
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.server = ActionServer(self, Fibonacci, "count", self.execute)
+        self.client = ActionClient(self, Fibonacci, "count", callback_group=ReentrantCallbackGroup())
+        self.once = self.create_timer(0.5, self.ask)
+
+    def execute(self, goal):
+        time.sleep(0.5)
+        goal.succeed()
+        return Fibonacci.Result(sequence=[1, 2])
+
+    def ask(self):
+        self.once.cancel()
+        self.client.send_goal_async(Fibonacci.Goal(order=3)).add_done_callback(self.accepted)
+
+    def accepted(self, future):
+        future.result().get_result_async().add_done_callback(self.done)
+
+    def done(self, future):
+        self.get_logger().info("counted")
+"""
 
 
 def run(

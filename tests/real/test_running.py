@@ -139,3 +139,21 @@ def test_an_exception_ends_the_program_and_is_placed(tmp_path: Path) -> None:
     assert (failed.error, Path(failed.file).name) == ("ValueError: no more", "tried.py")
     assert run.ending.failed
     assert run.ending.reason == f"tried.py:{failed.line}: the program raised ValueError: no more"
+
+
+def test_a_goal_of_an_action_is_seen_at_work_as_on_the_model(tmp_path: Path) -> None:
+    def seen(ground: str) -> set[tuple[str, str, str, int]]:
+        timeline = programs.run(tmp_path, programs.ACTS, "MultiThreadedExecutor(2)", ground=ground).timeline
+        entities = [timeline.entities[number] for number in timeline.entities]
+        return {
+            (
+                each.name,
+                each.callback,
+                timeline.groups[each.group].kind,
+                len(timeline.spans_of(each.id, whole(timeline))),
+            )
+            for each in entities
+        }
+
+    assert seen("ros2") == seen("model")
+    assert ("/count", "execute", "reentrant", 1) in seen("model")

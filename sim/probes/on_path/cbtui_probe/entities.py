@@ -66,6 +66,13 @@ def state_of(thing: object) -> Any:
     return getattr(thing, STATE, None)
 
 
+class _Execution:
+    """Stands for the execute callback of an action server."""
+
+    def __init__(self) -> None:
+        self.callback_group = ReentrantCallbackGroup()
+
+
 class Entities:
     """Puts itself into the ways in which nodes make and destroy things. ``nodes`` are those there are."""
 
@@ -133,7 +140,9 @@ class Entities:
         begin = {"timer": calls.begin_timer, "service": calls.begin_service}.get(entity.kind)
         return calls.traced(callback, begin)
 
-    def _know(self, node: Any, made: Any, entity: Entity, callback: Callable[..., Any] | None) -> None:
+    def _know(
+        self, node: Any, made: Any, entity: Entity, callback: Callable[..., Any] | None, name: str = ""
+    ) -> None:
         recorder = self._recorder
         group = self._group_id(made.callback_group, self.node_made(node))
         number = entity.number = recorder.new_id()
@@ -145,7 +154,7 @@ class Entities:
             state_of(node),
             group,
             entity.kind,
-            _name_of(entity.kind, made),
+            name or _name_of(entity.kind, made),
             *written_at(callback),
             0 if entity.kind == "timer" else depth,
             period,
@@ -237,15 +246,28 @@ class Entities:
         @wraps(add)
         def add_waitable(node: Any, waitable: Any) -> None:
             module = type(waitable).__module__
-            if state_of(waitable) is None and (
-                module.startswith("rclpy.action.") or not module.startswith("rclpy")
-            ):
+            is_action = module.startswith("rclpy.action.")
+            if state_of(waitable) is None and (is_action or not module.startswith("rclpy")):
+                name = ""
+                if is_action:  # a server does not keep its name: it is an argument of what calls this
+                    name = node.resolve_service_name(sys._getframe(1).f_locals["action_name"])
                 entity = Entity("waitable")
                 waitable.execute = Calls(self._recorder, entity).traced(waitable.execute)
-                self._know(node, waitable, entity, None)
+                self._know(node, waitable, entity, None, name)
+                if hasattr(waitable, "_execute_callback"):
+                    self._know_execution(node, waitable, name)
             add(node, waitable)
 
         node_class.add_waitable = add_waitable
+
+    def _know_execution(self, node: Any, server: Any, name: str) -> None:
+        """Know the execute callback of an action server, which rclpy runs as a task, in no group.
+
+        On the trace it is in a reentrant group of its own, which lets everything in.
+        """
+        entity, callback = Entity("waitable"), server._execute_callback
+        server._execute_callback = Calls(self._recorder, entity).traced(callback)
+        self._know(node, _Execution(), entity, callback, name)
 
 
 def _place(frame: FrameType) -> tuple[str, int]:
@@ -258,7 +280,7 @@ def _name_of(kind: str, made: Any) -> str:
         return str(made.topic_name)
     if kind in ("service", "client"):
         return str(made.service_name)
-    return str(getattr(made, "_action_name", ""))
+    return ""
 
 
 def _called(node: Any, kind: str, arguments: dict[str, Any]) -> str:
