@@ -50,7 +50,7 @@ def test_an_order_that_fails_is_found_and_its_seed_shows_it_again(file: Path) ->
 @pytest.mark.slow
 def test_locks_that_are_taken_in_two_orders_are_found(file: Path) -> None:
     file.write_text(LOCK_ORDER)
-    explored = cbtui("explore", str(file), "--schedules", "4", "--seed", "1", "--for", "0.5")
+    explored = cbtui("explore", str(file), "--schedules", "12", "--seed", "1", "--for", "0.5")
     assert explored.returncode == 1
     assert "    deadlock\n" in explored.stdout
     assert "in forth" in explored.stdout
@@ -69,7 +69,7 @@ def test_a_program_in_order_has_one_outcome_and_ends_with_0(file: Path) -> None:
 def test_a_changed_set_up_is_what_is_explored_and_shown_again(file: Path) -> None:
     file.write_text(IN_ONE_GROUP)
     words = ("--group", "ann=reentrant", "--group", "/seats:bob=reentrant", "--group", "eve=own")
-    explored = cbtui("explore", str(file), "--schedules", "4", "--for", "0.3", *words)
+    explored = cbtui("explore", str(file), "--schedules", "12", "--for", "0.3", *words)
     assert explored.returncode == 1
     assert "taken twice" in explored.stdout
     assert "    note: no callback is named eve; there are ann, bob\n" in explored.stdout
