@@ -38,6 +38,8 @@ class RealKeyboard:
         self._pair = PseudoTerminal()
         self._asked = Reading.NOTHING
         self._look_at = self._read_at = 0.0
+        self._fed: tuple[int, int] | None = None
+        """Who was handed something last, and how many reads of its had ended by then."""
         self.near = self._pair.near
 
     def type(self, text: str, *, ends: bool = False, scheduled: bool = False) -> None:
@@ -73,8 +75,9 @@ class RealKeyboard:
         self._look_at = now + (0 if self._pair.has_more else _PERIOD)
         if self._note(mode if reader else Reading.NOTHING, reader, programs):
             return reader
-        if reader and not has_unread:
+        if reader and not has_unread and self._fed != (reader, reads := _ended_reads(reader)):
             fed = self._pair.feed(is_last=self._is_last)
+            self._fed = (reader, reads) if fed else None
             if self._is_last and not fed and not mode.takes_keys:
                 self._pair.send(END_OF_INPUT)
         return 0
@@ -87,6 +90,18 @@ class RealKeyboard:
         self._asked = asked
         self._record(KeyboardAsked(0, asked, programs.get(reader, "")))
         return bool(reader)
+
+
+def _ended_reads(process: int) -> int:
+    """How many reads of a process have ended: what is handed on reaches the one that waits a little later.
+
+    Where the system does not tell, another number every 50 ms.
+    """
+    try:
+        told = Path(f"/proc/{process}/io").read_text()
+    except OSError:
+        return time.monotonic_ns() // 50_000_000
+    return next(int(line.split()[1]) for line in told.splitlines() if line.startswith("syscr"))
 
 
 def _reads(process: int, near: int, mode: Reading) -> bool:

@@ -60,12 +60,15 @@ class PseudoTerminal:
         then forgets what else it was sent, as ``tty.setraw`` does, would lose the others.
         ``is_last``: no more will be typed.
         """
-        while not (readable := self.has_unread) and self.has_more:
+        readable = self.has_unread
+        while not readable and self.has_more:
             takes_keys = self.mode().takes_keys
             found = (_KEY if takes_keys else _LINE).match(self._text, self._place, self._place + _LONGEST)
             assert found is not None
             self._place = found.end()
-            self._line_begun = not (takes_keys or found[0].endswith("\n"))
+            # The system takes a moment to hand it on.
+            readable = not self.interrupts(found[0]) if takes_keys else found[0].endswith("\n")
+            self._line_begun = not (takes_keys or readable)
             self.send(found[0])
         if self._line_begun and not readable and is_last:
             self._line_begun = False
