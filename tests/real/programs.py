@@ -179,6 +179,15 @@ class Tried(Node):
     def done(self, future):
         self.get_logger().info("counted")
 """
+ALWAYS_DUE = """
+class Tried(Node):
+    def __init__(self):
+        super().__init__("tried")
+        self.create_timer(0.0, self.tick)
+
+    def tick(self):
+        time.sleep(0.1)
+"""
 
 
 def run(

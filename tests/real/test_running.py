@@ -157,3 +157,10 @@ def test_a_goal_of_an_action_is_seen_at_work_as_on_the_model(tmp_path: Path) -> 
 
     assert seen("ros2") == seen("model")
     assert ("/count", "execute", "reentrant", 1) in seen("model")
+
+
+def test_a_timer_without_a_period_is_watched_as_any_other(tmp_path: Path) -> None:
+    ran = programs.run(tmp_path, programs.ALWAYS_DUE, seconds=2.0)
+    assert ran.timeline.ended is not None
+    assert not ran.timeline.ended.failed
+    assert sum(isinstance(event, CallbackStarted) for event in ran.events) > 5

@@ -125,7 +125,7 @@ class Calls:
         """
         entity, late, start = self._entity, max(0, period - left), now()
         due, entity.due = entity.due, start + left
-        off = (start - due - late + _SHIFT) % period
+        off = (start - due - late + _SHIFT) % max(1, period)  # a timer of no period is always due
         return max(late, start - due) if due and off < 2 * _SHIFT else late
 
     def _begin_message(self, _message: Any, info: Any = None) -> None:
