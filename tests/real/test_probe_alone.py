@@ -9,10 +9,12 @@ import sys
 from collections import deque
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from sim.probes.on_path.cbtui_probe import FOLLOW, PORT, TOKEN
+from sim.probes.on_path.cbtui_probe.callbacks import Calls
 from sim.probes.on_path.cbtui_probe.consoles import Console as ConsoleLink
 from sim.probes.on_path.cbtui_probe.consoles import lines
 from sim.probes.on_path.cbtui_probe.recorder import Recorder, now
@@ -243,6 +245,16 @@ def test_a_socket_is_there_only_once_it_answers(
     server.start(str(folder))
     server.close()
     assert found == [[]]
+
+
+def test_a_callback_runs_though_the_probe_cannot_tell_of_its_start(recorder: Recorder) -> None:
+    def start(*_: object) -> None:
+        raise ZeroDivisionError
+
+    calls: list[int] = []
+    Calls(recorder, SimpleNamespace(number=7, wait=None, kind="timer")).traced(calls.append, start)(5)  # type: ignore[arg-type]
+    assert calls == [5]
+    assert [event[0] for event in recorder.take()] == ["notice", "thread", "callback_end"]
 
 
 def test_a_full_buffer_gives_up_the_oldest_and_counts_them(recorder: Recorder) -> None:

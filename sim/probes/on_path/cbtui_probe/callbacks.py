@@ -71,6 +71,7 @@ class Calls:
 
     def _wrapped(self, callback: Callable[..., Any], begin: Callable[..., None], takes: int | None) -> Any:
         """A callback that is told of, and hands on so many of its arguments, None: all."""
+        begin = self._harmless(begin)
         if inspect.iscoroutinefunction(callback):
 
             async def run_async(*args: Any, **kwargs: Any) -> Any:
@@ -98,6 +99,18 @@ class Calls:
                 self._leave(outer)
 
         return functools.wraps(callback)(run)
+
+    def _harmless(self, begin: Callable[..., None]) -> Callable[..., None]:
+        """What tells that the callback starts, or that it cannot tell: the callback runs all the same."""
+
+        def begin_or_tell(*args: Any) -> None:
+            try:
+                begin(*args)
+            except Exception as error:  # noqa: BLE001 - the program must not suffer from being watched
+                text = f"cbtui's probe could not tell of a callback's start: {error!r}"
+                self._recorder.put("notice", now(), "WARN", text)
+
+        return begin_or_tell
 
     def begin(self, *args: Any) -> None:
         """Tell that the callback starts; a client's with the number of the call."""

@@ -106,7 +106,11 @@ class Executors:
         base.wait_for_ready_callbacks = wait_for_ready_callbacks
         self._watch_spinning(base, "spin", _itself)
         self._watch_spinning(base, "spin_until_future_complete", _itself)
-        self._watch_spinning(rclpy, "spin", lambda _, executor=None: executor or rclpy.get_global_executor())
+
+        def of_spin(node: Any, executor: Any = None) -> Any:
+            return executor or rclpy.get_global_executor()
+
+        self._watch_spinning(rclpy, "spin", of_spin)
         if hasattr(rclpy_implementation, "EventsExecutor"):
             for name in (
                 "spin",
