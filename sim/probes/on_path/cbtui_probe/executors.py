@@ -107,7 +107,7 @@ class Executors:
         self._watch_spinning(base, "spin", _itself)
         self._watch_spinning(base, "spin_until_future_complete", _itself)
 
-        def of_spin(node: Any, executor: Any = None) -> Any:
+        def of_spin(node: Any, executor: Any = None) -> Any:  # noqa: ARG001 - it may come by its keyword
             return executor or rclpy.get_global_executor()
 
         self._watch_spinning(rclpy, "spin", of_spin)
