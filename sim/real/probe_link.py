@@ -104,6 +104,8 @@ class ProbeLink:
         self.is_open = False
 
     def _told(self, data: bytes) -> None:
+        if not data.endswith(b"\n"):  # the process died in the middle of a line
+            return
         lines = decode_lines(data)
         for line in lines:
             if isinstance(line, Hello):

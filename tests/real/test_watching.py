@@ -1,11 +1,13 @@
 """Programs that others start are watched, and nothing happens to them."""
 
 import os
+import socket
 import subprocess
 import sys
 import time
 from pathlib import Path
 from queue import Queue
+from selectors import DefaultSelector
 
 import pytest
 
@@ -15,8 +17,8 @@ from cbtui.engines.session import ProcessSession
 from cbtui.runs.setup.shown_program import of_processes, of_robot
 from sim.engine.commands import CallService, RunLine, Stop
 from sim.engine.setup import RealRos
-from sim.real.probe_link import processes_in
-from sim.real.wire import Hello
+from sim.real.probe_link import ProbeLink, processes_in
+from sim.real.wire import Hello, Left, ProbeLine
 from sim.trace.events import (
     AnyEvent,
     CallbackEnded,
@@ -124,7 +126,7 @@ def test_lines_and_calls_act_on_the_graph_of_what_is_watched(
     said: list[str] = []
     called: set[str] = set()
     moved = 0
-    is_there = False
+    is_there = has_ended = False
     with subprocess.Popen(probe, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as process:
         try:
             while isinstance(batch := news.get(timeout=60), list):
@@ -135,7 +137,8 @@ def test_lines_and_calls_act_on_the_graph_of_what_is_watched(
                 said += [event.text for event in batch if isinstance(event, LineSaid)]
                 called |= {e.service for e in batch if isinstance(e, ServiceCalled) and e.entity == 0}
                 moved += sum(isinstance(event, VelocityCommanded) for event in batch)
-                if any(isinstance(event, LineEnded) for event in batch):
+                has_ended |= any(isinstance(event, LineEnded) for event in batch)
+                if has_ended and called:
                     session.send(Stop())
         finally:
             session.stop()
@@ -144,6 +147,23 @@ def test_lines_and_calls_act_on_the_graph_of_what_is_watched(
     assert sum(each.startswith("publishing #") for each in said) == 3
     assert moved == 3
     assert called == {"/switch"}
+
+
+def test_a_process_that_dies_in_the_middle_of_a_line_was_heard_until_then(folder: Path) -> None:
+    told: list[ProbeLine] = []
+    selector = DefaultSelector()
+    with socket.socket(socket.AF_UNIX) as probe:
+        probe.bind(str(folder / "1.sock"))
+        probe.listen()
+        link = ProbeLink(selector, told.extend)
+        assert link.connect(folder / "1.sock")
+        connection, _ = probe.accept()
+        connection.sendall(b'[["left",5]]\n[["le')
+        connection.close()
+    while link.is_open:
+        for key, _ in selector.select(1.0):
+            key.data()
+    assert told == [Left(5)]
 
 
 def test_the_runtime_folder_is_the_users_alone(folder: Path) -> None:

@@ -71,12 +71,14 @@ class Calls:
 
     def _wrapped(self, callback: Callable[..., Any], begin: Callable[..., None], takes: int | None) -> Any:
         """A callback that is told of, and hands on so many of its arguments, None: all."""
-        begin = self._harmless(begin)
         if inspect.iscoroutinefunction(callback):
 
             async def run_async(*args: Any, **kwargs: Any) -> Any:
                 steps = _Steps(self, callback(*args[:takes], **kwargs), self._enter())
-                begin(*args)
+                try:
+                    begin(*args)
+                except Exception as error:  # noqa: BLE001 - the program must not suffer from being watched
+                    self._tell_of_own_fault(error)
                 try:
                     return await steps
                 except Exception as error:
@@ -89,7 +91,10 @@ class Calls:
 
         def run(*args: Any, **kwargs: Any) -> Any:
             outer = self._enter()
-            begin(*args)
+            try:
+                begin(*args)
+            except Exception as error:  # noqa: BLE001 - the program must not suffer from being watched
+                self._tell_of_own_fault(error)
             try:
                 return callback(*args[:takes], **kwargs)
             except BaseException as error:
@@ -100,17 +105,10 @@ class Calls:
 
         return functools.wraps(callback)(run)
 
-    def _harmless(self, begin: Callable[..., None]) -> Callable[..., None]:
-        """What tells that the callback starts, or that it cannot tell: the callback runs all the same."""
-
-        def begin_or_tell(*args: Any) -> None:
-            try:
-                begin(*args)
-            except Exception as error:  # noqa: BLE001 - the program must not suffer from being watched
-                text = f"cbtui's probe could not tell of a callback's start: {error!r}"
-                self._recorder.put("notice", now(), "WARN", text)
-
-        return begin_or_tell
+    def _tell_of_own_fault(self, error: Exception) -> None:
+        """Say that the probe cannot tell that a callback starts, which runs all the same."""
+        text = f"cbtui's probe could not tell of a callback's start: {error!r}"
+        self._recorder.put("notice", now(), "WARN", text)
 
     def begin(self, *args: Any) -> None:
         """Tell that the callback starts; a client's with the number of the call."""
@@ -125,21 +123,24 @@ class Calls:
 
     def begin_timer(self, *_args: Any) -> None:
         """Tell that a timer's callback starts, and how late."""
-        recorder, start = self._recorder, now()
-        timer = self._entity.made()
-        late = 0 if timer is None else self._lateness(timer.timer_period_ns, timer.time_until_next_call())
-        recorder.put("callback_start", start, self._entity.number, recorder.thread(), 0, late, 0)
+        recorder, entity, start = self._recorder, self._entity, now()
+        timer = entity.made()
+        late = 0 if timer is None else self._lateness(start, timer.time_until_next_call())
+        recorder.put("callback_start", start, entity.number, recorder.thread(), 0, late, 0)
 
-    def _lateness(self, period: int, left: int) -> int:
-        """How long ago a timer was due that is being called and has so much ``left`` to its next call.
+    def _lateness(self, start: int, left: int) -> int:
+        """How long ago a timer was due that is called at ``start`` and has so much ``left`` to its next call.
 
         Periods that it missed shift its next call by as many, so that only the time tells at which it was to
         be called; not if it was reset since, which shows by its coming in another rhythm.
         """
-        entity, late, start = self._entity, max(0, period - left), now()
-        due, entity.due = entity.due, start + left
-        off = (start - due - late + _SHIFT) % max(1, period)  # a timer of no period is always due
-        return max(late, start - due) if due and off < 2 * _SHIFT else late
+        entity = self._entity
+        late, due = max(0, entity.period - left), entity.due
+        entity.due = start + left
+        missed = start - due - late
+        if missed > 0 and due and (missed + _SHIFT) % max(1, entity.period) < 2 * _SHIFT:
+            return start - due
+        return late
 
     def _begin_message(self, _message: Any, info: Any = None) -> None:
         """Tell that the callback starts with a message; an executor made of C++ hands over no information."""

@@ -14,6 +14,18 @@ if TYPE_CHECKING:
     from .recorder import Recorder
 
 
+_LONGEST = 1000
+"""Characters of a request or a response that are told."""
+
+
+def _text_of(message: Any) -> str:
+    """A message as text, which must not fail the call that has it."""
+    try:
+        return repr(message)[:_LONGEST]
+    except Exception as error:  # noqa: BLE001 - the program must not suffer from being watched
+        return f"<{type(message).__name__} that cannot be shown: {error!r}>"
+
+
 def watch_clients(recorder: Recorder, client_class: Any) -> None:
     """Tell of the calls of all clients of this class that the program has made."""
     send, block = client_class.call_async, client_class.call
@@ -27,7 +39,7 @@ def watch_clients(recorder: Recorder, client_class: Any) -> None:
         call, began, before = recorder.new_id(), now(), time.time_ns()
         future = send(client, request)
         after = time.time_ns()
-        recorder.put("called", began, call, service, here.entity, repr(request), before, after)
+        recorder.put("called", began, call, service, here.entity, _text_of(request), before, after)
         if here.blocks:
             here.blocks = call
             recorder.put("blocked", now(), call, recorder.thread(), here.entity, service)
@@ -35,7 +47,7 @@ def watch_clients(recorder: Recorder, client_class: Any) -> None:
         take = calls.traced(future.set_result, lambda _response: calls.begin(call))
 
         def set_result(response: Any) -> None:
-            recorder.put("service_reply", now(), call, service, repr(response))
+            recorder.put("service_reply", now(), call, service, _text_of(response))
             take(response)
 
         future.set_result = set_result
@@ -79,7 +91,7 @@ def watch_services(recorder: Recorder, service_class: Any, rclpy_implementation:
         reply(service, response, header)
         entity, sent = state_of(service), getattr(header, "source_timestamp", 0)
         if entity is not None and sent:
-            recorder.put("replied", began, entity.number, sent, repr(response))
+            recorder.put("replied", began, entity.number, sent, _text_of(response))
 
     rclpy_implementation.Service.service_take_request = take_known
     service_class.send_response = send_response

@@ -35,6 +35,8 @@ class Entity:
         self.number = 0
         self.due = 0
         """When a timer is to be called next, in nanoseconds of the monotonic clock; 0: not known."""
+        self.period = 0
+        """A timer's, in nanoseconds: to ask rclpy costs more than to remember."""
         self.wait: tuple[str, int, bool] | None = None
         """Why it waits, by whom it is held up, and whether no worker was free; None: it does not."""
         self._since = 0
@@ -98,6 +100,17 @@ class Entities:
         self._watch_publishers(node_class)
         self._watch_waitables(node_class)
 
+    def watch_periods(self, timer_class: Any) -> None:
+        """Remember periods that the program changes."""
+        period = timer_class.timer_period_ns
+
+        def change(timer: Any, nanoseconds: int) -> None:
+            period.fset(timer, nanoseconds)
+            if (entity := state_of(timer)) is not None:
+                entity.period = nanoseconds
+
+        timer_class.timer_period_ns = property(period.fget, change, doc=period.__doc__)
+
     def node_made(self, node: Any) -> int:
         """Know a node; returns its id."""
         if state_of(node) is None:
@@ -147,7 +160,8 @@ class Entities:
         group = self._group_id(made.callback_group, self.node_made(node))
         number = entity.number = recorder.new_id()
         depth = getattr(getattr(made, "qos_profile", None), "depth", 0)
-        period = made.timer_period_ns if entity.kind == "timer" else 0
+        if entity.kind == "timer":
+            entity.period = made.timer_period_ns
         recorder.put_appeared(
             "entity",
             number,
@@ -157,7 +171,7 @@ class Entities:
             name or _name_of(entity.kind, made),
             *written_at(callback),
             0 if entity.kind == "timer" else depth,
-            period,
+            entity.period,
         )
         if entity.kind == "timer" and not made.is_canceled():
             entity.due = now() + made.time_until_next_call()

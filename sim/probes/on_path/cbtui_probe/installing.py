@@ -28,6 +28,7 @@ def install(folder: str) -> None:
     import rclpy.node
     import rclpy.publisher
     import rclpy.service
+    import rclpy.timer
     from rclpy.impl.implementation_singleton import rclpy_implementation
 
     recorder = Recorder()
@@ -37,6 +38,7 @@ def install(folder: str) -> None:
     server.start(folder)
     executors.watch(rclpy, rclpy_implementation)
     entities.watch(rclpy.node.Node)
+    entities.watch_periods(rclpy.timer.Timer)
     entities.watch_publishing(rclpy.publisher.Publisher)
     watch_clients(recorder, rclpy.client.Client)
     watch_services(recorder, rclpy.service.Service, rclpy_implementation)
