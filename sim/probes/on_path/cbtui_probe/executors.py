@@ -87,7 +87,7 @@ class Executors:
             finally:
                 spinner.waits = False
                 spinner.spun()
-                if outer is not None:
+                if here.entity:  # otherwise its callbacks come now
                     here.spinner = outer
 
         @wraps(add)

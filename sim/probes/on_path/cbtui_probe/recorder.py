@@ -14,6 +14,9 @@ _BOUND = 200_000
 _ROOM = 30
 """Bits for the ids of one process, so that those of several processes differ."""
 
+APPEARING = frozenset({"node", "group", "entity", "executor", "thread"})
+"""The tags of the events that introduce an id."""
+
 now = time.monotonic_ns
 
 
@@ -59,8 +62,8 @@ class Recorder:
     def put_appeared(self, tag: str, number: int, *fields: Any) -> None:
         """Take an event that introduces an id."""
         event = (tag, now(), number, *fields)
-        self.appeared[number] = event
         self.put(*event)
+        self.appeared[number] = event
 
     def take(self) -> list[tuple[Any, ...]]:
         """Take all events out, in order."""

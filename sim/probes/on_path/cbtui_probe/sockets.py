@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import FOLLOW, PORT, PORTS, PROTOCOL, TOKEN
 from .consoles import Console, lines
+from .recorder import APPEARING
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -67,6 +68,29 @@ class _Visitor:
         return word + end if end else None
 
 
+class _Latest:
+    """The latest events, for consoles that are yet to come; as lines, since many objects are slow to keep."""
+
+    def __init__(self) -> None:
+        self._count = 0
+        self._batches: deque[tuple[list[tuple[Any, ...]], int, bytes]] = deque()
+
+    def add(self, events: list[tuple[Any, ...]], told: bytes) -> None:
+        """Keep events, which are ``told`` as lines, and give up the oldest."""
+        appeared = [event for event in events if event[0] in APPEARING]
+        self._batches.append((appeared, len(events), told))
+        self._count += len(events)
+        while self._count > _LATEST and len(self._batches) > 1:
+            self._count -= self._batches.popleft()[1]
+
+    def after(self, appeared: list[tuple[Any, ...]]) -> tuple[bytes, int]:
+        """The lines that tell who ``appeared``, if these do not, and then these; and of how many events."""
+        told = {event for batch, _, _ in self._batches for event in batch}
+        earlier = [event for event in appeared if event not in told]
+        whole = lines(earlier) + b"".join(batch for _, _, batch in self._batches)
+        return whole, len(earlier) + self._count
+
+
 class Server:
     """Sends the events of ``recorder`` to consoles, and has ``look`` called in between.
 
@@ -80,7 +104,7 @@ class Server:
         self._listeners: list[socket.socket] = []
         self._visitors: list[_Visitor] = []
         self._consoles: list[Console] = []
-        self._latest: deque[tuple[Any, ...]] = deque(maxlen=_LATEST)
+        self._latest = _Latest()
         self._ends = threading.Event()
         self._thread = threading.Thread(target=self._serve, name="cbtui-probe", daemon=True)
 
@@ -171,10 +195,9 @@ class Server:
     def _follow(self, connection: socket.socket) -> None:
         """Tell a console what is there, what happened lately, and from now on all that happens."""
         console = Console(connection)
-        told = set(self._latest)
-        known = [event for event in list(self._recorder.appeared.values()) if event not in told]
-        events = [*known, *self._latest]
-        console.tell(lines(events), len(events))
+        appeared = list(self._recorder.appeared.values())
+        self._send()  # what has appeared until now is among the latest, or earlier
+        console.tell(*self._latest.after(appeared))
         self._consoles.append(console)
 
     def _hello(self) -> tuple[Any, ...]:
@@ -191,10 +214,9 @@ class Server:
 
     def _send(self) -> None:
         events = self._recorder.take()
-        self._latest.extend(events)
-        if not self._consoles:
-            return
         told = lines(events)
+        if events:
+            self._latest.add(events, told)
         for console in list(self._consoles):
             console.tell(told, len(events))
             console.tell_lost(self._recorder.lost)
